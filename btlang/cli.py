@@ -75,6 +75,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _run(options: argparse.Namespace) -> int:
     from btlang.pictures.command import pictures_of
     from btlang.recording.options import recording
+    from btlang.robots.answers_file import read_answers
     from btlang.robots.world_problem import read_world
     from btlang.ros.command import chosen_robot, print_preflight
     from btlang.run.command import run_mission
@@ -96,6 +97,7 @@ def _run(options: argparse.Namespace) -> int:
             rate=options.rate,
             time_limit=options.time_limit,
             seed=options.seed,
+            answers=options.answers and read_answers(options.answers),
             log=options.log,
             quiet=options.quiet,
             lines=options.lines,

@@ -203,8 +203,9 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
         "--for", type=duration, dest="time_limit", metavar="DURATION", help="stop after this time, such as 60s or 2min"
     )
     parser.add_argument(
-        "--seed", type=int, metavar="N", help="make the random choices of an earlier run, whose log has the seed"
+        "--seed", type=int, metavar="N", help="repeat what an earlier run did by chance: its log has the seed"
     )
+    parser.add_argument("--answers", metavar="FILE", help="answer what the robot asks from a TOML file")
     parser.add_argument("--log", metavar="FILE", help="write every event as a line of JSON")
     parser.add_argument(
         "--picture", type=picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"

@@ -106,8 +106,8 @@ class Session:
 
         `speed` is "real", "max" or a factor of real time. `rate` is in ticks per second of mission time, and the
         mission ends after `time_limit` seconds. `sinks` get events (see btlang.run.events) according to their policy
-        (see btlang.run.bus). `values` are initial blackboard entries. `controls` may be created before the run. Random
-        choices of the robot follow from `seed`, by default another one for each run. `hooks` are those of an engine.
+        (see btlang.run.bus). `values` are initial blackboard entries. `controls` may be created before the run. Chance
+        follows from `seed`, by default that of the world, or another one for each run. `hooks` are those of an engine.
 
         Raises MissionError if a command can't run (BT080) or the robot lacks something it needs (BT101), ValueError for
         another speed or rate, RuntimeError during another run.
@@ -119,7 +119,8 @@ class Session:
             raise ValueError(f'speed must be "real", "max" or a number from {SLOWEST} on, not {speed!r}')
         if not RATES[0] <= rate <= RATES[1]:
             raise ValueError(f"rate must be from {RATES[0]:g} to {RATES[1]:g} ticks a second, not {rate!r}")
-        self.current = Run(mission, self.connection, factor, rate, time_limit, sinks, values, controls, seed, hooks)
+        chance = self.world.seed if seed is None else seed
+        self.current = Run(mission, self.connection, factor, rate, time_limit, sinks, values, controls, chance, hooks)
         return self.current
 
     def restore(self, mission: Runnable, saved: Mapping[str, Any], **options: Any) -> Run:

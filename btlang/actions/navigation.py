@@ -47,9 +47,20 @@ def travel(robot: Navigation, name: str) -> Steps:
     yield from accomplish(robot.navigate_to(name))
 
 
-def choose(robot: Base, type: str, how: str, output: Callable[[str], object]) -> None:
-    """Puts the "nearest" or a "random" name of a type out. Fails where there is none."""
-    output(robot.choose(type, how))
+def choose(
+    robot: Base,
+    type: str,
+    how: str,
+    output: Callable[[str], object],
+    clothing: str = "",
+    color: str = "",
+    gesture: str = "",
+    kind: str = "",
+    use: str = "",
+) -> None:
+    """Puts out the "nearest", a "random" name and so on of a type. Fails where there is none with these parts."""
+    parts = {"clothing": clothing, "color": color, "gesture": gesture, "kind": kind, "use": use}
+    output(robot.choose(type, how, {name: text for name, text in parts.items() if text}))
 
 
 def accomplish(operation: Operation) -> Steps:

@@ -150,11 +150,15 @@ class Base(Machine, Protocol):
     def locate(self, name: str) -> Point:
         """Where a place, object or person is. Raises RobotError for an unknown name."""
 
-    def choose(self, kind: str, how: str) -> str:
+    def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
         """The "nearest" or a "random" name of the type "place", "object" (not carried) or "person".
 
-        Raises RobotError where there is none.
+        "seen" is the nearest in view, else the nearest known; objects are also chosen as "largest" and "smallest".
+        `parts` are what it is like, by "color", "kind" and so on. Raises RobotError where there is none.
         """
+
+    def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
+        """The names of the objects or people with these parts that the robot knows, nearest first."""
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """A run begins, whose random choices follow from the seed; so many have been made before, in another run."""

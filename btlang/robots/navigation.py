@@ -244,7 +244,11 @@ class Navigator:
             error = pose.bearing_to(goal.target)
         if abs(error) <= _FACING:
             lost = goal.reach and not self._surroundings.sight.is_fresh(goal.name)
-            goal.end(f"{said(goal.name)} is no longer where I saw it" if lost else None)
+            person = self._surroundings.is_person(goal.name)
+            gone = (
+                f"I've lost sight of {said(goal.name)}" if person else f"{said(goal.name)} is no longer where I saw it"
+            )
+            goal.end(gone if lost else None)
         else:
             self._base.drive(0.0, turn_rate(error, self._body.turning))
 

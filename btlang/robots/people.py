@@ -28,8 +28,8 @@ _DOORS = ("entrance", "door")
 
 
 class People:
-    """The people of a world. `tell(kind, name, text)` hears who comes ("come") and leaves ("leave"), and what somebody
-    says ("speak"). The same seed gives the same people.
+    """The people of a world. `tell(kind, name, text)` hears who comes ("come"), begins to walk ("walk") and leaves
+    ("leave"), and what somebody says ("speak"). The same seed gives the same people.
     """
 
     def __init__(
@@ -119,6 +119,7 @@ class People:
         for name, walker in self._walkers.items():
             if not walker.present and not walker.gone:
                 self._enter(walker)
+                self._show()
                 return name
         self._invited += 1
         name = f"{_GUEST} {self._invited}"
@@ -128,6 +129,7 @@ class People:
         self._obstacles.add(guest)
         self._walkers[name] = walker = Walker(guest, self._places)
         self._enter(walker)
+        self._show()
         return name
 
     def ask(self, question: str, person: str, point: Point, now: float) -> None:
@@ -140,7 +142,7 @@ class People:
             answer = next((answers[word] for word in answers if word in words), answers.get("*", ""))
             if name in self._said:
                 answer = self._said.pop(name)
-            if answer and self._distance(name, point) <= _HEARD:
+            if answer and self._understands(name, point):
                 self._answers.append((now + self._people[name].answers_after, name, answer))
                 return
 
@@ -157,6 +159,11 @@ class People:
     def _distance(self, name: str, point: Point) -> float:
         at = self._obstacles.point(name)
         return inf if at is None else hypot(at[0] - point[0], at[1] - point[1])
+
+    def _understands(self, name: str, point: Point) -> bool:
+        """Whether somebody understands what is said there: near enough, and in the same room."""
+        at = self._obstacles.point(name)
+        return at is not None and self._distance(name, point) <= _HEARD and not self._obstacles.wall_between(point, at)
 
     def _speak(self, now: float) -> None:
         while self._speeches and self._speeches[-1][0] <= now:
@@ -176,6 +183,7 @@ class People:
                 x, y = walker.point
                 if all(hypot(o.x - x, o.y - y) > o.radius + walker.radius for o in others):
                     self._enter(walker)
+                    self._show()
             elif walker.present and walker.person.leaves <= now and not walker.leaving:
                 walker.leave()
             elif walker.present and walker.has_left:
@@ -212,6 +220,7 @@ class People:
         """The walker of a person: who has only stood so far can walk from now on. Raises RobotError."""
         person = self._known_person(name)
         if name not in self._walkers:
+            self._tell("walk", name, "")
             point = self._obstacles.point(name)
             walker = self._walkers[name] = Walker(person, self._places)
             walker.present = True

@@ -16,6 +16,7 @@ _APPROACH = 0.6  # metres a second at which people may come nearer while it brak
 _DELAY = 0.05  # seconds until it brakes
 _AHEAD = cos(radians(75.0))
 _LOOK = 2.0  # metres
+_EDGE = 0.02  # metres that stay free before a zone
 _PROBE = 0.05  # metres ahead
 
 
@@ -69,22 +70,22 @@ class Protection:
         return sqrt(lost * lost + 2 * self._brake * gap) - lost
 
     def _near(self, zone: Zone, point: Point) -> bool:
-        return zone.contains(point) or _edge_distance(zone, point) < self._radius
+        return zone.contains(point) or edge_distance(zone, point) < self._radius
 
     def _before(self, zone: Zone, pose: Pose, direction: Point) -> float:
         """The speed at which it can brake before the zone; inf where it drives away from it, or out of it."""
         point = pose.x, pose.y
-        gap = _edge_distance(zone, point) - self._radius
+        gap = edge_distance(zone, point) - self._radius - _EDGE
         if gap > _LOOK or zone.contains(point):
             return inf
         ahead = pose.x + _PROBE * direction[0], pose.y + _PROBE * direction[1]
-        nearer = gap + self._radius - _edge_distance(zone, ahead)
+        nearer = edge_distance(zone, point) - edge_distance(zone, ahead)
         if nearer <= 0.0 and not zone.contains(ahead):
             return inf
         return sqrt(2 * self._brake * max(0.0, gap) * _PROBE / max(nearer, 1e-9)) if gap > 0.0 else 0.0
 
 
-def _edge_distance(zone: Zone, point: Point) -> float:
+def edge_distance(zone: Zone, point: Point) -> float:
     """Metres from a point to the border of a zone."""
     edges: Sequence[Point] = zone.points
     return min(segment_distance(point, (*a, *b)) for a, b in zip(edges, (*edges[1:], edges[0]), strict=True))

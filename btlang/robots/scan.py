@@ -44,7 +44,7 @@ def scan(segments: Array, discs: Array, pose: Pose, reach: float) -> Array:
     A row of `segments` is x, y of one end and of the other, a row of `discs` is x, y and radius.
     """
     angles = _ANGLES + np.radians(pose.heading)
-    beams = np.stack((np.cos(angles), np.sin(angles)))
+    beams = np.array((np.cos(angles), np.sin(angles)))
     ranges = np.full(360, np.inf)
     if len(segments):
         ranges = np.minimum(ranges, _to_segments(segments, pose, beams))
@@ -59,8 +59,8 @@ def _to_segments(segments: Array, pose: Pose, beams: Array) -> Array:
     """Solves centre + t * beam = start + u * span for every span (rows) and beam (columns), with few temporaries."""
     fx, fy = segments[:, 0] - pose.x, segments[:, 1] - pose.y
     dx, dy = segments[:, 2] - segments[:, 0], segments[:, 3] - segments[:, 1]
-    cross = np.stack((dy, -dx), axis=1) @ beams
-    u = np.stack((-fy, fx), axis=1) @ beams
+    cross = np.array((dy, -dx)).T @ beams
+    u = np.array((-fy, fx)).T @ beams
     with np.errstate(all="ignore"):
         u /= cross
         t = np.divide((fx * dy - fy * dx)[:, None], cross, out=cross)
@@ -71,8 +71,8 @@ def _to_segments(segments: Array, pose: Pose, beams: Array) -> Array:
 
 def _to_discs(discs: Array, pose: Pose, beams: Array) -> Array:
     fx, fy, radius = discs[:, 0] - pose.x, discs[:, 1] - pose.y, discs[:, 2:]
-    along = np.stack((fx, fy), axis=1) @ beams
-    half2 = radius**2 - (np.stack((-fy, fx), axis=1) @ beams) ** 2
+    along = np.array((fx, fy)).T @ beams
+    half2 = radius**2 - (np.array((-fy, fx)).T @ beams) ** 2
     t = along - np.sqrt(np.maximum(half2, 0.0))
     nearest: Array = np.where((half2 >= 0.0) & (t >= 0.0), t, np.inf).min(axis=0)
     return nearest

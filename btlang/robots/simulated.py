@@ -8,7 +8,7 @@ from typing import Any
 
 from btlang.robots.body import Body
 from btlang.robots.body_file import standard_body
-from btlang.robots.choices import Choices
+from btlang.robots.choices import PICKY, Choices
 from btlang.robots.ears import Ears
 from btlang.robots.faults import Faults, describe
 from btlang.robots.geometry import Point, Pose
@@ -22,6 +22,7 @@ from btlang.robots.simulated_parts import simulated_parts
 from btlang.robots.surroundings import Surroundings
 from btlang.robots.world import Place, World, said
 from btlang.robots.zones import Zones
+from btlang.run.robot_state import Whereabouts
 from btlang.run.standstill import Standstill
 from btlang.text.time_of_day import DAY
 from btlang.vocabulary.capabilities import part_of
@@ -253,9 +254,16 @@ class SimulatedRobot:
         """Where a place, object or person is. Raises RobotError for an unknown name, and for what it hasn't seen."""
         return self._surroundings.locate(name) or (self.pose.x, self.pose.y)
 
-    def choose(self, kind: str, how: str) -> str:
-        """A name that is the "nearest" or "random". Raises RobotError where there is none."""
-        return self._choices.choose(kind, how, self._surroundings.choices(kind), self._distance, self.on_event)
+    def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
+        """A name that is the "nearest", "random" and so on. Raises RobotError where there is none."""
+        names = self.described(kind, parts) if parts or how in PICKY else self._surroundings.choices(kind)
+        if how == "seen":
+            names = [name for name in self.seen(kind) if name in names] or names
+        return self._choices.choose(kind, how, names, parts, self.on_event, self._distance, self._size)
+
+    def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
+        """The objects or people with these parts that the robot knows, nearest first."""
+        return sorted(self._surroundings.described(kind, parts), key=self._distance)
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """A run begins, whose random choices follow from the seed; so many have been made."""
@@ -282,6 +290,11 @@ class SimulatedRobot:
         return CompletedOperation()
 
     @property
+    def things(self) -> tuple[Whereabouts, ...]:
+        """Where those are who walk, and what isn't known; for whoever watches."""
+        return self._surroundings.whereabouts()
+
+    @property
     def surroundings(self) -> Surroundings:
         """What is where around it, and who lives there."""
         return self._surroundings
@@ -300,6 +313,10 @@ class SimulatedRobot:
     def hear(self, text: str, who: str = "") -> None:
         """It hears what somebody says, or types."""
         self._surroundings.hear(text, who)
+
+    def invite(self) -> str:
+        """A visitor comes; returns the name."""
+        return self._surroundings.people.invite()
 
     def ask(self, question: str, person: str = "") -> None:
         """See `Listening.ask`: people of the world may answer."""
@@ -353,6 +370,9 @@ class SimulatedRobot:
     def wait_for_way(self, seconds: float) -> None:
         """So long it waits for who is in its way, before it looks for another way."""
         self._navigator.patience = seconds
+
+    def _size(self, name: str) -> float:
+        return getattr(self._obstacles.things[name], "size", 0.0)
 
     def _distance(self, name: str) -> float:
         return self.pose.distance_to(self.locate(name))

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from math import hypot
+from collections.abc import Callable, Iterable, Mapping
 
 from btlang.robots.body import Body
+from btlang.robots.doors import spots_beside
 from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose, segment_distance
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.people import People
 from btlang.robots.robot import RobotError
 from btlang.robots.sight import Sight
+from btlang.robots.view import View
 from btlang.robots.world import Door, Place, World, WorldObject, said
 from btlang.robots.zones import Zones
+from btlang.run.robot_state import Whereabouts
 
 _REACH = 1.2  # metres to a door or a switch
-_BESIDE = 0.7  # metres from the middle of a door
 _HAND = 1.5  # metres to somebody who takes something
 _SAME_SPOT = 0.01  # metres
 
@@ -44,7 +45,8 @@ class Surroundings:
         self._now, self._pose = 0.0, world.start
         self.zones = Zones(world.zones)
         self.ears = Ears()
-        self.sight = Sight(world, obstacles, body, joint, lambda name: emit("see", name=name))
+        view = View(obstacles, body, joint)
+        self.sight = Sight(world, obstacles, view.point, lambda name: emit("see", name=name))
         self.people = People(world, obstacles, body.radius, self._happen)
         self.sight.look(0.0, world.start)
 
@@ -106,6 +108,12 @@ class Surroundings:
             return [name for name in names if not getattr(things[name], "fixed", False)]
         return list(self._world.names.of(kind))
 
+    def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
+        """The names of objects or people with these parts that the robot knows a place of, or carries."""
+        things, where = self._obstacles.things, self.sight.where
+        known = (name for name in self.sight.names(kind) if where(name) or self._obstacles.is_carried(name))
+        return [name for name in known if name in things and things[name].fits(parts)]
+
     def nearby_people(self, within: float, pose: Pose) -> list[str]:
         """The names of the people within so many metres, nearest first: those who walk as far as they are in view."""
         found = []
@@ -161,13 +169,7 @@ class Surroundings:
 
     def beside_door(self, name: str, pose: Pose) -> list[Pose]:
         """Where a robot can stand to move a door: before and behind it, facing it; the nearer one first."""
-        door = self._door(name)
-        (ax, ay), (bx, by), (x, y) = door.start, door.end, door.middle
-        length = max(hypot(bx - ax, by - ay), 1e-9)
-        across = -(by - ay) / length * _BESIDE, (bx - ax) / length * _BESIDE
-        spots = [(x + side * across[0], y + side * across[1]) for side in (1, -1)]
-        spots.sort(key=pose.distance_to)
-        return [Pose(*spot, Pose(*spot).bearing_to((x, y))) for spot in spots]
+        return spots_beside(self._door(name), pose)
 
     def move_door(self, name: str, is_open: bool, pose: Pose) -> None:
         """Opens or closes a door. Raises RobotError where it is out of reach, or something is in it."""
@@ -178,8 +180,13 @@ class Surroundings:
         if not is_open and any(segment_distance((x, y), (*door.start, *door.end)) < r for x, y, r in bodies):
             raise RobotError(f"something is in {said(door.name)}")
         if door.open != is_open:
-            self._obstacles.swing(door.name, is_open)
-            self._emit("door", name=door.name, open=is_open)
+            self.swing(name, is_open)
+
+    def swing(self, name: str, is_open: bool) -> None:
+        """A door is open or closed from now on. Raises RobotError for an unknown one."""
+        door = self._door(name)
+        self._obstacles.swing(door.name, is_open)
+        self._emit("door", name=door.name, open=is_open)
 
     def is_open(self, name: str) -> bool:
         """Whether a door is open. Raises RobotError for an unknown one."""
@@ -209,6 +216,15 @@ class Surroundings:
             raise RobotError(f"{said(known)} can't be switched on or off")
         return self._switched.get(known, thing.switch == "on")
 
+    def whereabouts(self) -> tuple[Whereabouts, ...]:
+        """Where those really are who walk and what isn't known, to the centimetre, and whether the robot sees them."""
+        found: list[Whereabouts] = []
+        for name in self.sight.watched:
+            point = self._obstacles.point(name)
+            x, y = (None, None) if point is None else (round(point[0], 2), round(point[1], 2))
+            found.append((name, x, y, self.sight.is_seen(name)))
+        return tuple(found)
+
     def hear(self, text: str, who: str = "") -> None:
         """The robot hears what somebody says, or types."""
         self.ears.hear(text, who, self._now)
@@ -224,6 +240,7 @@ class Surroundings:
             if point is not None and self._pose.distance_to(point) <= self._hears:
                 self.hear(text, name)
             return
-        if kind == "come":
+        if kind in ("come", "walk"):
             self.sight.watch(name, "person")
-        self._emit(kind, name=name)
+        if kind != "walk":
+            self._emit(kind, name=name)

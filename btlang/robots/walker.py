@@ -34,6 +34,7 @@ _CLOSE = 0.12  # metres from a stop that count as there
 _TURNS = tuple((cos(radians(turn)), sin(radians(turn))) for turn in (0, -25, 25, -50, 50, -80, 80))
 _PATIENCE = (0.8, 3.0)  # seconds, by chance
 _ASIDE = (1.0, 4.0)  # seconds somebody stands aside
+_STEP_ASIDE = 0.7  # metres at least
 _BEHIND = (1.3, 2.2)  # metres from the robot: follows, and stands, who follows it
 _LOST = 5.0  # metres from the robot at which somebody who follows gives up
 _FOUND = 2.5
@@ -179,11 +180,16 @@ class Walker:
         """Steps aside, or back to where he or she came from, so that somebody else can go on."""
         self._waited, self._patience = 0.0, random.uniform(*_PATIENCE)
 
-        def good(point: Point) -> bool:
-            return all(hypot(b.x - point[0], b.y - point[1]) > b.radius + self.radius + 0.5 for b in bodies)
+        if self._aside is not None and random.random() < 0.5:
+            self._aside = None  # that way is barred, too
+            return
 
-        beside = ways.near(self.point, random, 1.6, good)
-        back = [point for point in self._trail if ways.is_clear(self.point, point)]
+        def good(point: Point) -> bool:
+            apart = all(hypot(b.x - point[0], b.y - point[1]) > b.radius + self.radius + 0.5 for b in bodies)
+            return apart and hypot(self.x - point[0], self.y - point[1]) > _STEP_ASIDE
+
+        beside = ways.near(self.point, random, 2.0, good)
+        back = [point for point in self._trail if good(point) and ways.is_clear(self.point, point)]
         aside = random.choice(back) if back and (beside is None or random.random() < 0.4) else beside
         if aside is not None:
             self._aside, self._path = aside, []

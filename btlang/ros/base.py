@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from math import cos, degrees, hypot, isfinite, radians, sin
+from math import cos, degrees, hypot, inf, isfinite, radians, sin
 from threading import RLock
 from typing import Any
 
@@ -57,6 +57,8 @@ class RosBase:
         self._radius, self._fastest = radius, fastest
         self._latch = latch or Latch()
         self._lock = RLock()  # a signal handler may halt while this thread drives
+        self.most = inf
+        """Metres a second that it doesn't pass, whatever it is told."""
         self._wanted = (0.0, 0.0)
         self._told = False  # since the latest step
         self._idle = self._passed = 0.0
@@ -88,7 +90,7 @@ class RosBase:
         after all that was let through before it.
         """
         with self._lock:
-            wanted = _at_most(linear, self._fastest[0]), _at_most(angular, self._fastest[1])
+            wanted = _at_most(linear, min(self._fastest[0], self.most)), _at_most(angular, self._fastest[1])
             if self._latch.refuses and wanted != (0.0, 0.0):
                 return
             if wanted == (0.0, 0.0):

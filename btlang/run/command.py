@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 
 from btlang.diagnostics.errors import MissionError
@@ -21,6 +21,7 @@ from btlang.run.overruns import are_many
 from btlang.run.runner import Outcome
 from btlang.run.sampler import Sampler
 from btlang.run.standstill import Standstill
+from btlang.run.world_input import WorldInput
 from btlang.text.output import can_draw, has_colour, show
 from btlang.tree.node import Node, Tree
 
@@ -91,6 +92,7 @@ def run_mission(
     sinks: Iterable[Sink] = (),
     values: Blackboard | None = None,
     seed: int | None = None,
+    answers: Mapping[str, list[str]] | None = None,
     scans: float | None = None,
     open_monitor: Callable[[Controls], AbstractContextManager[Monitor]] | None = None,
 ) -> int:
@@ -101,12 +103,12 @@ def run_mission(
     puts keys that aren't for it into `type_ahead`, if given; elsewhere and where `lines` is true plain lines; and
     nothing when `quiet`. `sinks` get all events too, with `scans` also samples of the blackboard and so many scans a
     second; `open_session` gives the session to run in, `values` and `seed` are as for Session.prepare. `open_monitor`
-    gives what shows the run to another program, such as Groot2.
+    gives what shows the run to another program, such as Groot2. `answers` are those of WorldInput.
     """
-    controls = Controls()
-    view = None if quiet or lines else live_view(mission, controls, type_ahead, tree_stays)
+    controls, world_input = Controls(), WorldInput(answers)
+    view = None if quiet or lines else live_view(mission, controls, type_ahead, tree_stays, world_input=world_input)
     shown: list[Sink] = [view] if view is not None else [] if quiet else [Lines(mission.label, mission.is_action, show)]
-    sinks = [*shown, *sinks]
+    sinks = [*shown, world_input, *sinks]
     values = Blackboard() if values is None else values
     options = {"speed": speed, "rate": rate, "time_limit": time_limit, "values": values, "controls": controls}
     options["seed"] = seed
@@ -188,6 +190,7 @@ def live_view(
     type_ahead: list[str] | None = None,
     tree_stays: bool = True,
     keys: Callable[[], Sequence[ViewKey]] | None = None,
+    world_input: WorldInput | None = None,
 ) -> LiveView | None:
     """None where standard output is no terminal in which it can be shown."""
     output = sys.stdout
@@ -203,7 +206,8 @@ def live_view(
     from btlang.run.live.view import LiveView
 
     try:
-        return LiveView(mission, controls, output, sys.stdin, tree_stays, type_ahead, keys() if keys else None)
+        shown = keys() if keys else None
+        return LiveView(mission, controls, output, sys.stdin, tree_stays, type_ahead, shown, world_input)
     except EngineError:
         return None  # the run itself tells what is wrong
 

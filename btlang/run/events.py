@@ -303,7 +303,7 @@ class Called(InTheWorld):
 
 
 class DoorMoved(InTheWorld):
-    """The robot has opened or closed a door."""
+    """A door was opened or closed."""
 
     tag = "door"
     name: str

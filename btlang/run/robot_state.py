@@ -13,13 +13,21 @@ if TYPE_CHECKING:
     from typing import Any
 
 
+Whereabouts = tuple[str, float | None, float | None, bool]
+"""The name of a person or an object, x and y in metres, None where it isn't there, and whether the robot sees it."""
+
+
 class RobotState(Record):
-    """Pose, percent of the battery, and what the hands hold; None for what the robot does not know."""
+    """Pose, percent of the battery, and what the hands hold; None for what the robot does not know.
+
+    `things` are those that are or may be elsewhere than the map of the world has them.
+    """
 
     pose: Any = None
     battery: float | None = None
     left: str | None = None
     right: str | None = None
+    things: tuple[Whereabouts, ...] = ()
 
     @property
     def place(self) -> list[float] | None:
@@ -38,7 +46,8 @@ def read_robot(robot: Any) -> RobotState | None:
     if robot is None:
         return None
     hands = (asked(lambda: robot.holding("left")), asked(lambda: robot.holding("right")))
-    return RobotState(asked(lambda: robot.pose), asked(lambda: robot.battery), *hands)
+    things = asked(lambda: robot.things) or ()
+    return RobotState(asked(lambda: robot.pose), asked(lambda: robot.battery), *hands, things)
 
 
 def asked(ask: Callable[[], Any]) -> Any:

@@ -6,7 +6,19 @@ from collections.abc import Mapping
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.run.bus import INLINE
-from btlang.run.events import Arrived, Bumped, Dropped, Event, Grasped, PeriodPassed, Printed, Said, StatusesChanged
+from btlang.run.events import (
+    Arrived,
+    Bumped,
+    Called,
+    Dropped,
+    Event,
+    Grasped,
+    PeriodPassed,
+    Printed,
+    Said,
+    Seen,
+    StatusesChanged,
+)
 from btlang.run.runner import Outcome
 from btlang.testing.commands import Command
 from btlang.tree.catalogue import SUBTREE
@@ -26,7 +38,9 @@ class Observations:
         """Whether the mission has ended; its outcome is known a little later, when the robot is at rest."""
         self.reached: set[str] = set()
         self.held: set[str] = set()
-        self.bumps = self.drops = 0
+        self.met: set[str] = set()
+        """Who and what was seen for the first time."""
+        self.bumps = self.drops = self.calls = 0
         self.seen: dict[int, int] = {}
         """Of each node that ran, by its number, the statuses that it had: a bit for each."""
         self.nodes: dict[int, Node] = {}
@@ -51,6 +65,10 @@ class Observations:
             self.reached.add(event.name)
         elif isinstance(event, Grasped):
             self.held.add(event.name)
+        elif isinstance(event, Seen):
+            self.met.add(event.name)
+        elif isinstance(event, Called):
+            self.calls += 1
         elif isinstance(event, Bumped):
             self.bumps += 1
         elif isinstance(event, Dropped):

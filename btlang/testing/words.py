@@ -202,3 +202,61 @@ def stop_mission(controls: Controls) -> None:
 
 def emergency_stop(controls: Controls) -> None:
     controls.emergency_stop()
+
+
+def person_comes(robot: SimulatedRobot, person: str) -> None:
+    robot.surroundings.people.come(person)
+
+
+def visitor_comes(robot: SimulatedRobot) -> None:
+    robot.invite()
+
+
+def person_leaves(robot: SimulatedRobot, person: str) -> None:
+    robot.surroundings.people.leave(person)
+
+
+def person_walks(
+    robot: SimulatedRobot, person: str, place: str | None = None, x: float | None = None, y: float | None = None
+) -> None:
+    robot.surroundings.people.walk(person, where(robot, place, x, y))
+
+
+def person_answers(robot: SimulatedRobot, person: str, text: str) -> None:
+    robot.surroundings.people.answer(person, text)
+
+
+def person_says(robot: SimulatedRobot, person: str, text: str) -> None:
+    robot.surroundings.people.say(person, text)
+
+
+def somebody_answers(robot: SimulatedRobot, text: str) -> None:
+    robot.hear(text)
+
+
+def somebody_opens(robot: SimulatedRobot, door: str) -> None:
+    robot.surroundings.swing(door, True)
+
+
+def somebody_closes(robot: SimulatedRobot, door: str) -> None:
+    robot.surroundings.swing(door, False)
+
+
+def break_dock(robot: SimulatedRobot) -> None:
+    robot.faults.begin(Fault("dock"))
+
+
+def repair_dock(robot: SimulatedRobot) -> None:
+    robot.faults.end("dock")
+
+
+def has_seen_person(observed: Observations, person: str) -> bool:
+    return person in observed.met
+
+
+def has_called(observed: Observations) -> bool:
+    return observed.calls > 0
+
+
+def has_never_called(observed: Observations) -> bool:
+    return observed.calls == 0

@@ -31,6 +31,7 @@ from tests.task.up import REFUSALS, read_rules, restored, robot_for
 TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in Path(PAGES).iterdir()}
 _LABELLED = re.compile(r"^(Wrong|Right|The file)(?: ([\w. ]+))?(?:, saved as ([\w-]+))?:\n\n((?: {4}.*\n?)+)", re.M)
 _COMMANDS = {"": "check FILE", "keyword file": "check -c wave --keywords FILE", "world": "check -c wave --world FILE",
+             "answers": "run -c wave --speed max --answers FILE",
              "robot": "run -c 'wait 1 s' --speed max --robot FILE"}  # fmt: skip
 
 

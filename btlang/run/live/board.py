@@ -48,7 +48,7 @@ class Board:
         self.changes = 0
         self.state = State(Shape(parents), nodes)
         self._title = one_line(os.path.basename(span.source.name)) if span is not None else "mission"
-        self._signs = signs
+        self.signs = signs
         self._words = frame.Words(nodes, mission.label)
         self._above: list[str] = []
         self._lines: Callable[[Event], None] = Lines(mission.label, mission.is_action, self._above.append)
@@ -98,7 +98,7 @@ class Board:
         `keys` are what frame.keys_line says; `explained` adds what the signs mean, as far as there is room. A run that
         ended before it began leaves nothing to show.
         """
-        state, signs, over = self.state, self._signs, not doing
+        state, signs, over = self.state, self.signs, not doing
         below = [frame.robot_line(state, signs), frame.counts_line(state, signs)]
         if over and not self._begun:
             return []

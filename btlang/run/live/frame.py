@@ -162,6 +162,13 @@ def keys_line(paused: bool, keys: Sequence[tuple[str, str]], signs: Signs) -> Li
     return (*pieces, (last, "dim"))
 
 
+def prompt_line(question: str, typed: str, width: int, signs: Signs) -> Line:
+    """What the robot asks, and the answer so far."""
+    answer = f" {typed}_"
+    asked = fitted(one_line(question), max(8, width - len(answer) - 1), signs)
+    return ((asked, "bold yellow"), (answer[-width:], "bold"))
+
+
 def _node(
     state: State, words: Words, row: Row, sentence: str, width: int, over: bool, signs: Signs
 ) -> list[tuple[str, str]]:

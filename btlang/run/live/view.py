@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from btlang.run.events import Event
     from btlang.run.live.board import Viewed
     from btlang.run.snapshot import State
+    from btlang.run.world_input import WorldInput
 
 
 _INTERVAL = 0.2  # seconds between two frames
@@ -35,6 +36,8 @@ _LATEST = 0.1  # seconds after which a frame does not wait any longer for the en
 _TICK = 0.01  # seconds: a tick follows a period at once, and is over by then as a rule; the run then sleeps
 _SHARE = 40  # a frame that took long to make is followed by a rest of so many times as long
 _LONGEST_REST = 1.0
+_LONGEST_ANSWER = 200
+_GRACE = 2.0  # seconds after a question in which keys still belong to its answer
 _SWITCH = 0.0005  # seconds after which the drawing thread lets a run that is waiting go on
 _OTHER_LINES = 6  # one row in so many shows what happened, above the frame
 
@@ -61,7 +64,8 @@ class LiveView:
     """A sink for one run, between `with` and its end.
 
     It shows the tree at the end of what the terminal shows, and above it the lines that `Lines` writes, which stay; the
-    tree stays too unless `tree_stays` is false. The `keys` of `keyboard`, where there is one, are by default space, s,
+    tree stays too unless `tree_stays` is false. While the robot asks something, keys are the answer that `world_input`
+    gets; v makes a visitor come. The `keys` of `keyboard`, where there is one, are by default space, s,
     q and e, which pause, step and stop the run, and stop the robot at once; ? explains the signs. With `type_ahead`, a
     space is the only key that does so while the mission runs: that list gets any other key, and what follows it. What
     is printed to standard output, or to a standard error on a terminal, comes above the tree. Raises EngineError for a
@@ -79,6 +83,7 @@ class LiveView:
         tree_stays: bool = True,
         type_ahead: list[str] | None = None,
         keys: Sequence[ViewKey] | None = None,
+        world_input: WorldInput | None = None,
     ) -> None:
         unicode = (output.encoding or "").lower().startswith("utf")
         self._board = Board(mission, frame.UNICODE if unicode else frame.ASCII)
@@ -92,6 +97,9 @@ class LiveView:
         self._calls = {GONE: controls.stop}
         for key in used:
             self._calls.update(key.calls)
+        self._world_input, self._typed, self._asked = world_input, "", -_GRACE
+        if world_input is not None:
+            self._calls.setdefault("v", world_input.invite)
         self._keys = self._open_keys(keyboard)
         self._due = 0.0  # when the next frame may be drawn
         self._wake = threading.Event()
@@ -161,7 +169,8 @@ class LiveView:
         """Draws a frame where there is anything new."""
         width, height = self._screen.size()
         doing = self._doing()
-        seen = self._board.changes, width, height, doing, self._explained
+        question = self._question
+        seen = self._board.changes, width, height, doing, self._explained, question, self._typed
         if seen == self._drawn:
             return
         self._drawn = seen
@@ -169,6 +178,8 @@ class LiveView:
         lines = self._board.frame(
             width, height - max(height // _OTHER_LINES, 1), doing, self._keys_shown(doing), self._explained
         )
+        if question and doing:
+            lines[-1] = frame.prompt_line(question, self._typed, width, self._board.signs)
         self._screen.draw(above, lines)
 
     def _keys_shown(self, doing: str) -> Sequence[tuple[str, str]]:
@@ -210,8 +221,34 @@ class LiveView:
         except (OSError, ValueError):
             return None
 
+    @property
+    def _question(self) -> str:
+        """What the robot asks and somebody at this keyboard can answer."""
+        return self._world_input.question if self._world_input is not None and self._keys is not None else ""
+
+    def _takes_answers(self) -> bool:
+        """Whether keys are an answer: also when the question has just gone, so that its rest stops no robot."""
+        now = time.monotonic()
+        self._asked = now if self._question else self._asked
+        return now - self._asked < _GRACE or bool(self._typed)
+
+    def _answer(self, key: str) -> None:
+        """A key of the answer; Enter sends it."""
+        if key in "\r\n":
+            if self._typed and self._question and self._world_input is not None:
+                self._world_input.type(self._typed)
+            self._typed = ""
+        elif key in "\x7f\b":
+            self._typed = self._typed[:-1]
+        elif key.isprintable() and len(key) == 1 and len(self._typed) < _LONGEST_ANSWER:
+            self._typed += key
+        self._wake.set()
+
     def _press(self, key: str) -> None:
         controls = self._controls
+        if key and not controls.paused and self._takes_answers():
+            self._answer(key)
+            return
         if key and self._type_ahead is not None and not controls.paused and (key != " " or self._type_ahead):
             self._type_ahead.append(key)
             return

@@ -24,9 +24,9 @@ from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.trie import SLOTS, TrieNode, longest
+from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.value_type import PLACE, ValueType, with_unit
-from btlang.vocabulary.values import END
+from btlang.vocabulary.word_tree import END, SLOTS
 
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
 

@@ -1,0 +1,57 @@
+"""What people do to the world while a run goes on: they type answers, and make visitors come."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+
+from btlang.run.bus import INLINE
+from btlang.run.events import Asked, Event, PeriodPassed
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_ANY = "*"
+
+
+class WorldInput:
+    """A sink in the thread of the run. `type` and `invite` may be called from any thread.
+
+    `answers` are by words of the question, "*" for any other: the first to the first such question, and so on; the last
+    one is given again and again.
+    """
+
+    policy = INLINE
+
+    def __init__(self, answers: Mapping[str, list[str]] | None = None) -> None:
+        self._answers = {words.lower(): list(texts) for words, texts in (answers or {}).items()}
+        self._calls: deque[Callable[[Any], object]] = deque()
+        self.question = ""
+        """The open question, "" while there is none."""
+
+    def __call__(self, event: Event) -> None:
+        """An event of the run."""
+        if isinstance(event, Asked):
+            self.question = event.text or "..."
+            if (answer := self._scripted(event.text.lower())) is not None:
+                self.type(answer)
+        elif isinstance(event, PeriodPassed) and (self.question or self._calls):
+            while self._calls:
+                self._calls.popleft()(event.robot)
+            if not getattr(getattr(event.robot, "ears", None), "asking", ""):
+                self.question = ""
+
+    def type(self, text: str) -> None:
+        """Somebody answers."""
+        self._calls.append(lambda robot: robot.hear(text))
+
+    def invite(self) -> None:
+        """A visitor comes, where the world is simulated."""
+        self._calls.append(lambda robot: robot.invite() if hasattr(robot, "invite") else None)
+
+    def _scripted(self, question: str) -> str | None:
+        texts = next((texts for words, texts in self._answers.items() if words in question), self._answers.get(_ANY))
+        if not texts:
+            return None
+        return texts.pop(0) if len(texts) > 1 else texts[0]
