@@ -183,6 +183,7 @@ charge [to {percent}]
         (
             "wait for",
             [
+                "wait for {person}",
                 "wait [for] {duration}",
                 "wait for",
                 "wait [for] up to {duration} until/till/for",
