@@ -183,7 +183,6 @@ charge [to {percent}]
         (
             "wait for",
             [
-                "wait for {person}",
                 "wait [for] {duration}",
                 "wait for",
                 "wait [for] up to {duration} until/till/for",
