@@ -18,6 +18,7 @@ from btlang.robots.zones import Zones
 from btlang.run.robot_state import Whereabouts
 
 _REACH = 1.2  # metres to a door or a switch
+_HAND = 1.5  # metres to somebody who takes something
 _SAME_SPOT = 0.01  # metres
 
 
@@ -39,6 +40,7 @@ class Surroundings:
         self._obstacles, self._emit = obstacles, emit
         self._radius = body.radius
         self._switched: dict[str, bool] = {}
+        self._given_to: dict[str, str] = {}
         self._hears = body.ears.within if body.ears is not None else 0.0
         self._now, self._pose = 0.0, world.start
         self.zones = Zones(world.zones)
@@ -78,6 +80,8 @@ class Surroundings:
         for place in self._world.places:
             if place.name == known:
                 return place.x, place.y
+        if known in self._given_to:
+            return self.locate(self._given_to[known])
         point = self.sight.where(known)
         if point is None and not self._obstacles.is_carried(known):
             raise RobotError(f"I haven't seen {said(known)}")
@@ -134,9 +138,30 @@ class Surroundings:
         else:
             self._obstacles.move(known, x, y)
 
+    def check_taker(self, object: str, person: str, pose: Pose) -> None:
+        """Raises RobotError where a person is too far away to take an object, or doesn't want it."""
+        known = self.known(person)
+        point = self._obstacles.point(known)
+        if not self.is_person(known) or point is None:
+            raise RobotError(f"{said(known)} isn't here")
+        if (distance := pose.distance_to(point)) > _HAND:
+            raise RobotError(f"{said(known)} is {distance:.1f} m away")
+        if object.lower() in map(str.lower, self.people.refused_by(known)):
+            raise RobotError(f"{said(known)} doesn't want {said(object)}")
+
+    def give(self, object: str, person: str) -> None:
+        """A person has an object from now on."""
+        self._given_to[object] = self.known(person)
+
+    def check_free(self, name: str) -> None:
+        """Raises RobotError for what somebody was given."""
+        if name in self._given_to:
+            raise RobotError(f"{said(self._given_to[name])} has {said(name)}")
+
     def check_movable(self, name: str) -> None:
         """Raises RobotError for an object that can't be picked up, or that the robot hasn't seen."""
         known = self.known(name)
+        self.check_free(known)
         self.locate(known)
         thing = self._obstacles.things.get(known)
         if isinstance(thing, WorldObject) and thing.fixed:

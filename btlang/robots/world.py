@@ -94,7 +94,7 @@ class Person(Thing):
 
     `walks` is the route, which is walked over and over where `again` is true; who `wanders` walks from place to place.
     `answers` go by a word of the question, "*" by any, and take `answers_after` seconds. `follows` is from 0 to 1, how
-    well somebody keeps up when guided: 1 always.
+    well somebody keeps up when guided: 1 always. What he or she `refuses` isn't taken from the robot.
     """
 
     comes: float = 0.0
@@ -109,6 +109,7 @@ class Person(Thing):
     answers: Mapping[str, str] = {}
     answers_after: float = 1.5
     follows: float = 1.0
+    refuses: tuple[str, ...] = ()
 
     @property
     def parts(self) -> Parts:

@@ -27,7 +27,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_OWN = ("shipped", "replaces", "action", "condition", "quantity", "noun", "type", "phrases")
+_OWN = ("shipped", "yields", "replaces", "action", "condition", "quantity", "noun", "type", "phrases")
 _TOP = {"language", *_OWN, *WORD_LISTS, *SWITCHES, *TABLES}
 _ENTRY = {"phrase", "id", "call", "ros", "slots", "outputs", "resources", "needs", "topic", "help", "example"}
 _FLAGS = ("instant", "uninterruptible", "thread")
@@ -358,9 +358,11 @@ def read_keyword_file(source: Source) -> KeywordFile:
     entries += reader.phrases(document.get("phrases", {}))
     reader.start = 0
     entries = reader.replacing(document.get("replaces", []), entries)
-    is_shipped = document.get("shipped", True)
-    if not isinstance(is_shipped, bool):
-        reader.wrong("shipped is true or false", "shipped")
+    is_shipped, yields = document.get("shipped", True), document.get("yields", False)
+    for key, value in (("shipped", is_shipped), ("yields", yields)):
+        if not isinstance(value, bool):
+            reader.wrong(f"{key} is true or false", key)
+    entries = [entry.replace(yields=yields) for entry in entries] if yields is True else entries
     language = {k: v for k, v in document.items() if k not in _OWN}
     for key, value in language.items():
         if key in _TOP:

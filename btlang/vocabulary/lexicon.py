@@ -374,10 +374,10 @@ class Lexicon:
     def _collide(self, one: Meaning, other: Meaning) -> None:
         """Told at the entry that was loaded later; connectives come first."""
         ids = [(meaning.entry.id if meaning.entry else "", meaning.role) for meaning in (one, other)]
-        if ids[0] == ids[1]:
-            return
         order = list(self.entries)
         one, other = sorted((one, other), key=lambda m: order.index(m.entry.id) if m.entry else -1)
+        if ids[0] == ids[1] or (one.entry and other.entry and one.entry.yields != other.entry.yields):
+            return
         first, second = self._described(other), self._described(one)
         span = other.entry.span if other.entry and other.entry.span else Span(Source(second[0], second[2]), 0, 0)
         self._problems.append(

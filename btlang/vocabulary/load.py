@@ -19,6 +19,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.vocabulary.keyword_file import KeywordFile
+
 ENTRY_POINTS = "btlang.keywords"
 
 
@@ -69,7 +71,7 @@ def _words(folder: str, paths: Sequence[str], entries: Sequence[Entry]) -> Lexic
 
 def _made(paths: Sequence[str], entries: Iterable[Entry], folder: str, english: Lexicon | None) -> Lexicon:
     """The vocabulary of keyword files, those of a language among them, and of entries."""
-    from btlang.vocabulary.keyword_file import KeywordFile, read_keyword_file  # not where the cache has it
+    from btlang.vocabulary.keyword_file import read_keyword_file  # not where the cache has it
 
     files: list[KeywordFile] = []
     problems = []
@@ -90,7 +92,17 @@ def _made(paths: Sequence[str], entries: Iterable[Entry], folder: str, english: 
             else file
             for file in files
         ]
-    return Lexicon(files, entries, english, folder)
+    return Lexicon(_after_yielding(files, entries := list(entries)), entries, english, folder)
+
+
+def _after_yielding(files: Sequence[KeywordFile], entries: Iterable[Entry]) -> list[KeywordFile]:
+    """The files without the entries that yield to another one with their id and a function."""
+    given = [*(entry for file in files for entry in file.entries), *entries]
+    taken = {entry.id for entry in given if entry.call and not entry.yields}
+    return [
+        file.replace(entries=tuple(entry for entry in file.entries if not (entry.yields and entry.id in taken)))
+        for file in files
+    ]
 
 
 def _entry(word: Entry | Callable[..., Any]) -> Entry:

@@ -95,7 +95,8 @@ def add_name(header: Header, found: Definitions, vocabulary: Lexicon, types: Map
     nodes = [vocabulary.trie]
     for part in words:
         nodes = [child for node in nodes for child in _below(node, part)]
-    if any(END in node for node in nodes):
+    known = [node[END].entry for node in nodes if END in node]
+    if any(entry is None or not entry.yields for entry in known):
         found.problems.append(diagnostic("BT018", header.span, name=header.name))
 
 
