@@ -8,6 +8,7 @@ from typing import Protocol
 
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, go_to, travel
+from btlang.actions.nouns import described
 from btlang.actions.points import spot
 from btlang.actions.watch import Driving, Watch
 from btlang.engine.leaves.leaf import ActionFailed, Failed
@@ -93,6 +94,18 @@ def count_objects(
     yield from _count(robot, blackboard, "object", place, x, y)
 
 
+def count_kind(
+    robot: Searching,
+    blackboard: Blackboard,
+    kinds: str,
+    place: str | None = None,
+    x: float | None = None,
+    y: float | None = None,
+) -> Steps:
+    """Counts the objects of a kind, as `count_objects` counts all."""
+    yield from _count(robot, blackboard, "object", place, x, y, kinds)
+
+
 def count(blackboard: Blackboard) -> int | Failed:
     """How many the robot counted last. Fails where it hasn't counted."""
     if COUNT not in blackboard:
@@ -101,15 +114,23 @@ def count(blackboard: Blackboard) -> int | Failed:
 
 
 def _count(
-    robot: Searching, blackboard: Blackboard, kind: str, place: str | None, x: float | None, y: float | None
+    robot: Searching,
+    blackboard: Blackboard,
+    type: str,
+    place: str | None,
+    x: float | None,
+    y: float | None,
+    kind: str = "",
 ) -> Steps:
     if place is not None or x is not None:
         yield from go_to(robot, place, x, y)
-    found: set[str] = set(robot.seen(kind))
+    found: set[str] = set(robot.seen(type))
     with closing(turn(robot, _AROUND)) as turning:
         for _ in turning:
             yield
-            found.update(robot.seen(kind))
+            found.update(robot.seen(type))
+    if kind:
+        found &= set(described(robot, type, kind=kind))
     blackboard.set(COUNT, len(found))
 
 
