@@ -145,7 +145,9 @@ def value_of(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
     if kind.kind in ("number", "time"):
         return text
     ways = [f'"{text}"', f"'{text}'"]
-    if kind.kind == "names" or not _says_more(text, vocabulary):
+    if kind.kind == "names":
+        ways = [text, vocabulary.values.spoken(kind.name, text), *ways]
+    elif not _says_more(text, vocabulary):
         ways.insert(0, text)
     return next((way for way in ways if vocabulary.value(kind.name, way) == text), ways[0])
 

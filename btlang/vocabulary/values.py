@@ -176,6 +176,10 @@ class Values:
             [words.split() for words in self.phrases.said(kind, likes, self._spoken)] if self._listed.get(kind) else []
         )
 
+    def spoken(self, kind: str, name: str) -> str:
+        """The first words for a name of a type: `boxes` for the kinds "box"."""
+        return self._spoken.get((kind, name), name)
+
     def choice_words(self, choice: Choice) -> str:
         """The words that stand for a choice: `nearest person`."""
         return self.phrases.words(Description(choice.type, choice.how, choice.parts), self._spoken) or choice.text
