@@ -24,6 +24,7 @@ from btlang.vocabulary.cache import cached, recent
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import load_vocabulary
+from btlang.vocabulary.nouns import Features
 from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH, STANDARD_BODY
 from btlang.vocabulary.values import key_of
@@ -193,16 +194,16 @@ def world_vocabulary(
     """The words of a language and of the keyword files, and the names of a world. Raises MissionError."""
     find = partial(_names_by_type, world)
     if isinstance(world, Source):
-        names = recent(_names, world.text, find)
+        by_type, features = recent(_names, world.text, find)
     else:
-        names = cached("world", [DEFAULT_WORLD if world is None else world, STANDARD_BODY], find)
-    return load_vocabulary(keywords, names, language)
+        by_type, features = cached("world", [DEFAULT_WORLD if world is None else world, STANDARD_BODY], find)
+    return load_vocabulary(keywords, by_type, language, features)
 
 
-_names: dict[str, dict[str, tuple[str, ...]]] = {}  # by the text of the world
+_names: dict[str, tuple[dict[str, tuple[str, ...]], Features]] = {}  # by the text of the world
 
 
-def _names_by_type(world: str | Source | None) -> dict[str, tuple[str, ...]]:
+def _names_by_type(world: str | Source | None) -> tuple[dict[str, tuple[str, ...]], Features]:
     from btlang.robots.world_file import WorldError, world_names
 
     try:
@@ -211,7 +212,7 @@ def _names_by_type(world: str | Source | None) -> dict[str, tuple[str, ...]]:
         from btlang.robots.data_file import as_mission_error
 
         raise as_mission_error(error) from None
-    return names.by_type
+    return names.by_type, names.features
 
 
 class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):

@@ -40,6 +40,7 @@ LONG: dict[str, str] = {
     "btlang/web/package-lock.json": "made by npm",
     "btlang/robots/simulated.py": "the robot, one capability after the other",
     "btlang/run/events.py": "the classes of events, from which the schema of logs is made",
+    "btlang/ros/robot.py": "the same over ROS 2",
     "btlang/testing/words.toml": "the words of tests",
     "btlang/tree/ast.py": "the classes of syntax nodes, which are read together",
 }

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 
+from btlang.actions.manner import share_of
 from btlang.actions.points import where
 from btlang.actions.watch import BaseWatch, Driving
 from btlang.engine.leaves.leaf import ActionFailed, unheard
@@ -22,14 +23,26 @@ _SLOWEST, _SLOWEST_TURN = 0.012, 1.0  # near the goal; slower, one that swings r
 _STRAIGHTENING = 2.0  # degrees a second for each degree off course
 
 
-def move_forward(robot: Driving, distance: float, speed: float | None = None, progress: Tell = unheard) -> Steps:
-    """Drives straight ahead by `distance` metres, to the centimetre, at `speed` m/s (or the robot's normal speed)."""
-    yield from drive_straight(robot, distance, speed, progress)
+def move_forward(
+    robot: Driving,
+    distance: float,
+    speed: float | None = None,
+    manner: str | None = None,
+    progress: Tell = unheard,
+) -> Steps:
+    """Drives straight ahead by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
+    yield from drive_straight(robot, distance, share_of(robot, manner) * (speed or robot.normal_speed), progress)
 
 
-def move_backward(robot: Driving, distance: float, speed: float | None = None, progress: Tell = unheard) -> Steps:
-    """Drives straight back by `distance` metres, to the centimetre, at `speed` m/s (or the robot's normal speed)."""
-    yield from drive_straight(robot, -distance, speed, progress)
+def move_backward(
+    robot: Driving,
+    distance: float,
+    speed: float | None = None,
+    manner: str | None = None,
+    progress: Tell = unheard,
+) -> Steps:
+    """Drives straight back by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
+    yield from drive_straight(robot, -distance, share_of(robot, manner) * (speed or robot.normal_speed), progress)
 
 
 def turn_left(robot: Driving, angle: float, progress: Tell = unheard) -> Steps:

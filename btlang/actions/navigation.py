@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from btlang.actions.manner import paced
 from btlang.actions.motion import Steps
 from btlang.actions.points import where
 from btlang.engine.leaves.leaf import ActionFailed
@@ -18,24 +19,27 @@ def go_to(
     x: float | None = None,
     y: float | None = None,
     facing: float | None = None,
+    manner: str | None = None,
 ) -> Steps:
     """Drives to a place and faces as the place says, or to a point."""
-    if place is not None:
-        yield from travel(robot, place)
-        return
-    point = where(robot, place, x, y)
+    steps = travel(robot, place) if place is not None else _go_to_point(robot, x, y, facing)
+    yield from paced(robot, manner, steps)
+
+
+def _go_to_point(robot: Navigation, x: float | None, y: float | None, facing: float | None) -> Steps:
+    point = where(robot, None, x, y)
     heading = robot.pose.heading + robot.pose.bearing_to(point) if facing is None else facing
     yield from accomplish(robot.navigate_to_pose(Pose(*point, heading)))
 
 
-def go_to_person(robot: Navigation, person: str) -> Steps:
+def go_to_person(robot: Navigation, person: str, manner: str | None = None) -> Steps:
     """Drives to talking distance of a person and faces them."""
-    yield from travel(robot, person)
+    yield from paced(robot, manner, travel(robot, person))
 
 
-def approach(robot: Navigation, object: str) -> Steps:
+def approach(robot: Navigation, object: str, manner: str | None = None) -> Steps:
     """Drives until an object is within arm's reach, and faces it."""
-    yield from travel(robot, object)
+    yield from paced(robot, manner, travel(robot, object))
 
 
 def travel(robot: Navigation, name: str) -> Steps:
@@ -43,9 +47,20 @@ def travel(robot: Navigation, name: str) -> Steps:
     yield from accomplish(robot.navigate_to(name))
 
 
-def choose(robot: Base, type: str, how: str, output: Callable[[str], object]) -> None:
-    """Puts the "nearest" or a "random" name of a type out. Fails where there is none."""
-    output(robot.choose(type, how))
+def choose(
+    robot: Base,
+    type: str,
+    how: str,
+    output: Callable[[str], object],
+    clothing: str = "",
+    color: str = "",
+    gesture: str = "",
+    kind: str = "",
+    use: str = "",
+) -> None:
+    """Puts out the "nearest", a "random" name and so on of a type. Fails where there is none with these parts."""
+    parts = {"clothing": clothing, "color": color, "gesture": gesture, "kind": kind, "use": use}
+    output(robot.choose(type, how, {name: text for name, text in parts.items() if text}))
 
 
 def accomplish(operation: Operation) -> Steps:

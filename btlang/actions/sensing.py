@@ -18,6 +18,7 @@ NEAR_WALL = 0.6
 NEAR_PERSON = 1.5
 AT_PLACE = 0.5
 LOW_BATTERY = 20.0
+SUFFICIENT_BATTERY = 30.0
 FULL_BATTERY = 99.5
 
 _SIDE_MARGIN = 0.03
@@ -98,6 +99,11 @@ def battery_level(robot: Power) -> float:
 def battery_low(robot: Power) -> bool:
     """Whether less than 20% is left."""
     return robot.battery < LOW_BATTERY
+
+
+def battery_sufficient(robot: Power) -> bool:
+    """Whether more than 30% is left."""
+    return robot.battery > SUFFICIENT_BATTERY
 
 
 def battery_full(robot: Power) -> bool:

@@ -4,14 +4,21 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from btlang.actions.motion import Steps
+from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, travel
+from btlang.actions.points import where
+from btlang.actions.watch import Driving
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.capabilities import Cautious, Handling, Messenger, Navigation, Perception
+from btlang.robots.world import said
 
 
 class Doorkeeping(Navigation, Handling, Protocol):
     """It finds its way to doors and switches."""
+
+
+class Photographing(Perception, Driving, Protocol):
+    """It turns its camera to things."""
 
 
 def open_door(robot: Doorkeeping, door: str) -> Steps:
@@ -135,3 +142,33 @@ def sees_person(robot: Perception, person: str) -> bool:
 def sees_someone(robot: Perception) -> bool:
     """Whether anybody is in view."""
     return bool(robot.seen("person"))
+
+
+def take_picture(robot: Photographing) -> Steps:
+    """Takes a picture of what is in view."""
+    yield from accomplish(robot.take_picture())
+
+
+def take_picture_of_person(robot: Photographing, person: str) -> Steps:
+    """Turns to a person and takes a picture."""
+    yield from _take_picture_of(robot, person)
+
+
+def take_picture_of_object(robot: Photographing, object: str) -> Steps:
+    """Turns to an object and takes a picture."""
+    yield from _take_picture_of(robot, object)
+
+
+def take_picture_of_place(
+    robot: Photographing, place: str | None = None, x: float | None = None, y: float | None = None
+) -> Steps:
+    """Turns to a place or a point and takes a picture."""
+    yield from turn(robot, robot.pose.bearing_to(where(robot, place, x, y)))
+    yield from accomplish(robot.take_picture())
+
+
+def _take_picture_of(robot: Photographing, name: str) -> Steps:
+    yield from turn(robot, robot.pose.bearing_to(robot.locate(name)))
+    if not robot.sees(name):
+        raise ActionFailed(f"I don't see {said(name)}")
+    yield from accomplish(robot.take_picture())

@@ -243,6 +243,10 @@ class DeviceHands:
         """Begins to open it."""
         return self._begin(hand, False, lambda holds: None if holds else self.held.pop(hand, None))
 
+    def hand_over(self, hand: Hand) -> Operation:
+        """Begins to open it: somebody takes what is in it."""
+        return self._begin(hand, False, lambda holds: None if holds else self.held.pop(hand, None))
+
     def drop(self, hand: Hand, pose: Pose) -> str | None:
         """What was in it is gone."""
         return self.held.pop(hand, None)

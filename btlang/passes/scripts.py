@@ -25,7 +25,7 @@ def script(code: str) -> Node:
 
 def chosen(choice: Choice, key: str) -> Node:
     """What chooses a name for a key, with no sentence of its own."""
-    return Node("Choose", (), (("type", choice.type), ("how", choice.how), ("output", f"{{{key}}}")))
+    return Node("Choose", (), (("type", choice.type), ("how", choice.how), ("output", f"{{{key}}}"), *choice.parts))
 
 
 def behind(scripts: Sequence[Node], node: Node) -> Node:

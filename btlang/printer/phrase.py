@@ -12,7 +12,7 @@ from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED, POINT, Entry
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
 from btlang.vocabulary.pattern import Form, Slot, forms, name_form
-from btlang.vocabulary.references import Choice, choice_of
+from btlang.vocabulary.references import choice_by, choice_of
 from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.value_type import PLACE, ValueType, with_unit
 
@@ -29,7 +29,7 @@ def phrase_of(node: Node, vocabulary: Lexicon) -> str:
     if node.span is not None and is_written(node) and node.span.text[:1] not in MARKUP:
         return node.span.text
     if node.id == "Choose":
-        return vocabulary.values.choice_words(Choice(node.port("how"), node.port("type"), node.port("output")))
+        return vocabulary.values.choice_words(choice_by(dict(node.ports)))
     if node.id == "Sleep":
         return f"{vocabulary.word('wait')} {seconds(node.port('msec'))}"
     if node.id == "WaitForTime":
@@ -145,7 +145,9 @@ def value_of(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
     if kind.kind in ("number", "time"):
         return text
     ways = [f'"{text}"', f"'{text}'"]
-    if kind.kind == "names" or not _says_more(text, vocabulary):
+    if kind.kind == "names":
+        ways = [text, vocabulary.values.spoken(kind.name, text), *ways]
+    elif not _says_more(text, vocabulary):
         ways.insert(0, text)
     return next((way for way in ways if vocabulary.value(kind.name, way) == text), ways[0])
 

@@ -53,7 +53,8 @@ class Machine(Protocol):
     """What every robot is. Only `stop` and `disable` may be called from other threads.
 
     `on_event(kind, data)` is called for each event. Kinds: say, print, choose, navigate, arrive, bump, stuck, stop,
-    grasp, release, drop, joint, dock, undock, battery, fault, hear, ask, see, come, leave, call, door, switch.
+    grasp, release, drop, joint, dock, undock, battery, fault, hear, ask, see, come, leave, call, door, switch,
+    give, picture.
     """
 
     on_event: OnEvent | None
@@ -112,6 +113,9 @@ class Machine(Protocol):
 class Base(Machine, Protocol):
     """Wheels, and where the robot is."""
 
+    pace: float
+    """The share of the normal speed at which it goes its ways; 1 unless a mission says how."""
+
     @property
     def radius(self) -> float:
         """Of the round footprint."""
@@ -146,11 +150,15 @@ class Base(Machine, Protocol):
     def locate(self, name: str) -> Point:
         """Where a place, object or person is. Raises RobotError for an unknown name."""
 
-    def choose(self, kind: str, how: str) -> str:
+    def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
         """The "nearest" or a "random" name of the type "place", "object" (not carried) or "person".
 
-        Raises RobotError where there is none.
+        "seen" is the nearest in view, else the nearest known; objects are also chosen as "largest" and "smallest".
+        `parts` are what it is like, by "color", "kind" and so on. Raises RobotError where there is none.
         """
+
+    def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
+        """The names of the objects or people with these parts that the robot knows, nearest first."""
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """A run begins, whose random choices follow from the seed; so many have been made before, in another run."""
@@ -161,6 +169,13 @@ class Base(Machine, Protocol):
 
 class Navigation(Base, Protocol):
     """Navigation to named places, objects and people."""
+
+    @property
+    def set_out_from(self) -> Pose:
+        """Where it was when the run began."""
+
+    def place_names(self) -> list[str]:
+        """The names of all places, those of the mission among them."""
 
     def navigate_to(self, name: str) -> Operation:
         """Starts to a place, an object (within arm's reach) or a person (within talking distance), and faces it.
@@ -221,6 +236,9 @@ class Hands(Machine, Protocol):
     def release(self, hand: Hand) -> Operation:
         """Opens a hand and puts down the object in it."""
 
+    def hand_over(self, hand: Hand, person: str) -> Operation:
+        """Gives the object in a hand to a person. Raises RobotError, or fails, where that person is far or refuses."""
+
     def holding(self, hand: Hand) -> str | None:
         """The name of the object in the hand."""
 
@@ -233,6 +251,9 @@ class Perception(Base, Protocol):
 
     def seen(self, kind: str) -> list[str]:
         """The names of the "object"s or "person"s in view, nearest first."""
+
+    def take_picture(self) -> Operation:
+        """Takes a picture of what is in view."""
 
 
 class Listening(Machine, Protocol):

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
+from btlang.robots.likeness import unseen
 from btlang.robots.robot import OnEvent, RobotError
+
+PICKY = ("seen", "largest", "smallest")
+"""The ways to choose that look at what something is like."""
 
 
 class Choices:
@@ -21,13 +25,23 @@ class Choices:
         self.seed, self._made = seed, made
 
     def choose(
-        self, kind: str, how: str, names: Sequence[str], distance: Callable[[str], float], tell: OnEvent | None
+        self,
+        kind: str,
+        how: str,
+        names: Sequence[str],
+        parts: Mapping[str, str],
+        tell: OnEvent | None,
+        distance: Callable[[str], float],
+        size: Callable[[str], float],
     ) -> str:
-        """The nearest of the names, or a random one. Raises RobotError where there is none."""
+        """The nearest of the names, a random one and so on. Raises RobotError where nothing has these parts."""
         if not names:
-            raise RobotError(f"there's no {kind} to choose")
-        if how == "nearest":
-            data: dict[str, str | int] = {"type": kind, "how": how, "name": min(names, key=distance)}
+            raise RobotError(unseen(kind, parts) if parts or how == "seen" else f"there's no {kind} to choose")
+        if how in ("nearest", "seen"):
+            data: dict[str, str | int] = {"type": kind, "how": "nearest", "name": min(names, key=distance)}
+        elif how in ("largest", "smallest"):
+            chosen = max(names, key=size) if how == "largest" else min(names, key=size)
+            data = {"type": kind, "how": how, "name": chosen}
         elif how == "random":
             data = {"type": kind, "how": how, "name": self._any(names), "seed": self.seed}
         else:

@@ -57,6 +57,10 @@ class Hands:
             self._obstacles.put_down(name, *self._spot(name, pose, self._part(hand)))
         return name
 
+    def hand_over(self, hand: Hand) -> str | None:
+        """Somebody takes what the hand held: it stays off the floor. None for an empty hand."""
+        return self.held.pop(hand, None)
+
     def drop(self, hand: Hand, pose: Pose) -> str | None:
         """As `release`, by itself."""
         return self.release(hand, pose)

@@ -76,7 +76,7 @@ class NavigationGoal:
 
 class Navigator:
     """Drives the base along the goal under way. `patience` are the seconds it waits for who is in its way before it
-    looks for another way; without one it gives up after GIVES_UP more.
+    looks for another way; without one it gives up after GIVES_UP more. `pace` is the share of the normal speed.
     """
 
     def __init__(
@@ -93,7 +93,7 @@ class Navigator:
         self._protection = Protection(obstacles, self._zones, base.body)
         self._planner: Planner | None = None
         self._now = 0.0
-        self.patience = PATIENCE
+        self.patience, self.pace = PATIENCE, 1.0
         self.goal: NavigationGoal | None = None
 
     @property
@@ -228,7 +228,7 @@ class Navigator:
         if goal.at == last and left < 2 * _NEAR and abs(error) > 90.0:
             goal.driven = True  # just past the goal: good enough, turning back would look silly
         driving = self._body.driving
-        speed = min(driving.speed, sqrt(2 * driving.slowing * left), 3.0 * left)
+        speed = min(driving.speed * self.pace, driving.top_speed, sqrt(2 * driving.slowing * left), 3.0 * left)
         speed *= max(0.0, cos(radians(min(90.0, 2 * error))))
         speed = 0.0 if abs(error) > 45.0 else speed
         self._base.drive(speed, turn_rate(error, self._body.turning))

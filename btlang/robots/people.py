@@ -110,6 +110,10 @@ class People:
         walker = self._known(name)
         walker.follows = follows
 
+    def refused_by(self, name: str) -> tuple[str, ...]:
+        """What somebody doesn't take."""
+        return self._people[name].refuses if name in self._people else ()
+
     def invite(self) -> str:
         """The next who is to come comes at once, else a guest whom the world doesn't name; returns the name."""
         for name, walker in self._walkers.items():
@@ -179,6 +183,7 @@ class People:
                 x, y = walker.point
                 if all(hypot(o.x - x, o.y - y) > o.radius + walker.radius for o in others):
                     self._enter(walker)
+                    self._show()
             elif walker.present and walker.person.leaves <= now and not walker.leaving:
                 walker.leave()
             elif walker.present and walker.has_left:

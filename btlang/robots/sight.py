@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang.robots.body import Body, Sensor
-from btlang.robots.geometry import Point, Pose, wrap
+from btlang.robots.geometry import Point, Pose
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.world import World
 
@@ -14,21 +13,20 @@ _FRESH = 2.0  # seconds for which somebody seen counts as still there
 
 
 class Sight:
-    """The sensors of a body that recognise people and objects. Walls and closed doors hide what is behind them.
+    """What is in view, and what the robot knows of the places of people and objects.
 
-    `joint` says where a joint of the robot stands, in degrees; `tell` hears the name of what is seen first.
+    `find` gives where something of a name is that the robot at a pose has in view, None for what it hasn't; `tell`
+    hears the name of what is seen first.
     """
 
     def __init__(
         self,
         world: World,
         obstacles: Obstacles,
-        body: Body,
-        joint: Callable[[str], float],
+        find: Callable[[str, Pose], Point | None],
         tell: Callable[[str], object],
     ) -> None:
-        self._sensors = [sensor for sensor in body.sensors if sensor.recognizes]
-        self._obstacles, self._joint, self._tell = obstacles, joint, tell
+        self._obstacles, self._find, self._tell = obstacles, find, tell
         self._kinds = {name: kind for kind in ("object", "person") for name in world.names.of(kind)}
         self.watched = {thing.name: None for thing in (*world.objects, *world.people) if not thing.known}
         """The names of what the robot knows only from where it has seen it, in the order in which that began."""
@@ -60,12 +58,7 @@ class Sight:
             return
         self._next = now + _PERIOD
         for name in self.watched:
-            point = self._obstacles.point(name)
-            if point is not None and self._visible(point, pose):
-                self._last[name] = point, now
-                if name not in self._met:
-                    self._met.add(name)
-                    self._tell(name)
+            self._look_for(name, pose)
 
     def where(self, name: str) -> Point | None:
         """Where it is as far as the robot knows; None for what it hasn't seen and what it carries."""
@@ -77,8 +70,7 @@ class Sight:
 
     def sees(self, name: str, pose: Pose) -> bool:
         """Whether it is in view at this moment."""
-        point = self._obstacles.point(name)
-        return point is not None and self._visible(point, pose)
+        return self._look_for(name, pose) is not None
 
     def is_fresh(self, name: str) -> bool:
         """Whether its place is known as of now, or nearly so."""
@@ -90,26 +82,26 @@ class Sight:
 
     def seen(self, kind: str, pose: Pose) -> list[str]:
         """The names of a type that are in view, nearest first."""
+        return list(self.in_view(kind, pose))
+
+    def in_view(self, kind: str, pose: Pose) -> dict[str, Point]:
+        """Where those of a type are that are in view, nearest first."""
         found = []
         for name, of in self._kinds.items():
-            point = self._obstacles.point(name)
-            if of == kind and point is not None and self._visible(point, pose):
-                found.append((pose.distance_to(point), name))
-        return [name for _, name in sorted(found)]
+            if of == kind and (point := self._look_for(name, pose)) is not None:
+                found.append((pose.distance_to(point), name, point))
+        return {name: point for _, name, point in sorted(found)}
 
     def names(self, kind: str) -> list[str]:
         """All names of a type that somebody has given it, or that came unexpected."""
         return [name for name, of in self._kinds.items() if of == kind]
 
-    def _visible(self, point: Point, pose: Pose) -> bool:
-        distance = pose.distance_to(point)
-        for sensor in self._sensors:
-            if distance <= sensor.recognizes and self._in_view(sensor, pose.bearing_to(point)):
-                return not self._obstacles.wall_between((pose.x, pose.y), point)
-        return False
-
-    def _in_view(self, sensor: Sensor, bearing: float) -> bool:
-        if sensor.view >= 360.0:
-            return True
-        middle = sensor.angle + (self._joint(sensor.joint) if sensor.joint else 0.0)
-        return abs(wrap(bearing - middle)) <= sensor.view / 2
+    def _look_for(self, name: str, pose: Pose) -> Point | None:
+        """Where it is if it is in view, which is noted: what is seen in between two looks is known, too."""
+        point = self._find(name, pose)
+        if point is not None and name in self.watched:
+            self._last[name] = point, self._now
+            if name not in self._met:
+                self._met.add(name)
+                self._tell(name)
+        return point

@@ -8,7 +8,7 @@ from typing import Any
 
 from btlang.robots.body import Body
 from btlang.robots.body_file import standard_body
-from btlang.robots.choices import Choices
+from btlang.robots.choices import PICKY, Choices
 from btlang.robots.ears import Ears
 from btlang.robots.faults import Faults, describe
 from btlang.robots.geometry import Point, Pose
@@ -72,6 +72,7 @@ class SimulatedRobot:
         self._latch = Latch()
         self._last_said = ""
         self._bumps_told, self._stuck_told = 0, False
+        self._began = self._base.pose
         self._begin_faults()
 
     def step(self, dt: float) -> None:
@@ -200,9 +201,29 @@ class SimulatedRobot:
         """True when it has been told to move for a second and does not."""
         return self._base.stuck
 
+    @property
+    def set_out_from(self) -> Pose:
+        """Where it was when the run began."""
+        return self._began
+
+    @property
+    def pace(self) -> float:
+        """The share of the normal speed at which it goes its ways."""
+        return self._navigator.pace
+
+    @pace.setter
+    def pace(self, share: float) -> None:
+        self._navigator.pace = share
+
+    def place_names(self) -> list[str]:
+        """The names of all places, those of the mission among them."""
+        return list(self.world.names.places)
+
     def navigate_to(self, name: str) -> NavigationGoal:
         """Sets out for a place, an object or a person. Raises RobotError for an unknown name."""
-        return self._set_out(self._surroundings.known(name))
+        known = self._surroundings.known(name)
+        self._surroundings.check_free(known)
+        return self._set_out(known)
 
     def navigate_to_pose(self, pose: Pose, name: str = "") -> NavigationGoal:
         """Sets out for a pose: to what it is for, by its name or its spot; see Surroundings.goal_at."""
@@ -233,14 +254,22 @@ class SimulatedRobot:
         """Where a place, object or person is. Raises RobotError for an unknown name, and for what it hasn't seen."""
         return self._surroundings.locate(name) or (self.pose.x, self.pose.y)
 
-    def choose(self, kind: str, how: str) -> str:
-        """A name that is the "nearest" or "random". Raises RobotError where there is none."""
-        return self._choices.choose(kind, how, self._surroundings.choices(kind), self._distance, self.on_event)
+    def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
+        """A name that is the "nearest", "random" and so on. Raises RobotError where there is none."""
+        names = self.described(kind, parts) if parts or how in PICKY else self._surroundings.choices(kind)
+        if how == "seen":
+            names = [name for name in self.seen(kind) if name in names] or names
+        return self._choices.choose(kind, how, names, parts, self.on_event, self._distance, self._size)
+
+    def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
+        """The objects or people with these parts that the robot knows, nearest first."""
+        return sorted(self._surroundings.described(kind, parts), key=self._distance)
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """A run begins, whose random choices follow from the seed; so many have been made."""
         self._choices.begin(seed, made)
         self._surroundings.begin(seed)
+        self._began, self.pace = self._base.pose, 1.0
 
     def nearby_people(self, within: float) -> list[str]:
         """Names of the people within so many metres, nearest first."""
@@ -253,6 +282,12 @@ class SimulatedRobot:
     def seen(self, kind: str) -> list[str]:
         """The objects or people in view, nearest first."""
         return self._surroundings.sight.seen(kind, self.pose)
+
+    def take_picture(self) -> Operation:
+        """Takes a picture, whose event names what is in view. Raises RobotError where it has no camera."""
+        self._need("perception")
+        self._emit("picture", name=", ".join((*self.seen("person"), *self.seen("object"))))
+        return CompletedOperation()
 
     @property
     def things(self) -> tuple[Whereabouts, ...]:
@@ -335,6 +370,9 @@ class SimulatedRobot:
     def wait_for_way(self, seconds: float) -> None:
         """So long it waits for who is in its way, before it looks for another way."""
         self._navigator.patience = seconds
+
+    def _size(self, name: str) -> float:
+        return getattr(self._obstacles.things[name], "size", 0.0)
 
     def _distance(self, name: str) -> float:
         return self.pose.distance_to(self.locate(name))
@@ -429,6 +467,19 @@ class SimulatedRobot:
             return CompletedOperation()
         found = self._hands.release(hand, self.pose)
         self._emit("release", hand=hand, name=found if isinstance(found, str) else None)
+        return CompletedOperation() if isinstance(found, str | None) else found
+
+    def hand_over(self, hand: Hand, person: str) -> Operation:
+        """Gives what a hand holds to a person within reach. Raises RobotError."""
+        name = self._hands.held.get(hand)
+        if name is None:
+            raise RobotError(f"the {hand} hand is empty")
+        if self._latch.refuses:
+            raise RobotError("the robot was stopped")
+        self._surroundings.check_taker(name, person, self.pose)
+        found = self._hands.hand_over(hand)
+        self._surroundings.give(name, person)
+        self._emit("give", hand=hand, name=name, who=self._surroundings.known(person))
         return CompletedOperation() if isinstance(found, str | None) else found
 
     def holding(self, hand: Hand) -> str | None:

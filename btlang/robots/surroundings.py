@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from math import hypot
+from collections.abc import Callable, Iterable, Mapping
 
 from btlang.robots.body import Body
+from btlang.robots.doors import spots_beside
 from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose, segment_distance
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.people import People
 from btlang.robots.robot import RobotError
 from btlang.robots.sight import Sight
+from btlang.robots.view import View
 from btlang.robots.world import Door, Place, World, WorldObject, said
 from btlang.robots.zones import Zones
 from btlang.run.robot_state import Whereabouts
 
 _REACH = 1.2  # metres to a door or a switch
-_BESIDE = 0.7  # metres from the middle of a door
+_HAND = 1.5  # metres to somebody who takes something
 _SAME_SPOT = 0.01  # metres
 
 
@@ -39,11 +40,13 @@ class Surroundings:
         self._obstacles, self._emit = obstacles, emit
         self._radius = body.radius
         self._switched: dict[str, bool] = {}
+        self._given_to: dict[str, str] = {}
         self._hears = body.ears.within if body.ears is not None else 0.0
         self._now, self._pose = 0.0, world.start
         self.zones = Zones(world.zones)
         self.ears = Ears()
-        self.sight = Sight(world, obstacles, body, joint, lambda name: emit("see", name=name))
+        view = View(obstacles, body, joint)
+        self.sight = Sight(world, obstacles, view.point, lambda name: emit("see", name=name))
         self.people = People(world, obstacles, body.radius, self._happen)
         self.sight.look(0.0, world.start)
 
@@ -77,6 +80,8 @@ class Surroundings:
         for place in self._world.places:
             if place.name == known:
                 return place.x, place.y
+        if known in self._given_to:
+            return self.locate(self._given_to[known])
         point = self.sight.where(known)
         if point is None and not self._obstacles.is_carried(known):
             raise RobotError(f"I haven't seen {said(known)}")
@@ -103,6 +108,12 @@ class Surroundings:
             return [name for name in names if not getattr(things[name], "fixed", False)]
         return list(self._world.names.of(kind))
 
+    def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
+        """The names of objects or people with these parts that the robot knows a place of, or carries."""
+        things, where = self._obstacles.things, self.sight.where
+        known = (name for name in self.sight.names(kind) if where(name) or self._obstacles.is_carried(name))
+        return [name for name in known if name in things and things[name].fits(parts)]
+
     def nearby_people(self, within: float, pose: Pose) -> list[str]:
         """The names of the people within so many metres, nearest first: those who walk as far as they are in view."""
         found = []
@@ -127,9 +138,30 @@ class Surroundings:
         else:
             self._obstacles.move(known, x, y)
 
+    def check_taker(self, object: str, person: str, pose: Pose) -> None:
+        """Raises RobotError where a person is too far away to take an object, or doesn't want it."""
+        known = self.known(person)
+        point = self._obstacles.point(known)
+        if not self.is_person(known) or point is None:
+            raise RobotError(f"{said(known)} isn't here")
+        if (distance := pose.distance_to(point)) > _HAND:
+            raise RobotError(f"{said(known)} is {distance:.1f} m away")
+        if object.lower() in map(str.lower, self.people.refused_by(known)):
+            raise RobotError(f"{said(known)} doesn't want {said(object)}")
+
+    def give(self, object: str, person: str) -> None:
+        """A person has an object from now on."""
+        self._given_to[object] = self.known(person)
+
+    def check_free(self, name: str) -> None:
+        """Raises RobotError for what somebody was given."""
+        if name in self._given_to:
+            raise RobotError(f"{said(self._given_to[name])} has {said(name)}")
+
     def check_movable(self, name: str) -> None:
         """Raises RobotError for an object that can't be picked up, or that the robot hasn't seen."""
         known = self.known(name)
+        self.check_free(known)
         self.locate(known)
         thing = self._obstacles.things.get(known)
         if isinstance(thing, WorldObject) and thing.fixed:
@@ -137,13 +169,7 @@ class Surroundings:
 
     def beside_door(self, name: str, pose: Pose) -> list[Pose]:
         """Where a robot can stand to move a door: before and behind it, facing it; the nearer one first."""
-        door = self._door(name)
-        (ax, ay), (bx, by), (x, y) = door.start, door.end, door.middle
-        length = max(hypot(bx - ax, by - ay), 1e-9)
-        across = -(by - ay) / length * _BESIDE, (bx - ax) / length * _BESIDE
-        spots = [(x + side * across[0], y + side * across[1]) for side in (1, -1)]
-        spots.sort(key=pose.distance_to)
-        return [Pose(*spot, Pose(*spot).bearing_to((x, y))) for spot in spots]
+        return spots_beside(self._door(name), pose)
 
     def move_door(self, name: str, is_open: bool, pose: Pose) -> None:
         """Opens or closes a door. Raises RobotError where it is out of reach, or something is in it."""

@@ -41,6 +41,7 @@ _FOUND = 2.5
 _DISTRACTED = 0.08  # chance a second of who doesn't follow at all well
 _TRAIL = 0.4  # metres between two points of it
 _LONGEST_TRAIL = 12
+_LONGEST_WAY = 60  # points of the way of who is followed
 
 
 class Other(Record):
@@ -75,6 +76,7 @@ class Walker:
         self._waited, self._patience = 0.0, _PATIENCE[0]
         self._free = 0.0  # metres to the nearest other body, at least
         self._trail: list[Point] = []
+        self._crumbs: list[Point] = []  # the way of the robot that is followed
 
     @property
     def point(self) -> Point:
@@ -258,13 +260,21 @@ class Walker:
         if random.random() < _DISTRACTED * PERIOD * (1.0 - self.person.follows):
             self._until = now + random.uniform(4.0, 10.0)
             return None
-        clear = ways.is_clear(self.point, (robot.x, robot.y))
+        here = robot.x, robot.y
+        if not self._crumbs or hypot(here[0] - self._crumbs[-1][0], here[1] - self._crumbs[-1][1]) > _TRAIL:
+            self._crumbs = [*self._crumbs[-_LONGEST_WAY:], here]
         if distance < _BEHIND[1 if self.velocity == 0.0 else 0]:
             return None
         if distance > _LOST and self._waited == 0.0 and self.person.follows < 1.0:
             self._until = now + 1.0  # until the robot comes back
             return None
-        if clear:
+        for at in range(len(self._crumbs) - 1, -1, -1):  # in its steps, as far as they are in view
+            x, y = self._crumbs[at]
+            if hypot(x - self.x, y - self.y) < _TRAIL:
+                break
+            if ways.is_clear(self.point, (x, y)):
+                self._crumbs = self._crumbs[at:]
+                return x, y
+        if self._path and hypot(here[0] - self._path[-1][0], here[1] - self._path[-1][1]) > _TRAIL:
             self._path = []
-            return robot.x, robot.y
-        return self._along(ways, (robot.x, robot.y))
+        return self._along(ways, here)

@@ -17,6 +17,7 @@ from btlang.robots.world import World
 _CELL = 0.2
 _ROOM = 0.05  # metres beside the widest person
 _MOST_GOALS = 200
+_TIGHT = 3
 _SEARCH = 2.0  # metres to the nearest free cell
 
 
@@ -47,15 +48,20 @@ class Walkways:
         return smooth([start, *map(self._grid.centre, cells[1:-1]), goal], self.is_clear)
 
     def is_clear(self, a: Point, b: Point) -> bool:
-        """Whether the straight line leaves room beside walls and furniture."""
+        """Whether the straight line leaves room beside walls and furniture; who stands too near to one may leave it."""
         self._refresh()
         free, grid = self._free, self._grid
         (x, y), (low_x, low_y), size, columns = a, grid.origin, grid.size, grid.columns
         pieces = int(2 * hypot(b[0] - x, b[1] - y) / size) + 1
         step_x, step_y = (b[0] - x) / pieces, (b[1] - y) / pieces
+        tight = _TIGHT  # pieces in which it may still be near to a wall
         for _ in range(pieces):  # plain numbers: these lines are too short for numpy
             x, y = x + step_x, y + step_y
-            if not free[int((y - low_y) / size) * columns + int((x - low_x) / size)]:
+            if free[int((y - low_y) / size) * columns + int((x - low_x) / size)]:
+                tight = 0
+            elif tight:
+                tight -= 1
+            else:
                 return False
         return True
 

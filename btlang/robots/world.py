@@ -7,12 +7,15 @@ from itertools import pairwise
 
 from btlang.record import Record
 from btlang.robots.geometry import Point, Pose, Segment, contains
+from btlang.robots.likeness import Parts, of_object, of_person, wears
 from btlang.text.time_of_day import USUAL_START
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+PARTS = ("clothing", "color", "gesture", "kind", "use")
+"""What objects and people can be described by; each is a type of slots."""
 KEEP_OUT, SLOW = "keep out", "slow"
 PERSON_RADIUS = 0.25
 OBJECT_RADIUS = 0.05
@@ -41,6 +44,15 @@ class Thing(Record):
     radius: float
     known: bool = True
 
+    @property
+    def parts(self) -> Parts:
+        """What it can be described by: ("color", "red")."""
+        return ()
+
+    def fits(self, parts: Mapping[str, str]) -> bool:
+        """Whether a description with these parts is one of it."""
+        return set(parts.items()) <= set(self.parts)
+
 
 class WorldObject(Thing):
     """An object. `size` is the metres of its longest side, `uses` are what it is good for: "drink".
@@ -54,6 +66,11 @@ class WorldObject(Thing):
     uses: tuple[str, ...] = ()
     switch: str = ""
     fixed: bool = False
+
+    @property
+    def parts(self) -> Parts:
+        """What it can be described by."""
+        return of_object(self.kind, self.color, self.uses)
 
 
 class Stop(Record):
@@ -77,7 +94,7 @@ class Person(Thing):
 
     `walks` is the route, which is walked over and over where `again` is true; who `wanders` walks from place to place.
     `answers` go by a word of the question, "*" by any, and take `answers_after` seconds. `follows` is from 0 to 1, how
-    well somebody keeps up when guided: 1 always.
+    well somebody keeps up when guided: 1 always. What he or she `refuses` isn't taken from the robot.
     """
 
     comes: float = 0.0
@@ -92,6 +109,16 @@ class Person(Thing):
     answers: Mapping[str, str] = {}
     answers_after: float = 1.5
     follows: float = 1.0
+    refuses: tuple[str, ...] = ()
+
+    @property
+    def parts(self) -> Parts:
+        """What he or she can be described by."""
+        return of_person(self.wears, self.gesture)
+
+    def fits(self, parts: Mapping[str, str]) -> bool:
+        """Whether a description with these parts is one of him or her."""
+        return wears(self.wears, parts) and parts.get("gesture", "") in ("", self.gesture.lower())
 
     @property
     def moves(self) -> bool:
@@ -176,13 +203,14 @@ def said(name: str) -> str:
 
 
 class WorldNames(Record):
-    """The names a mission may use, as the world file spells them."""
+    """The names a mission may use, as the world file spells them; `features` are what they are like, by their type."""
 
     places: tuple[str, ...] = ()
     objects: tuple[str, ...] = ()
     people: tuple[str, ...] = ()
     zones: tuple[str, ...] = ()
     doors: tuple[str, ...] = ()
+    features: Mapping[str, tuple[tuple[str, Parts], ...]] = {}
 
     def of(self, kind: str) -> tuple[str, ...]:
         """Those of a type: a key of `by_type`."""
@@ -192,7 +220,9 @@ class WorldNames(Record):
     def by_type(self) -> dict[str, tuple[str, ...]]:
         """The names of each type of slots."""
         of = {"place": self.places, "object": self.objects, "person": self.people}
-        return {**of, "zone": self.zones, "door": self.doors}
+        likes = dict.fromkeys(part for named in self.features.values() for _, parts in named for part in parts)
+        described = {part: tuple(text for name, text in likes if name == part) for part in PARTS}
+        return {**of, "zone": self.zones, "door": self.doors, **described}
 
 
 class World(Record):
@@ -219,7 +249,10 @@ class World(Record):
     def names(self) -> WorldNames:
         """All names of the world."""
         named = (self.places, self.objects, self.people, self.zones, self.doors)
-        return WorldNames(*(tuple(each.name for each in kind) for kind in named))
+        likes = (("object", self.objects), ("person", self.people))
+        features = {kind: tuple((thing.name, thing.parts) for thing in things) for kind, things in likes}
+        places, objects, people, zones, doors = (tuple(each.name for each in kind) for kind in named)
+        return WorldNames(places, objects, people, zones, doors, features)
 
     def wall_segments(self) -> tuple[Segment, ...]:
         """The walls in straight pieces, without furniture."""

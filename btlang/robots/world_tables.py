@@ -64,7 +64,7 @@ def read_person(table: Table, known: bool, places: Sequence[Place]) -> Person:
     return table.finish(
         Person(
             name, x, y, radius, known, comes, leaves, speed, walks, again, wanders, wears, gesture, says, answers,
-            after, follows,
+            after, follows, table.texts("refuses"),
         )
     )  # fmt: skip
 

@@ -10,6 +10,10 @@ from btlang.diagnostics.errors import MissionError
 from btlang.ros.interfaces import OWN
 from btlang.text.source import Source, Span
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 _INSTALL = "Install it: pip install 'btlang[ros]', or source your ROS 2 Jazzy: . /opt/ros/jazzy/setup.bash"
 
 
@@ -44,6 +48,15 @@ def require_interfaces() -> None:
         reason = f"there is no Python package {error.name}" if absent else str(error)
     if reason:
         raise MissionError([diagnostic("BT110", Span(Source("", "ROS 2"), 0, 0), reason=reason)])
+
+
+def optional_interface(name: str) -> Any:
+    """The class of an interface, as "nav2_msgs/msg/SpeedLimit"; None where it isn't installed."""
+    package, kind, cls = name.split("/")
+    try:
+        return getattr(import_module(f"{package}.{kind}"), cls, None)
+    except ImportError:
+        return None
 
 
 def unusable(reason: str, advice: str = "") -> MissionError:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from math import cos, degrees, hypot, isfinite, radians, sin
+from math import cos, degrees, hypot, inf, isfinite, radians, sin
 from threading import RLock
 from typing import Any
 
@@ -57,6 +57,8 @@ class RosBase:
         self._radius, self._fastest = radius, fastest
         self._latch = latch or Latch()
         self._lock = RLock()  # a signal handler may halt while this thread drives
+        self.most = inf
+        """Metres a second that it doesn't pass, whatever it is told."""
         self._wanted = (0.0, 0.0)
         self._told = False  # since the latest step
         self._idle = self._passed = 0.0
@@ -122,6 +124,11 @@ class RosBase:
             self._told = False
 
     @property
+    def backward(self) -> bool:
+        """Whether it has been told to move backward."""
+        return self._wanted[0] < 0.0
+
+    @property
     def driving(self) -> bool:
         """Whether it has been told to move."""
         return self._wanted != (0.0, 0.0)
@@ -166,6 +173,7 @@ class RosBase:
         if self._publisher is None:
             self.adapt()
         stamp, (linear, angular) = self._node.get_clock().now().to_msg(), self._wanted
+        linear = _at_most(linear, self.most)
         message = velocity(_TYPES[self._type], linear, radians(angular), stamp, self._fastest[0])
         if self._publisher is not None:
             self._publisher.publish(message)

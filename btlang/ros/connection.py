@@ -13,11 +13,13 @@ from btlang.diagnostics.errors import MissionError
 from btlang.robots.body import Body
 from btlang.robots.needs import check_body, lacking
 from btlang.robots.world import World
-from btlang.ros.available import require_ros
+from btlang.robots.zone_check import check_zones
+from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.binding import bind_ros
 from btlang.ros.clients import Clients
 from btlang.ros.connected import is_connected
 from btlang.ros.graph import absent, full_name
+from btlang.ros.interfaces import OWN
 from btlang.ros.latest import NodeClock
 from btlang.ros.node import SpunNode
 from btlang.ros.pace import RosPace
@@ -94,7 +96,7 @@ class RosConnection:
         """What a tree needs of the robot, the first leaf that needs it, and what is wrong with it, "" for nothing.
 
         Waits for what is missing: until the node is seven seconds old, at least for two seconds. Raises MissionError
-        (BT100) where nav2_msgs is needed and is not installed.
+        where nav2_msgs is needed and is not installed (BT100), or btlang's interfaces aren't compiled (BT110).
         """
         wanted: dict[Interface, Node | None] = {CLOCK: None} if self._sim_time else {}
         declared, own = self._bound(tree, vocabulary)
@@ -102,6 +104,8 @@ class RosConnection:
         if any(interface.kind == "action" for interface in wanted):
             require_ros("nav2_msgs")
             self.robot.prepare_navigation()
+        if any(interface.type.startswith(f"{OWN.name}/") for interface in wanted):
+            require_interfaces()
         found: dict[Interface, tuple[Node | None, str]] = {}
 
         def has_all() -> bool:
@@ -111,7 +115,7 @@ class RosConnection:
                 found[offered] = node, reason
             lacking = {Interface(need.kind, need.name, need.type): need.missing for need in self._clients.needs()}
             found.update((interface, (node, lacking[interface])) for interface, node in own.items())
-            return not any(reason for _, reason in found.values())
+            return not any(reason for _, reason in found.values()) and not self.robot.awaited()
 
         wait_until(has_all, max(self._discovers_until - time.monotonic(), _AGAIN))
         return {self._named(interface): lack for interface, lack in found.items()}
@@ -183,8 +187,11 @@ class RosConnection:
         return ids, own
 
     def check(self, tree: Tree, vocabulary: Lexicon) -> None:
-        """Raises MissionError with all that the tree needs and the robot lacks (BT072, BT101)."""
+        """Raises MissionError with all that the tree needs and the robot lacks (BT072, BT101), and for goals in closed
+        zones (BT074).
+        """
         check_body(self.robot.body, tree, vocabulary, but=self._bound(tree, vocabulary)[0])
+        check_zones(self.robot.world, tree, vocabulary)
         lacking = [(i, node, reason) for i, (node, reason) in self.survey(tree, vocabulary).items() if reason]
         if lacking:
             raise MissionError([_lack(*lack) for lack in lacking])

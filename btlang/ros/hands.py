@@ -44,6 +44,8 @@ class RosHands:
 
     def grasp(self, hand: Hand, name: str | None) -> Call:
         """Closes a hand; where it closes on another object than the named one, it opens again. Raises RobotError."""
+        if name is not None:
+            self._places.check_movable(name)
         wanted = None if name is None else self._places.known(name)
         return self._services.call(_close(hand), partial(self._grasped, hand, wanted), data=True)
 

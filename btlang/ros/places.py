@@ -2,26 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
-from math import radians
+from math import dist, radians
 
 from btlang.robots.body import Body
+from btlang.robots.choices import PICKY, Choices
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.navigation import stand_off
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.planning import Planner
-from btlang.robots.robot import Hand, RobotError
-from btlang.robots.world import Place, World
+from btlang.robots.robot import Hand, OnEvent, RobotError
+from btlang.robots.sight import Sight
+from btlang.robots.world import OBJECT_RADIUS, PERSON_RADIUS, Door, Person, Place, Thing, World, WorldObject, said
+from btlang.robots.zones import Zones
+from btlang.run.robot_state import Whereabouts
+
+_MOVED = 0.05  # metres that something has to be elsewhere
+_MOST_THINGS = 10_000
 
 
 class Places:
-    """Metres on the map, which is that of the world file. Objects move when the robot carries them."""
+    """Metres on the map, which is that of the world file. Objects move when the robot carries them.
 
-    def __init__(self, world: World, body: Body) -> None:
+    `notice` says what is in view: who walks, and what isn't known, is where it was seen. `tell` hears the name of what
+    is seen first.
+    """
+
+    def __init__(self, world: World, body: Body, tell: Callable[[str], object] = lambda name: None) -> None:
         self._body = body
         self.world = self._given_world = world
-        self._obstacles = Obstacles(world)
+        self.zones = Zones(world.zones)
+        self.obstacles = Obstacles(world)
+        self._in_view: dict[str, Point] = {}
+        self.sight = Sight(world, self.obstacles, lambda name, pose: self._in_view.get(name), tell)
         self._planner: Planner | None = None
 
     def name_places(self, places: Iterable[Place]) -> None:
@@ -31,25 +45,91 @@ class Places:
     def known(self, name: str) -> str:
         """The name as the world spells it. Raises RobotError for an unknown one."""
         names = self.world.names
-        for known in (*names.places, *names.objects, *names.people):
+        for known in (*names.places, *names.objects, *names.people, *self.obstacles.things):
             if known.lower() == name.lower():
                 return known
         raise RobotError(f"I don't know where '{name}' is")
 
     def free(self, kind: str) -> list[str]:
-        """The names of a type, without objects that the robot carries."""
-        return [name for name in self.world.names.of(kind) if not self._obstacles.is_carried(name)]
+        """The names of a type that the robot knows a place of, without objects that it carries or that are fixed."""
+        if kind not in ("object", "person"):
+            return list(self.world.names.of(kind))
+        things = self.obstacles.things
+        names = (name for name in self.sight.names(kind) if self.sight.where(name) is not None)
+        return [name for name in names if not getattr(things[name], "fixed", False)]
+
+    def notice(self, seen: Mapping[str, tuple[str, Point]], now: float, pose: Pose) -> None:
+        """This is in view, and nothing else: the kind of each, "person" or "object", and where it is."""
+        names = {name.lower(): name for name in self.obstacles.things} if seen else {}
+        self._in_view = {}
+        for said_name, (kind, point) in seen.items():
+            name = names.get(said_name.lower(), said_name)
+            if name not in self.obstacles.things:
+                if len(self.obstacles.things) >= _MOST_THINGS:
+                    continue
+                self.obstacles.add(_stranger(name, kind, point))
+                self.sight.watch(name, kind)
+            self._in_view[name] = point
+            stood = self.obstacles.point(name)
+            if stood is not None and dist(stood, point) > _MOVED:
+                self.obstacles.move(name, *point)
+        self.sight.look(now, pose)
+
+    def is_watched(self, name: str) -> bool:
+        """Whether it is known only where it was seen."""
+        return name in self.sight.watched
+
+    def whereabouts(self) -> tuple[Whereabouts, ...]:
+        """Where those were seen who walk, and what isn't known, to the centimetre, and whether they are in view."""
+        found: list[Whereabouts] = []
+        for name in self.sight.watched:
+            point = self.sight.where(name)
+            x, y = (None, None) if point is None else (round(point[0], 2), round(point[1], 2))
+            found.append((name, x, y, name in self._in_view))
+        return tuple(found)
+
+    def described(self, kind: str, parts: Mapping[str, str], robot: Pose) -> list[str]:
+        """The names of objects or people with these parts that the robot knows a place of or carries, nearest first."""
+        things, where = self.obstacles.things, self.sight.where
+        known = (name for name in self.sight.names(kind) if where(name) or self.obstacles.is_carried(name))
+        names = (name for name in known if things[name].fits(parts))
+        return sorted(names, key=lambda name: robot.distance_to(self.locate(name, robot)))
+
+    def choose(
+        self,
+        kind: str,
+        how: str,
+        parts: Mapping[str, str],
+        where: Callable[[], Pose],
+        choices: Choices,
+        tell: OnEvent | None,
+    ) -> str:
+        """One of the names of a type. Raises RobotError where there is none with these parts."""
+        robot = where() if how in ("nearest", "seen") else Pose(0.0, 0.0, 0.0)
+        names = self.described(kind, parts, robot) if parts or how in PICKY else self.free(kind)
+        if how == "seen":
+            names = [name for name in self.sight.seen(kind, robot) if name in names] or names
+        things = self.obstacles.things
+        return choices.choose(
+            kind, how, names, parts, tell,
+            lambda name: robot.distance_to(self.locate(name, robot)), lambda name: getattr(things[name], "size", 0.0),
+        )  # fmt: skip
 
     def locate(self, name: str, robot: Pose) -> Point:
-        """Where it is; what the robot carries is where the robot is. Raises RobotError for an unknown name."""
+        """Where it is; what the robot carries is where the robot is.
+
+        Raises RobotError for an unknown name, and for what the robot hasn't seen.
+        """
         known = self.known(name)
         for place in self.world.places:
             if place.name == known:
                 return place.x, place.y
-        if self._obstacles.is_carried(known):
+        if self.obstacles.is_carried(known):
             return robot.x, robot.y
-        thing = self._obstacles.things[known]
-        return thing.x, thing.y
+        point = self.sight.where(known)
+        if point is None:
+            raise RobotError(f"I haven't seen {said(known)}")
+        return point
 
     def located(self, name: str) -> tuple[float, float, float | None]:
         """Metres, and the direction to face in radians, None for any. Raises KeyError for an unknown name."""
@@ -81,29 +161,52 @@ class Places:
             if place.name == known:
                 facing = robot.heading + robot.bearing_to(point) if place.facing is None else place.facing
                 return Pose(place.x, place.y, facing)
-        reach = stand_off(self._body, self._obstacles.things[known], known in self.world.names.people)
+        reach = stand_off(self._body, self.obstacles.things[known], known in self.sight.names("person"))
         stand = self._stand(robot, point, reach)
         return Pose(*stand, stand_heading(stand, point))
 
     def picked_up(self, name: str) -> None:
         """The robot carries it from now on."""
-        self._obstacles.pick_up(name)
+        self.obstacles.pick_up(name)
 
     def put_down(self, name: str, robot: Pose, hand: Hand) -> None:
         """It lies just in front of the robot."""
         part = self._body.hand(hand)
-        ahead = (part.puts_at if part is not None else self._body.radius) + self._obstacles.things[name].radius
-        self._obstacles.put_down(name, *robot.ahead(ahead))
+        ahead = (part.puts_at if part is not None else self._body.radius) + self.obstacles.things[name].radius
+        self.obstacles.put_down(name, *robot.ahead(ahead))
+
+    def check_movable(self, name: str) -> None:
+        """Raises RobotError for an object that can't be picked up, or that the robot hasn't seen."""
+        known = self.known(name)
+        self.locate(known, Pose(0.0, 0.0, 0.0))
+        if getattr(self.obstacles.things.get(known), "fixed", False):
+            raise RobotError(f"{said(known)} is fixed")
 
     def nearby_people(self, within: float, robot: Pose) -> list[str]:
-        """Names, nearest first."""
-        distances = [(robot.distance_to(self.locate(name, robot)), name) for name in self.world.names.people]
-        return [name for distance, name in sorted(distances) if distance <= within]
+        """Names, nearest first: those who walk as far as they are in view."""
+        found = []
+        for name in self.sight.names("person"):
+            point = self.sight.where(name)
+            if point is not None and self.sight.is_fresh(name) and robot.distance_to(point) <= within:
+                found.append((robot.distance_to(point), name))
+        return [name for _, name in sorted(found)]
+
+    def door(self, name: str) -> Door:
+        """A door as it is now. Raises RobotError for an unknown one."""
+        for door in self.obstacles.doors.values():
+            if door.name.lower() == name.lower():
+                return door
+        raise RobotError(f"there's no door called '{name}'")
+
+    def swing(self, name: str, is_open: bool) -> None:
+        """A door is open or closed from now on."""
+        if self.obstacles.doors[name].open != is_open:
+            self.obstacles.swing(name, is_open)
 
     def _stand(self, robot: Pose, point: Point, reach: float) -> Point:
         with suppress(RobotError):  # a world too large to plan in
             if self._planner is None:
-                self._planner = Planner(self._given_world, self._obstacles, self._body.radius)
+                self._planner = Planner(self._given_world, self.obstacles, self._body.radius, self.zones)
             path = self._planner.path((robot.x, robot.y), point, reach)
             if path is not None:
                 return path[-1]
@@ -115,3 +218,9 @@ class Places:
 def stand_heading(stand: Point, point: Point) -> float:
     """Degrees that face a point."""
     return Pose(*stand).bearing_to(point)
+
+
+def _stranger(name: str, kind: str, point: Point) -> Thing:
+    if kind == "person":
+        return Person(name, *point, PERSON_RADIUS)
+    return WorldObject(name, *point, OBJECT_RADIUS)

@@ -5,40 +5,60 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
+from math import inf
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from rclpy.node import Node
+from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from btlang.robots.body import Body
 from btlang.robots.body_file import standard_body
 from btlang.robots.choices import Choices
+from btlang.robots.doors import spots_beside
+from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.latch import Latch
+from btlang.robots.protection import Protection
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError
-from btlang.robots.world import Place, World
+from btlang.robots.world import Place, World, Zone, said
+from btlang.robots.zones import Zones
+from btlang.ros.available import optional_interface
 from btlang.ros.awake import AWAKE
 from btlang.ros.base import RosBase
+from btlang.ros.doors import RosDoors
+from btlang.ros.ears import RosEars
 from btlang.ros.executor_thread import ExecutorThread
 from btlang.ros.hands import RosHands
 from btlang.ros.joints import RosJoints
+from btlang.ros.perception import RosPerception
 from btlang.ros.places import Places
 from btlang.ros.power import RosPower, make_docking_clients
+from btlang.ros.pursuit import Pursuit
 from btlang.ros.sensors import RosSensors
 from btlang.ros.services import Services
 from btlang.ros.speech import RosSpeech
 from btlang.ros.subscription_cache import SubscriptionCache
+from btlang.ros.zones import RosZones
+from btlang.run.robot_state import Whereabouts
 from btlang.run.standstill import Standstill
 from btlang.text.time_of_day import DAY, local
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.ros.navigation_goal import RosNavigation
-    from btlang.ros.server_goal import ServerGoals
+    from btlang.ros.server_goal import ServerGoal, ServerGoals
 
+CALL, FOLLOW = "call", "follow"
 _STOP = "stop"
+_CLEAR = "nav2_msgs/srv/ClearEntireCostmap"
+_OPTIONAL = {
+    FOLLOW: "btlang_interfaces/srv/Follow",
+    "global_costmap/clear_entirely_global_costmap": _CLEAR,
+    "local_costmap/clear_entirely_local_costmap": _CLEAR,
+}
 _TOLD_TO_STOP = "the robot was stopped"
 _STOPPING = 5.0  # seconds for which a robot that was stopped is told zero velocity
 _ANSWERED = 1.0  # seconds that its own stop gets to answer before a mission begins
@@ -76,7 +96,7 @@ class RosRobot:
         self._world_began = world.clock
         self._naps = AWAKE.naps
         self._executor = ExecutorThread(node)
-        self._places = Places(world, body)
+        self._places = Places(world, body, lambda name: self._emit("see", name=name))
         self._choices = Choices()
         self._latch = Latch()
         self._base = RosBase(
@@ -90,6 +110,15 @@ class RosRobot:
         make_docking = partial(make_docking_clients, node, self._executor, self._base.where, now)
         self.power = RosPower(node, subscriptions, self._services, self._emit, make_docking)
         self._hands = RosHands(node, subscriptions, self._services, self._places, self._base.where, self._emit, body)
+        self._ears = RosEars(node, subscriptions, self._emit)
+        self._perception = RosPerception(node, subscriptions, self._places)
+        self._zones = RosZones(node, subscriptions, self._places.zones, world.zones)
+        self._protection = Protection(self._places.obstacles, self._places.zones, body)
+        self._doors = RosDoors(node, subscriptions, self._services, self._places, world, self._emit)
+        self._calls = node.create_publisher(String, CALL, 10)
+        self._optional = [name for name, kind in _OPTIONAL.items() if self._offer(name, kind)]
+        self._last_said = ""
+        self._pursuit: Pursuit | None = None
         self._navigation: RosNavigation | None = None
         self.pending: Callable[[], Iterable[str]] = tuple
         """Further reasons why it may be moved on, beside its journeys."""
@@ -120,9 +149,19 @@ class RosRobot:
         self._latch.step()
         self._base.step(dt)
         self._voice.step(dt)
+        here = self._base.where()
+        self._perception.step(self.time, here)
+        self._protect(self._base.backward)
+        off_limits = self._zones.step(dt, here)
+        if off_limits and self._navigation is not None:
+            self._navigation.stop(off_limits)
         arrived = self._navigation.step() if self._navigation is not None else None
+        if self._pursuit is not None:
+            self._pursuit.step(self.time)
         self.power.step()
         self._hands.step()
+        self._doors.step()
+        self._ears.step(self.time)
         self._services.step()  # last: what was answered is newer than what topics told before
         self._senses.step()
         if arrived is not None and arrived.failure is None:
@@ -168,6 +207,8 @@ class RosRobot:
             return
         self._latch.shut()
         self._rest()
+        self._ears.begin()
+        self._zones.begin()
         self._base.confirm_halt()
         self._voice.confirm(_HEARTBEAT)
         until = time.monotonic() + _LAST_WORDS
@@ -220,12 +261,25 @@ class RosRobot:
         return self._base.adapt()
 
     def drive(self, linear: float, angular: float) -> None:
-        """Sets the wanted metres and degrees a second; ends a journey under way. Raises RobotError for no numbers."""
+        """Sets the wanted metres and degrees a second; ends a journey under way.
+
+        Raises RobotError for no numbers, and before a zone to keep out of.
+        """
         if self._latch.refuses:
             return
         for servers in self._servers:
             servers.stop("another command took over the drive")
+        zone = self._protect(linear < 0.0)
+        if zone is not None and linear:
+            self._base.halt()
+            raise RobotError(f"the {zone.name} is in the way, where the robot may not go")
         self._base.drive(linear, angular)
+
+    def _protect(self, backward: bool) -> Zone | None:
+        """The base drives no faster than zones allow; returns the one before which it has to stand."""
+        here = self._base.where()
+        self._base.most = inf if here is None else self._protection.limit(here, backward)
+        return self._protection.zone if here is not None else None
 
     @property
     def bumps(self) -> int:
@@ -247,17 +301,30 @@ class RosRobot:
         return self._places.located(name)
 
     def navigate_to(self, name: str) -> Operation:
-        """Sends NavigateToPose. Raises RobotError for an unknown name, and where nobody knows where the robot is."""
+        """Sends NavigateToPose, again and again to who walks. Raises RobotError for an unknown name, for a goal in a
+        closed zone, and where nobody knows where the robot or its goal is.
+        """
         known = self._places.known(name)
-        return self._set_out(known, lambda: self._places.goal(known, self.pose))
+        set_out = partial(self._set_out, known, lambda: self._places.goal(known, self.pose))
+        operation: Operation
+        if self._places.is_watched(known):
+            operation = self._pursuit = Pursuit(known, self._places.sight, set_out, self.time)
+        else:
+            operation = set_out()
+        self._emit("navigate", name=known)
+        return operation
 
     def navigate_to_pose(self, pose: Pose, name: str = "") -> Operation:
-        """Sends NavigateToPose. Raises RobotError where nobody knows where the robot is."""
-        return self._set_out(name or f"({pose.x:.2f}, {pose.y:.2f})", lambda: pose)
+        """Sends NavigateToPose. Raises RobotError for a closed zone, and where nobody knows where the robot is."""
+        shown = name or f"({pose.x:.2f}, {pose.y:.2f})"
+        operation = self._set_out(shown, lambda: pose)
+        self._emit("navigate", name=shown)
+        return operation
 
-    def _set_out(self, known: str, goal_of: Callable[[], Pose]) -> Operation:
+    def _set_out(self, known: str, goal_of: Callable[[], Pose]) -> ServerGoal:
         self._check_stop()  # a goal that is sent may be driven to, whatever becomes of its cancel
         goal = goal_of()
+        self._zones.set_out(known, goal)
         self.prepare_navigation()
         assert self._navigation is not None
         if self._base.driving:
@@ -265,7 +332,6 @@ class RosRobot:
         operation = self._navigation.start(known, goal)
         if self._latch.refuses:
             operation.end(_TOLD_TO_STOP)  # `stop` came in between from another thread
-        self._emit("navigate", name=known)
         return operation
 
     # Senses
@@ -273,29 +339,106 @@ class RosRobot:
         """The nearest echo in each degree. Raises RobotError when the scanner is silent."""
         return self._senses.scan()
 
+    @property
+    def world(self) -> World:
+        """What it knows of its surroundings."""
+        return self._places.world
+
     def locate(self, name: str) -> Point:
-        """Where it is by the world file and the mission. Raises RobotError for an unknown name."""
+        """Where it is by the world file, the mission and what was seen. Raises RobotError for what isn't known."""
         return self._places.locate(name, self.pose)
 
-    def choose(self, kind: str, how: str) -> str:
-        """A name of the world file or the mission. Raises RobotError where there is none."""
-        pose = self.pose if how == "nearest" else Pose(0.0, 0.0, 0.0)
-        names = self._places.free(kind)
-        return self._choices.choose(
-            kind, how, names, lambda name: pose.distance_to(self._places.locate(name, pose)), self.on_event
-        )
+    def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
+        """A name of the world file or the mission, or of who was seen. Raises RobotError where there is none."""
+        return self._places.choose(kind, how, parts, lambda: self.pose, self._choices, self.on_event)
+
+    def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
+        """The objects or people with these parts that the robot knows, nearest first."""
+        return self._places.described(kind, parts, self.pose)
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """A run begins, whose random choices follow from the seed; so many have been made."""
         self._choices.begin(seed, made)
+        self._zones.begin()
+        self._ears.begin()
 
     def nearby_people(self, within: float) -> list[str]:
-        """Names of the people of the world file within so many metres, nearest first."""
+        """Names of people within so many metres, nearest first: those who walk as far as they are in view."""
         return self._places.nearby_people(within, self.pose)
 
     def name_places(self, places: Iterable[Place]) -> None:
         """The places of a mission beside those of the world, in place of those of the mission before."""
         self._places.name_places(places)
+
+    # What is around it, and who
+    def sees(self, name: str) -> bool:
+        """Whether it is in view. Raises RobotError for an unknown name, and where nothing tells of it."""
+        return self._perception.sees(name, self.pose)
+
+    def seen(self, kind: str) -> list[str]:
+        """The objects or people in view, nearest first. Raises RobotError where nothing tells of them."""
+        return self._perception.seen(kind, self.pose)
+
+    @property
+    def things(self) -> tuple[Whereabouts, ...]:
+        """Where those were seen who walk, and what isn't known; for whoever watches."""
+        return self._places.whereabouts()
+
+    def guide(self, person: str, follow: bool) -> None:
+        """Somebody follows the robot from now on, or no longer.
+
+        Raises RobotError for who isn't in view, and where nothing serves it.
+        """
+        known = self._places.known(person)
+        if follow and not self.sees(known):
+            raise RobotError(f"I don't see {said(known)}")
+        if FOLLOW not in self._optional:
+            raise RobotError(f"there is no service {self._node.resolve_service_name(FOLLOW)}")
+        self._services.call(FOLLOW, lambda message: None, person=known, follow=follow)
+
+    @property
+    def zones(self) -> Zones:
+        """Where it may not go, or only slowly."""
+        return self._zones.zones
+
+    held_up = ""
+    """No topic reports who is in its way."""
+
+    def wait_for_way(self, seconds: float) -> None:
+        """Does nothing: the navigation server decides how long it waits for who is in its way."""
+
+    def forget_map(self) -> None:
+        """Forgets where it saw objects and people; the costmaps of Nav2 are cleared where there are some."""
+        self._places.sight.forget()
+        for name in self._optional:
+            if name != FOLLOW:
+                self._services.fire(name)
+
+    def beside_door(self, name: str) -> list[Pose]:
+        """Where it can stand to move a door, the nearer one first. Raises RobotError for an unknown door."""
+        return spots_beside(self._places.door(name), self.pose)
+
+    def move_door(self, name: str, is_open: bool) -> Operation:
+        """Opens or closes a door, or fails with the reason. Raises RobotError where nothing serves it."""
+        self._check_stop()
+        return self._doors.move_door(name, is_open)
+
+    def is_open(self, door: str) -> bool:
+        """Whether a door is open. Raises RobotError where nothing tells of it."""
+        return self._doors.is_open(door)
+
+    def switch(self, name: str, on: bool | None) -> Operation:
+        """Switches an object on or off, with None to the other. Raises RobotError where nothing serves it."""
+        self._check_stop()
+        return self._doors.switch(name, on)
+
+    def is_on(self, name: str) -> bool:
+        """Whether an object is switched on. Raises RobotError where nothing tells of it."""
+        return self._doors.is_on(name)
+
+    def awaited(self) -> list[str]:
+        """The topics of which somebody publishes how things are, and that have said nothing yet."""
+        return [*self._doors.awaited(), *self._perception.awaited()]
 
     # Power
     @property
@@ -370,11 +513,32 @@ class RosRobot:
         """The name of what the hand holds. Raises RobotError where nothing tells of it."""
         return self._hands.holding(hand)
 
-    # Voice
+    # Ears and voice
+    @property
+    def ears(self) -> Ears:
+        """What it has heard. Raises RobotError where it has none."""
+        if self.body.ears is None:
+            raise RobotError("the robot has no ears")
+        return self._ears.ears
+
+    def hear(self, text: str, who: str = "") -> None:
+        """Somebody says it, or types it."""
+        self._ears.hear(text, who, self.time)
+
+    def ask(self, question: str, person: str = "") -> None:
+        """See `Listening.ask`: a topic says which question is open."""
+        self._ears.ask(question or self._last_said, person)
+
+    def call(self, text: str) -> None:
+        """Calls people for help, by an event and a topic."""
+        self._calls.publish(String(data=text))
+        self._emit("call", text=text)
+
     def say(self, text: str) -> None:
         """Starts to speak. Raises RobotError where nobody listens."""
         if not self._latch.refuses:
             self._voice.say(text)
+            self._last_said = text
             self._emit("say", text=text)
 
     @property
@@ -390,6 +554,13 @@ class RosRobot:
         """Shows text at once. Raises RobotError where nobody listens."""
         self._voice.print(text)
         self._emit("print", text=text)
+
+    def _offer(self, name: str, kind: str) -> bool:
+        """Makes the client of a service whose type may not be installed; whether it is."""
+        found = optional_interface(kind)
+        if found is not None:
+            self._services.add(name, found)
+        return found is not None
 
     def _check_stop(self) -> None:
         if self._latch.refuses:

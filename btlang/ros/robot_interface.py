@@ -59,6 +59,8 @@ _CAPABILITIES: dict[str, tuple[Interface, ...]] = {
         Interface("service", "undock", "std_srvs/srv/Trigger"),
     ),
     "joints": _JOINTS,
+    "ears": (Interface("publisher", "heard", "btlang_interfaces/msg/Heard"),),
+    "perception": (Interface("publisher", "sightings", "btlang_interfaces/msg/Sightings", flows=True),),
     "voice": (Interface("listener", "speech", "std_msgs/msg/String"),),
     "screen": (Interface("listener", "print", "std_msgs/msg/String"),),
 }

@@ -96,3 +96,10 @@ class SubscriptionCache:
             if latest.silence() > limit:
                 raise SensorSilent(f"no {what} for {limit:g} s: {latest.refused or f'{latest.named} is silent'}")
         return self._read[topic]
+
+    def latest(self, topic: str, limit: float) -> Any:
+        """As `get`, but None in place of an error."""
+        try:
+            return self.get(topic, limit)
+        except SensorSilent:
+            return None

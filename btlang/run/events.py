@@ -236,7 +236,7 @@ class InTheWorld(Event):
     @property
     def verb(self) -> str:
         """What happens: "sees"."""
-        return self.tag if self.tag in ("door", "switch") else f"{self.tag}s"
+        return self.tag if self.tag in ("door", "switch", "picture") else f"{self.tag}s"
 
     @property
     def words(self) -> str:
@@ -326,6 +326,27 @@ class Switched(InTheWorld):
     def words(self) -> str:
         """In plain English."""
         return f"{self.name} {'on' if self.on else 'off'}"
+
+
+class Given(InTheWorld):
+    """A hand has given something to a person."""
+
+    tag = "give"
+    hand: str
+    name: str
+    who: str
+
+    @property
+    def words(self) -> str:
+        """In plain English."""
+        return f"{self.name} to {self.who}"
+
+
+class Pictured(InTheWorld):
+    """The robot has taken a picture; `name` lists who and what is in it, "" for nothing that the robot knows."""
+
+    tag = "picture"
+    name: str
 
 
 class PartChanged(Event):
@@ -440,7 +461,7 @@ ROBOT_EVENTS: dict[str, type[Event]] = {
     for event in (
         Said, Printed, Chosen, NavigationStarted, Arrived, Bumped, Stuck, Stopped, Grasped, Released, Dropped,
         JointsMoved, Docked, Undocked, BatteryEmpty, FaultInjected, Heard, Asked, Seen, Came, Gone, Called, DoorMoved,
-        Switched, PartChanged, Warned, Troubled,
+        Switched, Given, Pictured, PartChanged, Warned, Troubled,
     )
 }  # fmt: skip
 """What robots report, by the kinds of btlang.robots.robot.Robot.on_event."""

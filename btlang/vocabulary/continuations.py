@@ -9,9 +9,10 @@ from btlang.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.trie import SLOTS, TrieNode
+from btlang.vocabulary.trie import TrieNode
 from btlang.vocabulary.value_type import with_unit
-from btlang.vocabulary.values import END, Values, WordTree
+from btlang.vocabulary.values import Values
+from btlang.vocabulary.word_tree import END, SLOTS, WordTree
 
 _MOST = 200  # ways to go on from one place; nobody reads more
 

@@ -40,8 +40,9 @@ class Entry(Record, uncompared=("span",)):
     `call`, a plain function, works in a thread of its own, beside the tick. `ros` stands in place of `call` on a robot
     that speaks ROS 2. With `replaces` its `call` is what runs, whatever other entries of its id say, on any robot.
     `needs` names capabilities and parts of the robot (btlang.vocabulary.capabilities); what an action takes of them for
-    itself is among its `resources`. `outputs` are the slots whose ports it writes. An entry without a `sort` has only
-    phrases: those of a known id.
+    itself is among its `resources`. `outputs` are the slots whose ports it writes. An entry that `yields` leaves its
+    words to a mission, or another entry, that gives them a meaning. An entry without a `sort` has only phrases: those
+    of a known id.
     """
 
     sort: str  # "action", "condition" or ""
@@ -62,6 +63,7 @@ class Entry(Record, uncompared=("span",)):
     replaces: bool = False
     needs: tuple[str, ...] = ()
     outputs: tuple[str, ...] = ()
+    yields: bool = False
     span: Span | None = None
 
     def slot(self, name: str) -> SlotSpec:

@@ -16,7 +16,9 @@ from btlang.tree.catalogue import CATALOGUE
 from btlang.vocabulary.capabilities import resources_of
 from btlang.vocabulary.entry import COMPARISONS, MEASURED, POINT, Entry, SlotSpec
 from btlang.vocabulary.language_tables import SWITCHES, TABLES, WORD_LISTS, problems
+from btlang.vocabulary.nouns import Noun
 from btlang.vocabulary.pattern import PatternError, Slot, forms
+from btlang.vocabulary.references import PARTS
 from btlang.vocabulary.ros_binding import RosBinding
 from btlang.vocabulary.ros_table import read_ros, unknown_slots
 from btlang.vocabulary.value_type import PLACE, Unit, ValueType
@@ -25,21 +27,22 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_OWN = ("shipped", "replaces", "action", "condition", "quantity", "noun", "type", "phrases")
+_OWN = ("shipped", "yields", "replaces", "action", "condition", "quantity", "noun", "type", "phrases")
 _TOP = {"language", *_OWN, *WORD_LISTS, *SWITCHES, *TABLES}
 _ENTRY = {"phrase", "id", "call", "ros", "slots", "outputs", "resources", "needs", "topic", "help", "example"}
 _FLAGS = ("instant", "uninterruptible", "thread")
 _MORE = {"action": set(_FLAGS), "condition": set[str](), "quantity": {"type"}}
 """The keys that an entry of one sort has beside those of all."""
 _TYPE = {"name", "units", "whole", "least", "open", "values"}
-_NOUN = {"type", "phrase", "slots"}
+_NOUN = {"type", "phrase", "slots", "how"}
+_HOW = ("nearest", "seen")
 
 
 class KeywordFile(Record):
     """What a file declares. `language` holds the tables of a connective file, empty in a pack of phrases.
 
     `names` are (type, words, name) of the values of enumerated types. Where it is not for the `shipped` words, these
-    are not loaded beside it.
+    are not loaded beside it. `nouns` are those of which the robot chooses a name.
     """
 
     source: Source
@@ -48,6 +51,7 @@ class KeywordFile(Record):
     names: tuple[tuple[str, str, str], ...]
     language: dict[str, Any]
     shipped: bool = True
+    nouns: tuple[Noun, ...] = ()
 
 
 class _Noun(Record):
@@ -67,6 +71,7 @@ class _Reader:
         self.start = 0
         """Of the table that is being read."""
         self.nouns: list[_Noun] = []
+        self.described: list[Noun] = []
 
     def wrong(self, reason: str, near: str = "", code: str = "BT060") -> None:
         self.problems.append(diagnostic(code, self.span(near), reason=reason))
@@ -132,16 +137,36 @@ class _Reader:
         return self.quantity(made, table, near) if sort == "quantity" else made
 
     def noun(self, table: dict[str, Any]) -> None:
-        phrase, kind, slots = table.get("phrase"), table.get("type"), table.get("slots", {})
-        fits = isinstance(phrase, str) and isinstance(kind, str) and isinstance(slots, dict)
-        if not fits or table.keys() - _NOUN:
-            self.wrong('[[noun]] needs type = "person" and phrase = "...", and takes slots', "[[noun]]")
+        given, kind, slots = table.get("phrase"), table.get("type"), table.get("slots", {})
+        phrases, how = [given] if isinstance(given, str) else given, table.get("how", "")
+        if (
+            not (_strings(phrases) and phrases and isinstance(kind, str) and isinstance(slots, dict))
+            or table.keys() - _NOUN
+        ):
+            self.wrong('[[noun]] needs type = "person" and phrase = "...", and takes slots and how', "[[noun]]")
             return
-        names = _slot_names(str(phrase))
-        if not names or slots.keys() - set(names):
-            self.wrong(f"the noun '{phrase}' needs slots such as {{color}}, and those of its table in it", str(phrase))
+        if how not in ("", *_HOW):
+            self.wrong('how of [[noun]] is "nearest" or "seen"', "how")
+        for phrase in phrases:
+            names = _slot_names(phrase)
+            if how:
+                self.described_noun(Noun(kind, str(how), phrase, {name: name for name in names}))
+            elif not names or slots.keys() - set(names):
+                self.wrong(f"the noun '{phrase}' needs slots such as {{color}}, and those of its table in it", phrase)
+            else:
+                self.nouns.append(_Noun(kind, phrase, slots))
+
+    def described_noun(self, noun: Noun) -> None:
+        """A noun of which the robot chooses a name."""
+        if noun.slots.keys() - set(PARTS):
+            self.wrong(f"the noun '{noun.phrase}' with how takes the slots {', '.join(PARTS)}", noun.phrase)
             return
-        self.nouns.append(_Noun(str(kind), str(phrase), slots))
+        try:
+            forms(noun.phrase)
+        except PatternError as error:
+            self.wrong(str(error), noun.phrase, "BT061")
+            return
+        self.described.append(noun)
 
     def with_nouns(self, phrases: list[str], slots: dict[str, Any]) -> tuple[list[str], dict[str, Any]]:
         """The phrases, and those that have a noun in the place of a slot of its type; their slots become ports too."""
@@ -333,9 +358,11 @@ def read_keyword_file(source: Source) -> KeywordFile:
     entries += reader.phrases(document.get("phrases", {}))
     reader.start = 0
     entries = reader.replacing(document.get("replaces", []), entries)
-    is_shipped = document.get("shipped", True)
-    if not isinstance(is_shipped, bool):
-        reader.wrong("shipped is true or false", "shipped")
+    is_shipped, yields = document.get("shipped", True), document.get("yields", False)
+    for key, value in (("shipped", is_shipped), ("yields", yields)):
+        if not isinstance(value, bool):
+            reader.wrong(f"{key} is true or false", key)
+    entries = [entry.replace(yields=yields) for entry in entries] if yields is True else entries
     language = {k: v for k, v in document.items() if k not in _OWN}
     for key, value in language.items():
         if key in _TOP:
@@ -343,7 +370,9 @@ def read_keyword_file(source: Source) -> KeywordFile:
                 reader.wrong(reason, near)
     if reader.problems:
         raise MissionError(reader.problems)
-    return KeywordFile(source, tuple(entries), tuple(types), tuple(names), language, is_shipped)
+    return KeywordFile(
+        source, tuple(entries), tuple(types), tuple(names), language, is_shipped, tuple(reader.described)
+    )
 
 
 def _tables(document: dict[str, Any], key: str, reader: _Reader) -> list[dict[str, Any]]:

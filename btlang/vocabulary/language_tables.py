@@ -27,7 +27,7 @@ GOES_ON = frozenset((
 NO_PHRASES = frozenset((
     "define_strong", "define", "fact", "facing", "set_to", "by", "remember_as", "each_in",
     "called", "with", "newline", "character", "main_name", "here",
-    "needs_world", "needs_words", "all_names", "except", "nearest", "random",
+    "needs_world", "needs_words", "all_names", "except", "nearest", "random", "largest", "smallest",
 ))  # fmt: skip
 """Roles whose words are looked for where definitions, facts and nodes are, and nowhere else."""
 
@@ -44,7 +44,7 @@ _NO_SLOT = (
     "define_strong", "define", "fact", "facing",
     "set", "set_to", "increase", "decrease", "by", "remember", "remember_as", "each", "each_in", "include",
     "do", "test", "called", "with", "newline", "character", "main_name",
-    "needs_world", "needs_words", "all_names", "except", "nearest", "random",
+    "needs_world", "needs_words", "all_names", "except", "nearest", "random", "largest", "smallest",
 )  # fmt: skip
 ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),
@@ -115,6 +115,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "negative_subjects": (_words, "a list of words"),
     "plurals": (_words, "a list of words"),
     "nouns": (_words, "a list of words"),
+    "plural_endings": (_is_text, "an ending"),
     "everyone": (_words, "a list of words"),
     "pronouns": (_words, "a list of types"),
     "meanings": (_between, "one of " + ", ".join(CONNECTIVES)),
@@ -181,7 +182,7 @@ _LANGUAGE: dict[str, Any] = {
     "articles": [], "politeness": [], "unit_joiner": [], "one_each": [],
     "quantifiers": [], "halting": [], "asked_once": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {}, "doing": {},
-    "negative_subjects": {}, "plurals": {}, "nouns": {}, "everyone": {},
+    "negative_subjects": {}, "plurals": {}, "plural_endings": {}, "nouns": {}, "everyone": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {}, "times": {},
 }  # fmt: skip
 
@@ -219,3 +220,9 @@ def about_roles(tables: Iterable[Mapping[str, Any]], known: Mapping[str, About])
         about |= {role: about[role].replace(example="") for role in replaced}
         about |= {role: About(**keys) for role, keys in told.items()}
     return about | {role: About() for role in EXPLAINED if role not in about}
+
+
+def comparing_phrases(name: str, patterns: Iterable[str]) -> list[str]:
+    """The words of a comparison with the names of ports in their slots."""
+    ports = {"value": name, "low": "at_least", "high": "at_most"}
+    return [re.sub(r"\{(\w+)\}", lambda slot: f"{{{ports[slot[1]]}}}", pattern) for pattern in patterns]

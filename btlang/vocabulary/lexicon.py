@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
@@ -14,12 +13,14 @@ from btlang.text.spelling import nearest
 from btlang.text.words import Orthography, split
 from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
-from btlang.vocabulary.language_tables import GOES_ON, NO_PHRASES, ROLES, about_roles, merged
+from btlang.vocabulary.language_tables import GOES_ON, NO_PHRASES, ROLES, about_roles, comparing_phrases, merged
+from btlang.vocabulary.nouns import Features, with_plurals
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.trie import SLOTS, TrieNode, add, collisions
+from btlang.vocabulary.trie import TrieNode, add, collisions
 from btlang.vocabulary.value_type import ValueType
-from btlang.vocabulary.values import END, Values
+from btlang.vocabulary.values import Values
+from btlang.vocabulary.word_tree import END, SLOTS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -61,8 +62,8 @@ class Lexicon:
                 self.entries[node_id] = [entry.replace(phrases=(), quantity=(), example="") for entry in known]
         self.articles = frozenset(language["articles"])
         self.orthography = Orthography(self.articles, language["decimal_comma"], language["contractions"])
-        self._with_names: dict[tuple[tuple[str, tuple[str, ...]], ...], Lexicon] = {}
-        self.values = Values(self._types_of(files, english), language)
+        self._with_names: dict[tuple[object, ...], Lexicon] = {}
+        self.values = Values(self._types_of(files, english), language, [noun for file in files for noun in file.nouns])
         for file in files:
             for kind, words, name in file.names:
                 if self.types[kind].kind == "names":
@@ -94,6 +95,7 @@ class Lexicon:
         self.negations: dict[str, list[str]] = language["negations"]
         self.negative_subjects: dict[str, list[str]] = language["negative_subjects"]
         self._plurals: dict[str, list[str]] = language["plurals"]
+        self._endings: dict[str, str] = language["plural_endings"]
         self._add_roles()
         for entry in (*(e for f in files for e in f.entries), *entries):
             self._add_entry(entry)
@@ -120,20 +122,22 @@ class Lexicon:
         found = self.entries.get(node_id)
         return found[0] if found else None
 
-    def with_names(self, names: Mapping[str, Sequence[str]]) -> Lexicon:
+    def with_names(self, names: Mapping[str, Sequence[str]], features: Features | None = None) -> Lexicon:
         """The same words, whose slots take further names by their types: the places, people and objects of a world.
 
-        The same object for the same names.
+        `features` are what those are like, by type and name. The same object for the same names and features.
         """
 
         def made() -> Lexicon:
             pairs = {kind: [(self._bare(name), name) for name in listed] for kind, listed in names.items()}
-            values = self.values.with_names(pairs)
+            pairs = with_plurals(pairs, self._endings)
+            values = self.values.with_names(pairs, features)
             words = (word for pair in chain(*pairs.values()) for word in pair[0].lower().split())
             written = self.orthography.with_words(word for word in words if not word.isascii())
             return self._with(values=values, context=ReadingContext(values), orthography=written)
 
-        return recent(self._with_names, tuple((kind, tuple(listed)) for kind, listed in names.items()), made)
+        known = (*((kind, tuple(listed)) for kind, listed in names.items()), *(features or {}).items())
+        return recent(self._with_names, known, made)
 
     def _bare(self, words: str) -> str:
         """Articles do not matter in names either."""
@@ -175,6 +179,7 @@ class Lexicon:
         """Every word that can be read, also those in names and values."""
         words: set[str] = set(self.articles)
         pending: list[TrieNode] = [self.trie, self.quantities, *self.values.word_trees()]
+        pending.append(self.values.phrases.tree)
         pending += [self.values.names_tree(name) for name, kind in self.types.items() if kind.kind == "names"]
         while pending:
             for key, child in pending.pop().items():
@@ -302,7 +307,7 @@ class Lexicon:
                     add(self.quantities, form, {s.name: s.type for s in entry.slots}, Meaning("quantity", entry))
             except PatternError:
                 return entry  # the keyword file has told
-        ways = [way for name, patterns in self.comparisons.items() for way in _compared(name, patterns)]
+        ways = [way for name, patterns in self.comparisons.items() for way in comparing_phrases(name, patterns)]
         phrases = tuple(f"{quantity} {way}" for way in ways for quantity in entry.quantity)
         compared = tuple(SlotSpec(name, entry.measures) for name in COMPARISONS)
         own = (slot for slot in entry.slots if slot.name not in COMPARISONS)
@@ -360,7 +365,7 @@ class Lexicon:
         ordered = self.types[kind].kind in ("quantity", "number")
         for name, patterns in self.comparisons.items():
             if ordered or name == "equal":
-                yield from (form for way in _compared(name, patterns) for form in forms(way, self.articles))
+                yield from (form for way in comparing_phrases(name, patterns) for form in forms(way, self.articles))
 
     def _find_collisions(self) -> None:
         for one, other in collisions(self.trie, self.values):
@@ -369,10 +374,10 @@ class Lexicon:
     def _collide(self, one: Meaning, other: Meaning) -> None:
         """Told at the entry that was loaded later; connectives come first."""
         ids = [(meaning.entry.id if meaning.entry else "", meaning.role) for meaning in (one, other)]
-        if ids[0] == ids[1]:
-            return
         order = list(self.entries)
         one, other = sorted((one, other), key=lambda m: order.index(m.entry.id) if m.entry else -1)
+        if ids[0] == ids[1] or (one.entry and other.entry and one.entry.yields != other.entry.yields):
+            return
         first, second = self._described(other), self._described(one)
         span = other.entry.span if other.entry and other.entry.span else Span(Source(second[0], second[2]), 0, 0)
         self._problems.append(
@@ -391,9 +396,3 @@ class Lexicon:
     def _wrong(self, entry: Entry, reason: str) -> None:
         span = entry.span or Span(Source(entry.phrases[0], "Python"), 0, len(entry.phrases[0]))
         self._problems.append(diagnostic("BT061", span, reason=reason))
-
-
-def _compared(name: str, patterns: Iterable[str]) -> list[str]:
-    """The words of a comparison with the names of ports in their slots."""
-    ports = {"value": name, "low": "at_least", "high": "at_most"}
-    return [re.sub(r"\{(\w+)\}", lambda slot: f"{{{ports[slot[1]]}}}", pattern) for pattern in patterns]

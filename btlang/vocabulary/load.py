@@ -12,11 +12,14 @@ from btlang.text.source import Source, Span
 from btlang.vocabulary.cache import cached, recent, stamp
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.nouns import Features
 from btlang.vocabulary.shipped import ENGLISH, keyword_files, language_folder, languages, shipped, shown_name
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+    from btlang.vocabulary.keyword_file import KeywordFile
 
 ENTRY_POINTS = "btlang.keywords"
 
@@ -25,9 +28,11 @@ def load_vocabulary(
     keywords: Sequence[str | Entry | Callable[..., Any]] = (),
     names: Mapping[str, Sequence[str]] | None = None,
     language: str = ENGLISH,
+    features: Features | None = None,
 ) -> Lexicon:
     """The words of a language and those of `keywords`: paths of keyword files, names of installed packs, entries, or
-    functions that carry one (see `btlang.action`). `names` adds values of types, such as the places of a world.
+    functions that carry one (see `btlang.action`). `names` adds values of types, such as the places of a world, and
+    `features` says what they are like.
 
     A pack is an entry point of the group `btlang.keywords` whose value is a module beside which, or a function that
     returns the path at which, its keyword file lies. `language` is one that ships or the path of a folder like theirs.
@@ -40,7 +45,7 @@ def load_vocabulary(
     paths = [_path(item) for item in keywords if isinstance(item, str)]
     entries = [_entry(item) for item in keywords if not isinstance(item, str)]
     vocabulary = _words(folder, paths, entries)
-    return vocabulary.with_names(names) if names else vocabulary
+    return vocabulary.with_names(names, features) if names else vocabulary
 
 
 _own: dict[tuple[object, ...], tuple[Sequence[Entry], Lexicon]] = {}  # the entries stay, so that no id is used again
@@ -66,7 +71,7 @@ def _words(folder: str, paths: Sequence[str], entries: Sequence[Entry]) -> Lexic
 
 def _made(paths: Sequence[str], entries: Iterable[Entry], folder: str, english: Lexicon | None) -> Lexicon:
     """The vocabulary of keyword files, those of a language among them, and of entries."""
-    from btlang.vocabulary.keyword_file import KeywordFile, read_keyword_file  # not where the cache has it
+    from btlang.vocabulary.keyword_file import read_keyword_file  # not where the cache has it
 
     files: list[KeywordFile] = []
     problems = []
@@ -80,12 +85,24 @@ def _made(paths: Sequence[str], entries: Iterable[Entry], folder: str, english: 
     if not all(file.shipped for file in files):  # what no phrase says is a part of the language
         own = {shown_name(path) for path in keyword_files(folder)}
         files = [
-            file.replace(entries=tuple(entry for entry in file.entries if not (entry.phrases or entry.quantity)))
+            file.replace(
+                entries=tuple(entry for entry in file.entries if not (entry.phrases or entry.quantity)), nouns=()
+            )
             if file.source.name in own
             else file
             for file in files
         ]
-    return Lexicon(files, entries, english, folder)
+    return Lexicon(_after_yielding(files, entries := list(entries)), entries, english, folder)
+
+
+def _after_yielding(files: Sequence[KeywordFile], entries: Iterable[Entry]) -> list[KeywordFile]:
+    """The files without the entries that yield to another one with their id and a function."""
+    given = [*(entry for file in files for entry in file.entries), *entries]
+    taken = {entry.id for entry in given if entry.call and not entry.yields}
+    return [
+        file.replace(entries=tuple(entry for entry in file.entries if not (entry.yields and entry.id in taken)))
+        for file in files
+    ]
 
 
 def _entry(word: Entry | Callable[..., Any]) -> Entry:

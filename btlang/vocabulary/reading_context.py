@@ -6,9 +6,11 @@ from collections.abc import Mapping, Sequence
 
 from btlang.record import Record
 from btlang.text.words import Words
+from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.references import CHOICES, Choice
 from btlang.vocabulary.value_type import format_number
-from btlang.vocabulary.values import Values, find, key_of
+from btlang.vocabulary.values import Values, key_of
+from btlang.vocabulary.word_tree import find
 
 
 class Known(Record):
@@ -29,18 +31,21 @@ class ReadingContext:
     `known` are the values that it names, by key; None where any name in braces is one. `latest` are the values that
     pronouns stand for, by type; whoever reads a text sets them, on a context of its own. `lacked` tells that a pronoun
     stood for nothing: behind other values it might stand for one. `keys` are those for what is chosen, by type, where
-    they aren't the names of the types.
+    they aren't the names of the types; `met` are those that have been chosen by now.
     """
 
     __slots__ = (
-        "_most_words", "joiners", "keys", "known", "lacked", "latest", "openers", "pronouns", "types", "values",
+        "_most_words", "joiners", "keys", "known", "lacked", "latest", "met", "openers", "pronouns", "starts", "types",
+        "values",
     )  # fmt: skip
 
     def __init__(self, values: Values, known: Mapping[str, Known] | None = None) -> None:
         self.values = values
         self.types, self.joiners, self.pronouns = values.types, values.joiners, values.pronouns
+        self.starts = values.choice_starts
         self.latest: dict[str, str] = {}
         self.lacked = False
+        self.met: set[str] = set()
         self.keys: Mapping[str, str] = {}
         self.known: Mapping[str, Known] | None = {}
         self.openers: Mapping[str, frozenset[str]] = {}
@@ -69,7 +74,8 @@ class ReadingContext:
         found = self.values.read(kind, text, at)
         if found is None and text.words[at] in self.pronouns and self.types[kind].kind == "names":
             return self._referred(kind, text.words[at], at)
-        return found or self._chosen(kind, text, at)
+        chosen = self._chosen(kind, text, at) if text.words[at] in self.starts else None
+        return chosen if found is None or (chosen is not None and chosen[1] > found[1]) else found
 
     def any(self, text: Words, at: int) -> tuple[tuple[str, ...], str, int] | None:
         """A value of any type: the types that it can be, its port text, and where it ends."""
@@ -78,7 +84,7 @@ class ReadingContext:
             return self.known[reference[0]].kinds, f"{{{reference[0]}}}", reference[1]
         chosen = self.choice(text, at)
         if chosen is not None:
-            kind, end = chosen[0][0], chosen[1]
+            kind, end = chosen[0].type, chosen[1]
             return (kind,), (self._chosen(kind, text, at) or ("", end))[0], end
         quantity = self.values.quantity(text, at)
         if quantity is not None:
@@ -94,7 +100,7 @@ class ReadingContext:
         best, end = max((value for _, value in found), key=lambda value: value[1])
         return tuple(kind for kind, (other, last) in found if last == end and other.lower() == best.lower()), best, end
 
-    def choice(self, text: Words, at: int) -> tuple[tuple[str, str], int] | None:
+    def choice(self, text: Words, at: int) -> tuple[Description, int] | None:
         """See `Values.choice`."""
         return self.values.choice(text, at)
 
@@ -117,6 +123,8 @@ class ReadingContext:
             found = self._bare(text.words, at)
             if found is not None and self._fits(kind, found[0]):
                 named = self._listed(kind, text, at)
+                if found[0].is_chosen and found[0].key not in self.met and self._chosen(kind, text, at) is not None:
+                    return None  # `a person`, who is chosen here
                 if named is None or named[1] <= found[1]:
                     return f"{{{found[0].key}}}", found[1]
         return None
@@ -151,11 +159,11 @@ class ReadingContext:
         return (key_of(words[at + 1 : end]), end + 1) if end > at + 1 and words[end] == "}" else None
 
     def _chosen(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
-        """The nearest or a random one of the type, to be put into a key; without a text where there is none."""
+        """What is chosen of the type, to be put into a key; without a text where there is no name."""
         chosen = self.choice(text, at)
-        if chosen is None or chosen[0][0] != kind or chosen[0][1] not in CHOICES:
+        if chosen is None or chosen[0].type != kind or chosen[0].how not in CHOICES:
             return None
-        choice = Choice(chosen[0][1], kind, self.keys.get(kind, kind))
+        choice = Choice(chosen[0].how, kind, self.keys.get(kind, kind), chosen[0].parts)
         return choice.text if self.values.listed(kind) or self.known is None else "", chosen[1]
 
     def _referred(self, kind: str, word: str, at: int) -> tuple[str, int] | None:

@@ -6,13 +6,20 @@ In a text `{{` and `}}` are the characters themselves.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Container, Iterator
+from collections.abc import Callable, Container, Iterator, Mapping
 
 from btlang.record import Record
 from btlang.vocabulary.entry import POINT
 
-CHOICES = ("nearest", "random")
+SIZED = ("largest", "smallest")
+CHOICES = ("nearest", "seen", "random", *SIZED)
+"""The ways to choose a name; "seen" is the nearest in view, else the nearest known."""
+Parts = tuple[tuple[str, str], ...]
+"""What something is like, sorted: ("color", "red")."""
 _PIECE = r"(?P<mark>\{\{|\}\})|\{(?P<name>[^{}]+)\}|(?P<text>[^{}]+|[{}])"  # compiled when a text needs it
+PARTS = ("clothing", "color", "gesture", "kind", "use")
+"""What a name can be described by."""
+_NO_PARTS = ("type", "how", "output")  # the other ports of a choice
 
 
 class Reference(Record):
@@ -24,17 +31,19 @@ class Reference(Record):
 class Choice(Record):
     """A value that is chosen when its command starts: the "nearest" or a "random" name of a type, put into a key.
 
-    Its port text is one reference with a blank in it, which no key has: `{nearest person person}`.
+    It has the `parts`, by their names. Its port text is one reference with a blank in it, which no key has:
+    `{nearest person person}`, `{nearest object object|color=red|kind=cup}`.
     """
 
     how: str
     type: str
     key: str
+    parts: Parts = ()
 
     @property
     def text(self) -> str:
         """The port text."""
-        return f"{{{self.how} {self.type} {self.key}}}"
+        return f"{{{self.how} {self.type} {self.key}{''.join(f'|{name}={value}' for name, value in self.parts)}}}"
 
 
 def free_key(kind: str, taken: Container[str]) -> str:
@@ -47,8 +56,20 @@ def free_key(kind: str, taken: Container[str]) -> str:
 
 def choice_of(text: str) -> Choice | None:
     """The choice that a port text stands for."""
-    parts = text[1:-1].split(" ") if text[:1] == "{" and text[-1:] == "}" and " " in text else ()
-    return Choice(*parts) if len(parts) == 3 and parts[0] in CHOICES else None
+    if text[:1] != "{" or text[-1:] != "}" or " " not in text:
+        return None
+    first, *parts = text[1:-1].split("|")
+    words = first.split(" ")
+    if len(words) != 3 or words[0] not in CHOICES:
+        return None
+    named = (part.partition("=") for part in parts)
+    return Choice(words[0], words[1], words[2], tuple((name, value) for name, _, value in named))
+
+
+def choice_by(ports: Mapping[str, str]) -> Choice:
+    """The choice that a node with these ports makes."""
+    parts = ((name, text) for name, text in ports.items() if name not in _NO_PARTS)
+    return Choice(ports.get("how", ""), ports.get("type", ""), ports.get("output", "")[1:-1], tuple(sorted(parts)))
 
 
 def pieces(text: str) -> list[str | Reference]:

@@ -6,20 +6,22 @@ A node is a dict: word -> node, `END` -> meaning, `SLOTS` -> list of (slot name,
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 
 from btlang.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.nouns import ALL, Description
 from btlang.vocabulary.pattern import Form, Slot
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.value_type import ValueType
-from btlang.vocabulary.values import ALL, END, Values
+from btlang.vocabulary.values import Values
+from btlang.vocabulary.word_tree import END, SLOTS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-SLOTS = "\1"
 _MARKS = frozenset((",", ";", ":", "(", ")", "\n"))
 TrieNode = dict[str, "Any"]
 
@@ -123,8 +125,8 @@ def longest(
                     value = context.read(kind, text, i)
                     if value is None:
                         chosen = context.choice(text, i)
-                        if chosen is not None and chosen[0] == (kind, ALL):
-                            every = all_names(root, kind, text, i, chosen[1], context, name)
+                        if chosen is not None and (chosen[0].type, chosen[0].how) == (kind, ALL):
+                            every = all_names(root, chosen[0], text, i, chosen[1], context, name)
                             paths.append((child, every.last, (*found, every)))
                         continue
                     one = SlotValue(name, kind, value[0], i, value[1])
@@ -142,10 +144,11 @@ def longest(
 
 
 def all_names(
-    root: TrieNode, kind: str, text: Words, first: int, at: int, context: ReadingContext, name: str = "value"
+    root: TrieNode, meant: Description, text: Words, first: int, at: int, context: ReadingContext, name: str = "value"
 ) -> SlotValue:
-    """All names of a type, but those behind `except` at a word, as a list; without a text where none is left."""
+    """All names that are meant, but those behind `except` at a word, as a list; without a text where none is left."""
     left_out: tuple[str, ...] = ()
+    kind = meant.type
     last = context.values.exception(text, at)
     if last and longest(root, text, at, context, lists=False) is None:  # `except if` is another word
         value = context.read(kind, text, last)
@@ -153,8 +156,8 @@ def all_names(
             return SlotValue(name, kind, "", first, _end_of_unknown(root, text, last, context))
         one = SlotValue(name, kind, value[0], last, value[1])
         listed = _listed(root, text, one, context, None, is_subject=False) or one
-        left_out, at = (listed.text, *listed.more), listed.last
-    names = [one for one in context.values.listed(kind) if one not in left_out]
+        left_out, at = tuple(chain(*map(context.values.meant_by, (listed.text, *listed.more)))), listed.last
+    names = [one for one in context.values.described(meant) if one not in left_out]
     return SlotValue(name, kind, names[0] if names else "", first, at, tuple(names[1:]), "and" if names[1:] else "")
 
 

@@ -6,7 +6,8 @@ from btlang.record import Record
 
 PLACE = "place"
 """The type of which a point is a value, too."""
-WORLD = (PLACE, "person", "object", "zone", "door")
+OBJECT = "object"
+WORLD = (PLACE, "person", OBJECT, "zone", "door")
 """The types of which robots know where each name is."""
 
 

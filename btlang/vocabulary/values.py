@@ -11,8 +11,10 @@ from marshal import dumps, loads  # a copy of a trie, at a tenth of the time tha
 
 from btlang.text.source import Source
 from btlang.text.words import Orthography, Words, split
-from btlang.vocabulary.references import CHOICES, Choice
-from btlang.vocabulary.value_type import PLACE, WORLD, ValueType, format_number, with_unit
+from btlang.vocabulary.nouns import ALL, Description, Features, Noun, noun_phrases
+from btlang.vocabulary.references import Choice, choice_of
+from btlang.vocabulary.value_type import PLACE, ValueType, format_number, with_unit
+from btlang.vocabulary.word_tree import END, WordTree, find, insert
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -21,29 +23,6 @@ if TYPE_CHECKING:
 _LARGEST = 1e12  # beyond it no quantity of a robot makes sense, and sums stay exact
 _MOST_NUMBER_WORDS = 12
 _FARTHEST = 1e6  # metres, as in a world file
-ALL = "all"  # of the names of a type
-END = "\0"  # key of a word tree's value; no word of a text is this one
-WordTree = dict[str, "Any"]
-
-
-def insert(tree: WordTree, words: Sequence[str], value: object) -> None:
-    """Adds a sequence of words to a word tree."""
-    for word in words:
-        tree = tree.setdefault(word, {})
-    tree[END] = value
-
-
-def find(tree: WordTree, words: Sequence[str], at: int) -> tuple[Any, int] | None:
-    """The value of the longest sequence of the tree at a place, and where it ends."""
-    found = None
-    node = tree
-    while True:
-        node = node.get(words[at])  # type: ignore[assignment]
-        if node is None:
-            return found
-        at += 1
-        if END in node:
-            found = node[END], at
 
 
 class Values:
@@ -52,7 +31,7 @@ class Values:
     Nothing of it changes once the names are added, so all missions of a process share it.
     """
 
-    def __init__(self, types: Mapping[str, ValueType], language: Mapping[str, Any]) -> None:
+    def __init__(self, types: Mapping[str, ValueType], language: Mapping[str, Any], nouns: Iterable[Noun] = ()) -> None:
         self.types = dict(types)
         self._numbers: Mapping[str, float] = language["numbers"]
         self._multipliers: Mapping[str, float] = language["multipliers"]
@@ -83,41 +62,40 @@ class Values:
             if kind.kind == "names":
                 self._names[kind.name] = {}
         self._facing = [phrase.split() for phrase in language["roles"].get("facing", ())]
-        self._nouns: WordTree = {}
-        self._choices: WordTree = {}
-        self._chosen: dict[tuple[str, str], str] = {}
-        for name in self._names:
-            for noun in language["nouns"].get(name, (name,)):
-                insert(self._nouns, noun.split(), name)
-                ways = dict.fromkeys(language["roles"].get("all_names", ()), ALL)
-                if name in WORLD:
-                    ways |= {words: how for how in CHOICES for words in language["roles"].get(how, ())}
-                for words, how in ways.items():
-                    insert(self._choices, [*words.split(), *noun.split()], (name, how))
-                    self._chosen.setdefault((name, how), f"{words} {noun}")
-            for noun in language["everyone"].get(name, ()):
-                insert(self._choices, noun.split(), (name, ALL))
+        self.phrases = noun_phrases(self._names, language, nouns)
+        self._features: Features = {}
+        self._spoken: dict[tuple[str, str], str] = {}
         self._exceptions: WordTree = {}
         for phrase in language["roles"].get("except", ()):
             insert(self._exceptions, phrase.split(), True)
         self._openers: dict[str, frozenset[str]] | None = None
+        self._choice_starts: frozenset[str] | None = None
 
     def add_name(self, kind: str, words: str, name: str) -> None:
         """Lets the words stand for a name of a type."""
         insert(self._names[kind], words.lower().split(), name)
         self._listed.setdefault(kind, {})[name] = None
-        self._openers = None
+        self._spoken.setdefault((kind, name), words)
+        self._openers = self._choice_starts = None
 
-    def with_names(self, names: Mapping[str, Iterable[tuple[str, str]]]) -> Values:
-        """The same with further names of types, each with its words."""
+    def with_names(self, names: Mapping[str, Iterable[tuple[str, str]]], features: Features | None = None) -> Values:
+        """The same with further names of types, each with its words, and what those of a world are like."""
         made = Values.__new__(Values)  # what `copy` does, which takes long to import
         made.__dict__.update(self.__dict__)
         made._listed = {**self._listed, **{kind: dict(self._listed.get(kind, ())) for kind in names}}
         made._names = {**self._names, **{kind: loads(dumps(self._names[kind])) for kind in names}}
+        made._features = self._features if features is None else features
+        made._spoken = dict(self._spoken)
         for kind, pairs in names.items():
             for words, name in pairs:
-                made.add_name(kind, words, name)
+                if not (self.types[kind].names and self._has(kind, words)):
+                    made.add_name(kind, words, name)
         return made
+
+    def _has(self, kind: str, words: str) -> bool:
+        """Whether words are a name of a type."""
+        found = find(self._names[kind], [*words.lower().split(), "\n"], 0)
+        return found is not None and found[1] == len(words.split())
 
     @property
     def openers(self) -> Mapping[str, frozenset[str]]:
@@ -129,7 +107,7 @@ class Values:
             numbers = self._number_starts
             quantities = numbers | self._joiner | self._units.keys()
             self._openers = {
-                kind: frozenset((*tree, *self.pronouns, *self._choices)) for kind, tree in self._names.items()
+                kind: frozenset((*tree, *self.pronouns, *self.choice_starts)) for kind, tree in self._names.items()
             }
             if PLACE in self._openers:
                 self._openers[PLACE] |= {"("}
@@ -176,28 +154,46 @@ class Values:
         """The same names in the order of the files and facts that bring them."""
         return tuple(self._listed.get(kind, ()))
 
-    def noun(self, text: Words, at: int) -> tuple[str, int] | None:
-        """The type that a noun such as `places` is for, and where it ends."""
-        return find(self._nouns, text.words, at)
+    def noun(self, text: Words, at: int) -> tuple[Description, int] | None:
+        """All names that a noun such as `places` or `red cup` is for, and where it ends."""
+        return self.phrases.noun(text, at, self.names_tree)
 
-    def choice(self, text: Words, at: int) -> tuple[tuple[str, str], int] | None:
-        """Of words such as `every place` the type and which of its names they are for, and where they end."""
-        return find(self._choices, text.words, at) if text.words[at] in self._choices else None
+    @property
+    def choice_starts(self) -> frozenset[str]:
+        """The words at which a noun phrase may begin."""
+        if self._choice_starts is None:
+            self._choice_starts = self.phrases.starts(self.names_tree)
+        return self._choice_starts
 
-    def chosen_types(self, text: Words) -> list[str]:
-        """The types of which a text lets the robot choose one, each once."""
-        if text.distinct.isdisjoint(self._choices):
-            return []
-        found = (self.choice(text, at) for at in range(len(text.words)))
-        return list(dict.fromkeys(one[0][0] for one in found if one is not None and one[0][1] in CHOICES))
+    def choice(self, text: Words, at: int) -> tuple[Description, int] | None:
+        """Of words such as `every place` and `the red cup` which names they are for, and where they end."""
+        return self.phrases.longest(text, at, self.names_tree) if text.words[at] in self.choice_starts else None
 
     def choices(self, kind: str) -> list[list[str]]:
         """The words that stand for all names of a type, and for those that are chosen, in the first way to say them."""
-        return [words.split() for (own, _), words in self._chosen.items() if own == kind and self._listed.get(kind)]
+        likes = [parts for _, parts in self._features.get(kind, ())]
+        return (
+            [words.split() for words in self.phrases.said(kind, likes, self._spoken)] if self._listed.get(kind) else []
+        )
+
+    def spoken(self, kind: str, name: str) -> str:
+        """The first words for a name of a type: `boxes` for the kinds "box"."""
+        return self._spoken.get((kind, name), name)
 
     def choice_words(self, choice: Choice) -> str:
         """The words that stand for a choice: `nearest person`."""
-        return self._chosen.get((choice.type, choice.how), choice.text)
+        return self.phrases.words(Description(choice.type, choice.how, choice.parts), self._spoken) or choice.text
+
+    def meant_by(self, text: str) -> tuple[str, ...]:
+        """The name that a port text is, or all that are described as its choice is."""
+        choice = choice_of(text)
+        return self.described(Description(choice.type, ALL, choice.parts)) if choice and choice.parts else (text,)
+
+    def described(self, meant: Description) -> tuple[str, ...]:
+        """The names of a type that have the parts of a description, in the order of the world."""
+        if not meant.parts:
+            return self.listed(meant.type)
+        return tuple(name for name, parts in self._features.get(meant.type, ()) if set(meant.parts) <= set(parts))
 
     def exception(self, text: Words, at: int) -> int:
         """Where a word such as `except` ends, 0 where there is none."""

@@ -110,7 +110,7 @@ def is_finishable(text: str) -> bool:
         ("(wave then nod", [" "]),
         ("(wave ", [")"]),
         ("try wave ", ["otherwise", "if possible"]),
-        ("patrol ", ["is ", "means "]),
+        ("parade ", ["is ", "means "]),
         ("patrol is wave\npa", ["patrol"]),
         ("look far is someone is near\nwave if look ", ["far"]),
         ("say ", ['"hello"']),

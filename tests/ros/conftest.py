@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 _NAV2, _OWN = "nav2_msgs.action", "btlang_interfaces.action"
+_NAV2_NEWEST = ("nav2_msgs.action._dock_robot", "nav2_msgs.msg._speed_limit")
 _COMPOSITION = "composition_interfaces.srv"
 
 
@@ -73,7 +74,7 @@ def _interfaces() -> None:
         _NAV2: str(HERE / "nav2_msgs"), _OWN: "--own", _COMPOSITION: str(HERE / "composition_interfaces")
     }  # fmt: skip
     with _lock(Path(sys.prefix, ".btlang-interfaces.lock")):
-        there = {_NAV2: _found(f"{_NAV2}._dock_robot"), _OWN: _is_current(), _COMPOSITION: _found(_COMPOSITION)}
+        there = {_NAV2: all(map(_found, _NAV2_NEWEST)), _OWN: _is_current(), _COMPOSITION: _found(_COMPOSITION)}
         missing = [folder for module, folder in packages.items() if not there[module]]
         if not missing or interfaces.missing_tools() is not None:
             return

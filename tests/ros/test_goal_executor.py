@@ -24,7 +24,7 @@ id = "CountTo"
 call = "counting:Count"
 
 [[action]]
-phrase = "ask the cloud"
+phrase = "query the cloud"
 id = "AskCloud"
 call = "counting:ask"
 resources = ["network"]
@@ -296,6 +296,7 @@ def test_some_of_them():
     assert chosen(["speech", "move_forward", "TurnLeft"], ids, vocabulary) == [
         "Say",
         "Print",
+        *("Ask", "ListenForYesOrNo", "ListenFor", "CallStaff", "RaiseAlarm"),
         "MoveForward",
         "TurnLeft",
     ]

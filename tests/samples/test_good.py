@@ -40,7 +40,8 @@ ROWS = {
     # phrases.md
     "Phrases": "values", "Values and units": "values", "Texts": "layout", "Lists": "lists_and_quantities",
     "Every name": "every_name", "Points": "points",
-    "The nearest and a random one": "chosen", "Pronouns": "pronouns", "Quantities": "lists_and_quantities",
+    "The nearest and a random one": "chosen", "Descriptions": "nouns", "Pronouns": "pronouns",
+    "Quantities": "lists_and_quantities",
     # conditions.md
     "check": "conditions", "Joined conditions": "conditions", "not": "conditions",
     "Nobody and nothing": "lists_of_conditions", "Lists as subjects": "lists_of_conditions",

@@ -64,6 +64,8 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
             made[key] = {name: list(map(_pattern, patterns)) for name, patterns in value.items()}
         elif key in ("nouns", "everyone"):
             made[key] = {kind: list(map(invented, words)) for kind, words in value.items()}
+        elif key == "plural_endings":
+            made[key] = {invented(ending): invented(other) for ending, other in value.items()}
         elif key == "nodes":
             made[key] = {node_id: _pattern(words) for node_id, words in value.items()}
         elif key in ("negations", "negative_subjects", "plurals", "doing"):
@@ -87,12 +89,17 @@ def invented_vocabulary() -> Lexicon:
             tuple(map(_type, file.types)),
             names,
             _language(file.language),
+            nouns=tuple(noun.replace(phrase=_pattern(noun.phrase)) for noun in file.nouns),
         )
         files.append(made)
     vocabulary = Lexicon(files)
     names_of_world = world_names(None)
-    by_type = {"place": names_of_world.places, "person": names_of_world.people, "object": names_of_world.objects}
-    return vocabulary.with_names({kind: tuple(map(invented, listed)) for kind, listed in by_type.items()})
+    features = {
+        kind: tuple((invented(name), tuple((part, invented(text)) for part, text in parts)) for name, parts in likes)
+        for kind, likes in names_of_world.features.items()
+    }
+    by_type = {kind: tuple(map(invented, listed)) for kind, listed in names_of_world.by_type.items()}
+    return vocabulary.with_names(by_type, features)
 
 
 @pytest.mark.parametrize("sample", SAMPLES, ids=[s.stem for s in SAMPLES])

@@ -8,6 +8,7 @@ import pytest
 
 from btlang.api import parse_tree
 from btlang.diagnostics.errors import MissionError
+from btlang.vocabulary.load import load_vocabulary
 
 ACTION = '[[action]]\nphrase = "hop"\nid = "Hop"\n'
 
@@ -26,6 +27,7 @@ ACTION = '[[action]]\nphrase = "hop"\nid = "Hop"\n'
         ('[roles]\nwait.add = ["linger"]', "must contain {duration}"),
         ('[roles]\nnothing.remove = ["do nothing"]', "no word is left of the role 'nothing'"),
         ("shipped = 1", "shipped is true or false"),
+        ("yields = 1", "yields is true or false"),
         ('[roles]\nfoo = ["zork"]', "there is no role 'foo'"),
         ('[roles]\nwait = ["linger"]', "must contain {duration}"),
         ('[roles]\nwait = ["linger [{duration}]"]', "must contain {duration}"),
@@ -88,6 +90,24 @@ def test_phrases_that_match_the_same_words(text: str, tmp_path: Path) -> None:
     with pytest.raises(MissionError) as caught:
         parse_tree("wave", keywords=[str(file)])
     assert {problem.code for problem in caught.value.diagnostics} == {"BT062"}
+
+
+def test_words_that_yield_leave_their_phrases_to_others(tmp_path: Path) -> None:
+    mild, strict = tmp_path / "mild.toml", tmp_path / "strict.toml"
+    mild.write_text(f"yields = true\n{ACTION.replace('hop', 'hop {text}')}", encoding="utf-8")
+    strict.write_text('[[action]]\nphrase = ["hop high", "hop {text} today"]\nid = "Jump"\n', encoding="utf-8")
+    for files in ([str(mild), str(strict)], [str(strict), str(mild)]):
+        read = [parse_tree(text, keywords=files).tree.root.id for text in ("hop high", "hop low", "hop low today")]
+        assert read == ["Jump", "Hop", "Jump"]
+    own = parse_tree("hop high is wave; hop high", keywords=[str(mild)])
+    assert own.warnings == ()
+
+
+def test_words_that_yield_leave_their_ids_to_others(tmp_path: Path) -> None:
+    pack = '[[action]]\nphrase = "ask {text}"\nid = "Ask"\ncall = "my_words:ask"\n'
+    (tmp_path / "pack.toml").write_text(pack, encoding="utf-8")
+    read = load_vocabulary([str(tmp_path / "pack.toml")]).entries["Ask"]
+    assert [entry.call for entry in read] == ["my_words:ask"]
 
 
 def test_a_byte_order_mark_is_fine(tmp_path: Path) -> None:

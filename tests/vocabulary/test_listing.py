@@ -28,12 +28,16 @@ NEEDS = {
     "Grasp": ("the cup is not within reach of the right hand", "approach the cup"),
     "Release": ("the robot isn't holding the cup", "pick up the cup"),
     "PutDown": ("the robot isn't holding the cup", "pick up the cup"),
+    "WaitForPerson": ("Alice didn't come", "go to Alice"),
+    "WaitForSomeone": ("nobody came", "go to Alice"),
+    "TakePictureOfPerson": ("I don't see Alice", "go to Alice"),
+    "TakePictureOfObject": ("I don't see the cup", "approach the cup"),
     "Ask": ("Alice didn't answer", "go to Alice"),
     "LookAtObject": ("the cup is behind the robot; the head can't turn that far", "face the cup"),
 }
 HOLDS_AT_THE_START = {
     "HandEmpty", "PathClear", "BatteryFull", "DistanceAhead", "DistanceToPlace", "DistanceToPerson", "DistanceToObject",
-    "PeopleNear", "DoorOpen", "SwitchedOn",
+    "PeopleNear", "BatterySufficient", "DoorOpen", "SwitchedOn",
 }  # fmt: skip
 
 

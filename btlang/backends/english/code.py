@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from btlang.passes.scripts import OPERATORS
 from btlang.record import Record
 from btlang.tree.node import Node
-from btlang.vocabulary.references import Choice, plain
+from btlang.vocabulary.references import choice_by, plain
 
 _TOKEN = re.compile(
     r"\s*('[^']*'|[^\W\d]\w*|_\w+|-?\d+(?:\.\d+)?(?:e[+-]?\d+)?|:=|\+=|-=|==|>=|<=|&&|\.\.|[<>*;])", re.DOTALL
@@ -107,8 +107,8 @@ def computed(node: Node) -> Computed | None:
     times: list[str] = []
     for child in node.children[:-1]:
         ports = dict(child.ports)
-        if child.id == "Choose" and ports.keys() == {"type", "how", "output"}:
-            made = Choice(ports["how"], ports["type"], ports["output"][1:-1])
+        if child.id == "Choose" and ports.keys() >= {"type", "how", "output"}:
+            made = choice_by(ports)
             texts[made.key] = made.text
             continue
         if child.id == "SetBlackboard" and ports.keys() == {"value", "output_key"}:

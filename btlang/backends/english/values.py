@@ -12,7 +12,7 @@ from btlang.tree import ast
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED, Entry
 from btlang.vocabulary.pattern import Form, Slot, forms
-from btlang.vocabulary.references import Choice, keys_in
+from btlang.vocabulary.references import choice_by, keys_in
 from btlang.vocabulary.value_type import WORLD
 
 
@@ -29,7 +29,7 @@ def chosen(node: Node, checked: Checked) -> Iterator[ast.Ast]:
     """A name that is chosen for a key of the mission's own."""
     key, kind = node.port("output")[1:-1], node.port("type")
     if key in checked.around.kinds and kind in WORLD:
-        choice = Choice(node.port("how"), kind, checked.around.vocabulary.context.keys[kind])
+        choice = choice_by(dict(node.ports)).replace(key=checked.around.vocabulary.context.keys[kind])
         yield ast.Assign(key, "set", kind, choice.text, NOWHERE)
 
 

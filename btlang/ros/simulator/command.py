@@ -24,6 +24,10 @@ PACKAGES = (
     "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs",
 )  # fmt: skip
 """The packages of messages that it needs beside rclpy."""
+_UNCOMPILED = (
+    "no /heard, /asking, /sightings and /follow: btlang's interfaces are not compiled (python -m btlang.ros.interfaces"
+    " --own)"
+)
 
 
 def add_simulator_options(parser: argparse.ArgumentParser) -> None:
@@ -36,6 +40,9 @@ def add_simulator_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--clock", action=argparse.BooleanOptionalAction, default=True, help="publish simulated time on /clock"
+    )
+    parser.add_argument(
+        "--seed", type=int, metavar="N", help="what people do by chance (default: the seed of the world, or 0)"
     )
     add_namespace(parser, "namespace of all topics (default: none)")
 
@@ -56,14 +63,18 @@ def _simulate(options: argparse.Namespace, body: Body, world: World, came: Endin
     from btlang.ros.available import require_ros
 
     require_ros(*PACKAGES)
-    from btlang.ros.simulator.simulator import Simulator, can_navigate
+    from btlang.ros.simulator.simulator import Simulator, can_meet_people, can_navigate
 
-    simulator = Simulator(world, namespace=options.namespace, gives_clock=options.clock, show=show, body=body)
+    simulator = Simulator(
+        world, namespace=options.namespace, gives_clock=options.clock, show=show, body=body, seed=options.seed
+    )
     with simulator, emergency_signal(simulator.robot.stop):
         came.on_arrival = simulator.wake
         simulator.step(1 / rate)
         if not can_navigate():
             show("btlang sim-ros: no /navigate_to_pose: the package nav2_msgs is not installed", stream=sys.stderr)
+        if not can_meet_people():
+            show(f"btlang sim-ros: {_UNCOMPILED}", stream=sys.stderr)
         where = f"domain {os.environ.get('ROS_DOMAIN_ID') or 0}, namespace /{options.namespace.strip('/')}"
         show(f"btlang sim-ros: ready at speed {speed:g} ({where}); Ctrl-C ends it")
         due = monotonic()

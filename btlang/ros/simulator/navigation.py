@@ -1,22 +1,24 @@
-"""The action server /navigate_to_pose: drives to a pose, around obstacles."""
+"""The action server /navigate_to_pose: drives to a pose, around obstacles. Its way is on /plan."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import isfinite
 
 from nav2_msgs.action import NavigateToPose
+from nav_msgs.msg import Path
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 from rclpy.task import Future
 
-from btlang.robots.geometry import Pose
+from btlang.robots.geometry import Point, Pose
 from btlang.robots.navigation import NavigationGoal
 from btlang.robots.simulated import SimulatedRobot
 from btlang.ros.lease import Leases
-from btlang.ros.poses import MAP, ODOM, pose_message, pose_of
+from btlang.ros.poses import MAP, ODOM, pose_message, pose_of, stamped_pose
 from btlang.ros.simulator.call_queue import CallQueue
-from btlang.ros.simulator.publishing import Every, Moment
+from btlang.ros.simulator.publishing import COMMANDS, Every, Moment
 from btlang.ros.simulator.wheels import Wheels
 from btlang.ros.times import duration
 
@@ -59,6 +61,8 @@ class Navigation:
         self._calls = calls
         self._wheels = wheels
         self._ride: Ride | None = None
+        self._plan = node.create_publisher(Path, "plan", COMMANDS)
+        self._way: Sequence[Point] = ()
         self._leases = Leases(node)
         ActionServer(
             node,
@@ -69,7 +73,8 @@ class Navigation:
         )
 
     def publish(self, now: Moment) -> None:
-        """Tells how far the goal has come, or that it is over."""
+        """Tells the way, how far the goal has come, or that it is over."""
+        self._publish_plan(now)
         ride = self._ride
         if ride is None or ride.navigation is None:
             return
@@ -81,6 +86,17 @@ class Navigation:
             self._end(ride)
         elif ride.feedback.is_due(now.seconds):
             self._tell(ride, ride.navigation, now)
+
+    def _publish_plan(self, now: Moment) -> None:
+        """Each way once."""
+        way = self._robot.way
+        if not way or way is self._way:
+            return
+        self._way = way
+        plan = Path()
+        plan.header.stamp, plan.header.frame_id = now.stamp, MAP
+        plan.poses = [stamped_pose(Pose(*point), now.stamp) for point in way]
+        self._plan.publish(plan)
 
     async def _execute(self, goal: ServerGoalHandle) -> NavigateToPose.Result:
         """Runs in the thread of the executor."""

@@ -9,18 +9,26 @@ from typing import Any, Protocol
 
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
+from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from btlang.robots import body as bodies
 from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.world import World
+from btlang.ros.available import optional_interface
 from btlang.ros.node import SpunNode
+from btlang.ros.perception import SIGHTINGS_TYPE
 from btlang.ros.simulator.body import Body
 from btlang.ros.simulator.call_queue import CallQueue
-from btlang.ros.simulator.publishing import Moment
+from btlang.ros.simulator.doors import Doors
+from btlang.ros.simulator.publishing import COMMANDS, Moment
 from btlang.ros.simulator.sensors import Sensors
 from btlang.ros.simulator.wheels import Wheels
 from btlang.ros.times import stamp
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.ros.simulator.hearing import Hearing
 
 
 class Part(Protocol):
@@ -35,7 +43,9 @@ class Simulator:
 
     `work` and `step` are for one thread, in turn.
     With `gives_clock` the simulated time is published on /clock and stamps are of that time, else of the system's.
-    `show` gets what the robot says and prints, a line at a time. Without nav2_msgs nothing is offered that navigates.
+    `show` gets what the robot says and prints, a line at a time. Without nav2_msgs nothing is offered that navigates,
+    without btlang's interfaces nothing that hears or sees. What people do by chance follows from `seed`, by default
+    that of the world.
     """
 
     def __init__(
@@ -46,8 +56,11 @@ class Simulator:
         gives_clock: bool,
         show: Callable[[str], object],
         body: bodies.Body | None = None,
+        seed: int | None = None,
     ) -> None:
         self.robot = SimulatedRobot(world, body=body)
+        if seed is not None:
+            self.robot.seed_choices(seed)
         self._show = show
         self._calls = CallQueue()
         self._spun = SpunNode("btlang_sim", namespace=namespace)
@@ -57,7 +70,15 @@ class Simulator:
             self._wheels,
             Sensors(node, self.robot, self._calls),
             Body(node, self.robot, self._calls),
+            Doors(node, self.robot, self._calls),
         ]
+        self._hearing: Hearing | None = None
+        if can_meet_people():
+            from btlang.ros.simulator.hearing import Hearing
+            from btlang.ros.simulator.seeing import Seeing
+
+            self._hearing = Hearing(node, self.robot, self._calls)
+            self._parts += [self._hearing, Seeing(node, self.robot, self._calls)]
         if can_navigate() and self.robot.body.has("navigation"):
             from btlang.ros.simulator.navigation import Navigation
 
@@ -69,6 +90,7 @@ class Simulator:
                     self._parts.append(Docking(node, self.robot, self._calls, self._wheels))
         self._clock = node.create_publisher(Clock, "/clock", QoSProfile(depth=1)) if gives_clock else None
         node.create_service(Trigger, "stop", self._stop)
+        node.create_subscription(String, "call", self._called, COMMANDS)
         self.robot.on_event = self._tell
 
     def work(self, seconds: float) -> None:
@@ -115,8 +137,18 @@ class Simulator:
             self._wheels.bumped(data["into"])
         elif kind in ("say", "print"):
             self._show(f'{kind}s "{data["text"]}"')
+        elif kind == "hear" and self._hearing is not None:
+            self._hearing.heard(data["text"], data["who"])
+
+    def _called(self, message: String) -> None:
+        self._calls.post(lambda: self._show(f'calls "{message.data}"'))
 
 
 def can_navigate() -> bool:
     """Whether the interfaces of Nav2 are installed."""
     return find_spec("nav2_msgs") is not None
+
+
+def can_meet_people() -> bool:
+    """Whether btlang's interfaces are compiled."""
+    return optional_interface(SIGHTINGS_TYPE) is not None

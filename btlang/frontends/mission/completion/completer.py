@@ -25,8 +25,8 @@ from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import GOES_ON, NO_PHRASES
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
 from btlang.vocabulary.pattern import Slot, forms
-from btlang.vocabulary.trie import SLOTS, TrieNode
-from btlang.vocabulary.values import END
+from btlang.vocabulary.trie import TrieNode
+from btlang.vocabulary.word_tree import END, SLOTS
 
 _MOST_TOKENS_BACK = 6  # a phrase that is being written may look like that many shorter ones
 _LONG_ENOUGH = 3  # letters; a shorter word is no misspelling yet

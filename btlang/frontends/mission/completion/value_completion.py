@@ -10,7 +10,7 @@ from btlang.vocabulary.continuations import begun, ways_on
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.values import END
+from btlang.vocabulary.word_tree import END
 
 
 def value_options(

@@ -6,9 +6,9 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.text.spelling import nearest
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.nouns import ALL
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import SlotValue
-from btlang.vocabulary.values import ALL
 
 _MOST_SHOWN = 5
 
@@ -35,8 +35,10 @@ def explained(text: Words, value: SlotValue, vocabulary: Lexicon, context: Readi
         )  # fmt: skip
     if after:
         return _told(text, value, f"it leaves out every {kind} that there is", "Leave out fewer.")
+    if chosen is not None and chosen[0].parts:
+        return _told(text, value, f"this world has no such {kind}", f"Write for example: {names[0]}")
     words = " ".join(text.words[value.first : at])
-    reason = f"one {kind} is needed" if chosen is not None and ALL in chosen[0] else f"'{words}' isn't a {kind}"
+    reason = f"one {kind} is needed" if chosen is not None and chosen[0].how == ALL else f"'{words}' isn't a {kind}"
     return _told(text, value, reason, f"Write for example: {names[0]}")
 
 

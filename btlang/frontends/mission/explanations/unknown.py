@@ -24,8 +24,9 @@ from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.trie import SLOTS, TrieNode, longest
+from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.value_type import PLACE, ValueType, with_unit
+from btlang.vocabulary.word_tree import END, SLOTS
 
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
 
@@ -124,6 +125,8 @@ def _misfits(text: Words, at: int, roots: Iterable[TrieNode], context: ReadingCo
             value = context.read(kind, text, i)
             if value is not None:
                 paths.append((child, value[1]))
+            elif context.types[kind].names and any(word not in (END, SLOTS) for word in node):
+                continue  # one of a few names would be an addition to the words that are missing
             elif i > furthest:
                 furthest, found = i, {kind: set(child)}
             elif i == furthest and i > at:

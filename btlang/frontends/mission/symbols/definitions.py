@@ -17,8 +17,10 @@ from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
 from btlang.vocabulary.language_tables import CONNECTIVES
 from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
 from btlang.vocabulary.pattern import Part, Slot, name_form
-from btlang.vocabulary.trie import SLOTS, Match, TrieNode, add, longest
-from btlang.vocabulary.values import END, key_of
+from btlang.vocabulary.references import choice_of
+from btlang.vocabulary.trie import Match, TrieNode, add, longest
+from btlang.vocabulary.values import key_of
+from btlang.vocabulary.word_tree import END, SLOTS
 
 # A line that starts with one of these compares; it defines nothing.
 _STARTS_NO_NAME = frozenset((
@@ -93,7 +95,8 @@ def add_name(header: Header, found: Definitions, vocabulary: Lexicon, types: Map
     nodes = [vocabulary.trie]
     for part in words:
         nodes = [child for node in nodes for child in _below(node, part)]
-    if any(END in node for node in nodes):
+    known = [node[END].entry for node in nodes if END in node]
+    if any(entry is None or not entry.yields for entry in known):
         found.problems.append(diagnostic("BT018", header.span, name=header.name))
 
 
@@ -154,7 +157,8 @@ def _header(
         return Header("", text.span(at, at + 1), at + 1, at + 1)
     if any(tuple(text.words[i:at]) in variables for i in range(start, at)):
         return None
-    if text.words[at - 1] == "}" and any(tuple(text.words[i : at - 1]) in variables for i in range(start, at - 1)):
+    compares = any(tuple(text.words[i : at - 1]) in variables for i in range(start, at - 1))
+    if text.words[at - 1] == "}" and compares and text.words[at + 1] != ":":
         body = phrases.at(at + 1)
         if body is None or body.meaning.role != "command":
             return None
@@ -221,7 +225,7 @@ def _defining_word(phrases: Phrases, first: int, last: int) -> int | None:
                 at = _behind_node(text, match, last, vocabulary)
                 continue
             # a command phrase inside a name is no reason against it: `go home is ...`
-            at = match.last if match.meaning.role != "command" else max(at + 1, _stop(text, at, match.last, choices))
+            at = match.last if match.meaning.role != "command" else max(at + 1, _stop(text, at, match, choices))
     return None
 
 
@@ -248,8 +252,10 @@ def _is_compared(text: Words, first: int, at: int, vocabulary: Lexicon) -> bool:
     return any(match is not None and match.last == at for match in matches)
 
 
-def _stop(text: Words, at: int, last: int, choices: list[str]) -> int:
-    return next((i for i in range(at, last) if text.words[i] in choices), last)
+def _stop(text: Words, at: int, match: Match, choices: list[str]) -> int:
+    """The first of some words in a command, but not in a noun: `the person who is waving`."""
+    nouns = {i for value in match.values if choice_of(value.text) for i in range(value.first, value.last)}
+    return next((i for i in range(at, match.last) if text.words[i] in choices and i not in nouns), match.last)
 
 
 def _starts_with_a_phrase(phrases: Phrases, start: int, joined: Span) -> bool:

@@ -19,7 +19,8 @@ from btlang.text.words import Words
 from btlang.tree.ast import Include, all_definitions, all_facts
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
-from btlang.vocabulary.references import free_key
+from btlang.vocabulary.references import CHOICES, free_key
+from btlang.vocabulary.word_tree import find
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -82,11 +83,30 @@ class Names:
         self.known = {key: one for named in (shared or {}, *(p.known for p in parts)) for key, one in named.items()}
         self.chosen: dict[str, str] = {}
         """The keys for what the robot chooses, by type."""
-        chosen = vocabulary.values.chosen_types(text)
+        chosen = self._chosen_types(text)
         if self.known or chosen:
             self._name_choices(chosen)
         if self.known or self.prefixes or any(header.parameters for header in self.definitions.headers.values()):
             self._name_values(text)
+
+    def _chosen_types(self, text: Words) -> list[str]:
+        """The types of which the robot chooses a name; `someone is near` is a phrase that only begins so."""
+        values, starts = self.vocabulary.values, self.vocabulary.values.choice_starts
+        if text.distinct.isdisjoint(starts):
+            return []
+        found: dict[str, None] = {}
+        ends = {prefix.value: prefix.last for prefix in self.prefixes.values() if prefix.noun is not None}
+        last = 0
+        for at in [at for at, word in enumerate(text.words) if word in starts]:
+            choice = values.choice(text, at) if at >= last and at not in ends else None
+            last = choice[1] if choice is not None else max(last, ends.get(at, 0))
+            if choice is not None and choice[0].how in CHOICES:
+                kind, named = choice[0].type, find(values.names_tree(choice[0].type), text.words, at)
+                if named is None or named[1] < last:
+                    match = self.phrases.at(at)
+                    if match is None or (match.values and match.values[0].first == at):
+                        found[kind] = None
+        return list(found)
 
     def _name_choices(self, kinds: Iterable[str]) -> None:
         """A free key for each type: its name, or another one. What an included mission chooses gives way, too."""

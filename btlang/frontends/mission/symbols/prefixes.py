@@ -9,6 +9,7 @@ from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.pattern import forms
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.values import key_of
@@ -23,7 +24,7 @@ class Prefix(Record):
     """The prefix of a statement about a value: its name, the word at which the value stands, and the word behind it.
 
     `value` is -1 where none is given. Of `remember ... as name` the value stands before the name and ends before the
-    word `value_end`, and `last` is behind the name. `for each person:` goes through all names of a type, its `kind`.
+    word `value_end`, and `last` is behind the name. `for each person:` goes through the names that its `noun` is for.
     """
 
     role: str
@@ -32,7 +33,7 @@ class Prefix(Record):
     value: int
     last: int
     value_end: int = -1
-    kind: str = ""
+    noun: Description | None = None
 
 
 def find_prefixes(text: Words, vocabulary: Lexicon) -> dict[int, Prefix]:
@@ -66,7 +67,7 @@ def _prefix(text: Words, role: str, at: int, vocabulary: Lexicon) -> Prefix | No
     if separator is None and role == "each":
         noun = vocabulary.values.noun(text, at)
         words = tuple(text.words[at : noun[1]]) if noun is not None else ()
-        return Prefix(role, key_of(words), words, at, noun[1], kind=noun[0]) if noun is not None else None
+        return Prefix(role, key_of(words), words, at, noun[1], noun=noun[0]) if noun is not None else None
     if separator is None:
         if role not in ("increase", "decrease"):
             return None

@@ -50,18 +50,17 @@ class ValueTypes:
         before = -1
         while len(self.types) > before:
             before, scopes = len(self.types), self.scopes()
-            for header in self._headers:
-                self._from_body(header, scopes)
             for at, prefix in self._prefixes.items():
                 if (at, prefix.key) not in self.types and prefix.role in ("set", "remember", "each"):
                     is_type = prefix.role == "each" and prefix.key in self._vocabulary.types
-                    kind = prefix.kind or (prefix.key if is_type else "")
+                    kind = prefix.noun.type if prefix.noun is not None else (prefix.key if is_type else "")
                     kinds = (kind,) if kind else self._given(at, prefix, scopes)
                     if kinds:
                         self.types[at, prefix.key] = kinds
                         if prefix.role != "each":
                             scopes.give(prefix, kinds)
-            for header in self._headers:
+            for header in self._headers:  # after `for each`, of whose values they may be used with
+                self._from_body(header, scopes)
                 if all((header.body, key) in self.types for key, _ in header.parameters):
                     self._add(header)
 
@@ -83,7 +82,9 @@ class ValueTypes:
     # -- parameters
 
     def _from_body(self, header: Header, scopes: Scopes) -> None:
-        """A parameter is of the first type that fits all slots in which it stands, other than those of text."""
+        """A parameter is of the first type that fits all slots in which it stands, other than those of text; of several
+        the one of its first use.
+        """
         open_keys = [key for key, _ in header.parameters if (header.body, key) not in self.types]
         if not open_keys:
             return
@@ -101,7 +102,11 @@ class ValueTypes:
                 named = self._context.named(self._text, prefix.value)
                 if named is not None and named[0] is not None and named[0].key in open_keys and prefix.key in known:
                     found.setdefault(named[0].key, known[prefix.key].kinds)
-        self.types |= {(header.body, key): kinds[:1] for key, kinds in found.items() if kinds}
+        use = self._first_use(header) if any(len(kinds) > 1 for kinds in found.values()) else {}
+        for key, kinds in found.items():
+            meant = [kind for kind in kinds if kind in use.get(key, ())] or kinds  # `go to {guest}`: who or where
+            if kinds:
+                self.types[header.body, key] = (meant[0],)
 
     def _longest(self, at: int, known: Mapping[str, Known]) -> Match | None:
         self._context.set_known(known)
@@ -123,20 +128,23 @@ class ValueTypes:
 
     def _ask_uses(self) -> None:
         """Where the body of a definition does not tell, its first use does."""
-        places: dict[str, list[int]] = {}
-        for at, word in enumerate(self._text.words):
-            places.setdefault(word, []).append(at)
-        self._context.set_known(self.scopes().everywhere)
         for header in self._headers:
             open_keys = [key for key, _ in header.parameters if (header.body, key) not in self.types]
-            form, own = name_form(header.name), header.span
-            first = form[0]
-            starts = range(len(self._text.words)) if isinstance(first, Slot) else places.get(first, ())
-            for at in starts if open_keys else ():
-                use = self._use(form, at) if not own.start <= self._text.starts[at] < own.end else None
-                if use is not None:
-                    self.types |= {(header.body, key): use[key] for key in open_keys if use[key]}
-                    break
+            use = self._first_use(header) if open_keys else {}
+            self.types |= {(header.body, key): use[key] for key in open_keys if use.get(key)}
+
+    def _first_use(self, header: Header) -> dict[str, tuple[str, ...]]:
+        """The types of the values with which a name is first used; none where it never is."""
+        form, own, scopes = name_form(header.name), header.span, self.scopes()
+        first = form[0]
+        for at, word in enumerate(self._text.words):
+            if word == first or isinstance(first, Slot):
+                if own.start <= self._text.starts[at] < own.end:
+                    continue
+                self._context.set_known(scopes.at(at))
+                if (use := self._use(form, at)) is not None:
+                    return use
+        return {}
 
     def _use(self, form: Sequence[str | Slot], at: int) -> dict[str, tuple[str, ...]] | None:
         """The types of the values with which a name is used at a word, None where it is not."""

@@ -7,9 +7,9 @@ from btlang.frontends.mission.token import Assigned, Each, Remembered, Token
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.nouns import ALL
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import SlotValue, all_names, longest, reaches_beyond
-from btlang.vocabulary.values import ALL
 
 
 def read_statement(
@@ -77,10 +77,10 @@ def _each(
     inner.keys = context.keys
     first = inner.any(text, prefix.value)
     kinds = (prefix.key,) if prefix.key in vocabulary.types else first[0] if first is not None else ()
-    chosen = ((prefix.kind, ALL), prefix.last) if prefix.kind else inner.choice(text, prefix.value)
-    if chosen is not None and chosen[0][1] == ALL:
-        kind = chosen[0][0]
-        every = all_names(vocabulary.trie, kind, text, prefix.value, chosen[1], inner)
+    chosen = (prefix.noun, prefix.last) if prefix.noun is not None else inner.choice(text, prefix.value)
+    if chosen is not None and chosen[0].how == ALL:
+        kind = chosen[0].type
+        every = all_names(vocabulary.trie, chosen[0], text, prefix.value, chosen[1], inner)
         values = calls.port_text(every), *every.more
         last = every.last
     else:

@@ -21,6 +21,12 @@ NEGATED = frozenset(("negated", "negated_twice"))
 _ODD = ("", "{", "(")  # how texts begin that are no plain values: of unknown names, references, choices and points
 
 
+def _keys(text: str) -> Iterable[str]:
+    """The keys that a port text refers to, or into which it chooses."""
+    choice = choice_of(text)
+    return keys_in(text) if choice is None else (choice.key,)
+
+
 class Calls:
     """Makes tokens of the phrases of one text; what is wrong with their values becomes `problems`."""
 
@@ -46,6 +52,8 @@ class Calls:
         for value in match.values:
             latest = value.more[-1] if value.more else value.text
             choice = choice_of(latest) if latest[:1] == "{" else None
+            if choice is not None:
+                self._context.met.add(choice.key)
             self._context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
 
     def _called(self, entry: Entry, match: Match, at: int) -> Called | Listed:
@@ -75,9 +83,9 @@ class Calls:
 
     def _check_choices(self, entry: Entry, match: Match, at: int) -> None:
         """BT152 where what is chosen would replace another value of the phrase, or is to be compared with."""
-        texts = [text for value in match.values for text in (value.text, *value.more) if text[:1] == "{"]
-        choices = [choice for text in texts if (choice := choice_of(text)) is not None]
-        keys = [*(choice.key for choice in choices), *(key for text in texts for key in keys_in(text))]
+        lists = [{text for text in (value.text, *value.more) if text[:1] == "{"} for value in match.values]
+        choices = [choice for texts in lists for text in texts if (choice := choice_of(text)) is not None]
+        keys = [key for texts in lists for key in {key for text in texts for key in _keys(text)}]
         double = next((choice for choice in choices if keys.count(choice.key) > 1 or entry.sort == "value"), None)
         if double is None:
             return

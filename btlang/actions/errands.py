@@ -1,0 +1,113 @@
+"""Errands: fetching and bringing things, coming back, and looking after places."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import Protocol
+
+from btlang.actions.company import Meeting, speaker
+from btlang.actions.joints import take
+from btlang.actions.manipulation import Fetching, pick_up, put_down
+from btlang.actions.manner import paced
+from btlang.actions.motion import Steps, turn
+from btlang.actions.navigation import accomplish, go_to, travel
+from btlang.actions.watch import Driving
+from btlang.robots.capabilities import Navigation
+from btlang.robots.robot import Hand
+
+
+class Bringing(Fetching, Meeting, Protocol):
+    """It carries things to people."""
+
+
+class Patrolling(Driving, Navigation, Protocol):
+    """It finds its way, and looks around."""
+
+
+def come_back(robot: Navigation, manner: str | None = None) -> Steps:
+    """Drives to where the robot was when the mission began, and faces as it did then."""
+    yield from paced(robot, manner, _return(robot))
+
+
+def _return(robot: Navigation) -> Steps:
+    yield from accomplish(robot.navigate_to_pose(robot.set_out_from))
+
+
+def fetch(robot: Fetching, object: str, manner: str | None = None) -> Steps:
+    """Picks up an object and brings it to where the robot is now. Fails as `pick_up` does."""
+    yield from paced(robot, manner, _fetch(robot, object))
+
+
+def _fetch(robot: Fetching, object: str) -> Steps:
+    here = robot.pose
+    yield from _hold(robot, object)
+    yield from accomplish(robot.navigate_to_pose(here))
+
+
+def carry(
+    robot: Fetching,
+    object: str,
+    place: str | None = None,
+    x: float | None = None,
+    y: float | None = None,
+    facing: float | None = None,
+    manner: str | None = None,
+) -> Steps:
+    """Picks up an object unless a hand holds it, drives to a place or a point, and puts it down there."""
+    yield from paced(robot, manner, _carry(robot, object, place, x, y, facing))
+
+
+def _carry(
+    robot: Fetching, object: str, place: str | None, x: float | None, y: float | None, facing: float | None
+) -> Steps:
+    yield from _hold(robot, object)
+    yield from go_to(robot, place, x, y, facing)
+    yield from put_down(robot, object)
+
+
+def bring(robot: Bringing, object: str, person: str | None = None, manner: str | None = None) -> Steps:
+    """Picks up an object unless a hand holds it, drives to a person and hands it over.
+
+    Without a person it is who spoke last, else the nearest one in view; where there is nobody, the object is put down
+    where the mission began. Fails where the person is gone or doesn't want it.
+    """
+    yield from paced(robot, manner, _bring(robot, object, person or speaker(robot)))
+
+
+def _bring(robot: Bringing, object: str, person: str | None) -> Steps:
+    hand = yield from _hold(robot, object)
+    if person is None:
+        yield from _return(robot)
+        yield from put_down(robot, object)
+        return
+    yield from travel(robot, person)
+    yield from take(robot, f"{hand} arm reaching")
+    yield from accomplish(robot.hand_over(hand, person))
+    yield from take(robot, f"{hand} arm hanging")
+
+
+def _hold(robot: Fetching, object: str) -> Generator[None, None, Hand]:
+    """The hand that holds the object, which is picked up first where none does."""
+    hands: tuple[Hand, Hand] = ("right", "left")
+    for hand in hands:
+        if robot.holding(hand) == object:
+            return hand
+    yield from pick_up(robot, object)
+    return "right"
+
+
+def patrol(
+    robot: Patrolling,
+    place: str | None = None,
+    x: float | None = None,
+    y: float | None = None,
+    manner: str | None = None,
+) -> Steps:
+    """Drives to a place or a point and turns once around."""
+    yield from paced(robot, manner, go_to(robot, place, x, y))
+    yield from turn(robot, 360.0)
+
+
+def localize(robot: Driving) -> Steps:
+    """Turns once around, so that the sensors see everything that the robot knows its place by."""
+    yield from turn(robot, 360.0)

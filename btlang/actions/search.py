@@ -1,0 +1,184 @@
+"""Searching: looks around, goes where something was, and then from place to place, the nearest first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import closing
+from typing import Protocol
+
+from btlang.actions.motion import Steps, turn
+from btlang.actions.navigation import accomplish, go_to, travel
+from btlang.actions.nouns import described
+from btlang.actions.points import spot
+from btlang.actions.watch import Driving, Watch
+from btlang.engine.leaves.leaf import ActionFailed, Failed
+from btlang.robots.capabilities import Hands, Navigation, Perception
+from btlang.robots.world import said
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.engine.blackboard import Blackboard
+
+COUNT = "@_count"
+"""The blackboard key of the last count."""
+_AROUND = 360.0
+
+
+class Searching(Perception, Navigation, Driving, Hands, Protocol):
+    """It goes about and recognises what it sees."""
+
+
+def look_for_person(
+    robot: Searching, person: str, place: str | None = None, x: float | None = None, y: float | None = None
+) -> Steps:
+    """Searches a place, or all of them, until a person is in view. Fails where he or she is in none."""
+    yield from _search(robot, person, lambda: robot.sees(person), place, x, y)
+
+
+def look_for_object(
+    robot: Searching, object: str, place: str | None = None, x: float | None = None, y: float | None = None
+) -> Steps:
+    """Searches a place, or all of them, until an object is in view. Fails where it is in none."""
+    yield from _search(robot, object, lambda: robot.sees(object), place, x, y)
+
+
+def look_for_someone(
+    robot: Searching, place: str | None = None, x: float | None = None, y: float | None = None
+) -> Steps:
+    """Searches a place, or all of them, until anybody is in view. Fails where nobody is."""
+    yield from _search(robot, None, lambda: bool(robot.seen("person")), place, x, y)
+
+
+def find_person(
+    robot: Searching, person: str, place: str | None = None, x: float | None = None, y: float | None = None
+) -> Steps:
+    """Looks for a person and goes there."""
+    yield from look_for_person(robot, person, place, x, y)
+    yield from travel(robot, person)
+
+
+def find_object(
+    robot: Searching, object: str, place: str | None = None, x: float | None = None, y: float | None = None
+) -> Steps:
+    """Looks for an object and goes there."""
+    yield from look_for_object(robot, object, place, x, y)
+    yield from travel(robot, object)
+
+
+def find_someone(robot: Searching, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
+    """Looks for anybody and goes there."""
+    yield from look_for_someone(robot, place, x, y)
+    for person in robot.seen("person")[:1]:
+        yield from travel(robot, person)
+
+
+def count_people(
+    robot: Searching,
+    blackboard: Blackboard,
+    place: str | None = None,
+    x: float | None = None,
+    y: float | None = None,
+) -> Steps:
+    """Counts the people in view from a place or a point, or from where the robot is, while it turns once around."""
+    yield from _count(robot, blackboard, "person", place, x, y)
+
+
+def count_objects(
+    robot: Searching,
+    blackboard: Blackboard,
+    place: str | None = None,
+    x: float | None = None,
+    y: float | None = None,
+) -> Steps:
+    """Counts the objects in view from a place or a point, or from where the robot is, while it turns once around."""
+    yield from _count(robot, blackboard, "object", place, x, y)
+
+
+def count_kind(
+    robot: Searching,
+    blackboard: Blackboard,
+    kinds: str,
+    place: str | None = None,
+    x: float | None = None,
+    y: float | None = None,
+) -> Steps:
+    """Counts the objects of a kind, as `count_objects` counts all."""
+    yield from _count(robot, blackboard, "object", place, x, y, kinds)
+
+
+def count(blackboard: Blackboard) -> int | Failed:
+    """How many the robot counted last. Fails where it hasn't counted."""
+    if COUNT not in blackboard:
+        raise ActionFailed("nothing was counted")
+    return int(blackboard.get(COUNT))
+
+
+def _count(
+    robot: Searching,
+    blackboard: Blackboard,
+    type: str,
+    place: str | None,
+    x: float | None,
+    y: float | None,
+    kind: str = "",
+) -> Steps:
+    if place is not None or x is not None:
+        yield from go_to(robot, place, x, y)
+    found: set[str] = set(robot.seen(type))
+    with closing(turn(robot, _AROUND)) as turning:
+        for _ in turning:
+            yield
+            found.update(robot.seen(type))
+    if kind:
+        found &= set(described(robot, type, kind=kind))
+    blackboard.set(COUNT, len(found))
+
+
+def _search(
+    robot: Searching,
+    name: str | None,
+    seen: Callable[[], bool],
+    place: str | None,
+    x: float | None,
+    y: float | None,
+) -> Steps:
+    if name is not None and robot.body.has("holding") and name in (robot.holding("left"), robot.holding("right")):
+        return
+    is_here = place is not None or x is not None
+    tour = _look_in(robot, place, x, y) if is_here else _tour(robot, name)
+    with closing(tour):
+        while not seen():
+            try:
+                next(tour)
+            except StopIteration:
+                where = f" in {said(place or spot(x, y))}" if is_here else ""
+                found = f"I haven't found {said(name)}" if name else "I haven't found anybody"
+                raise ActionFailed(f"{found}{where}") from None
+            yield
+
+
+def _look_in(robot: Searching, place: str | None, x: float | None, y: float | None) -> Steps:
+    yield from go_to(robot, place, x, y)
+    yield from turn(robot, _AROUND)
+
+
+def _tour(robot: Searching, name: str | None) -> Steps:
+    """Turns once around here, goes where the robot knows it, and looks into all places."""
+    watch = Watch(robot)
+    yield from turn(robot, _AROUND)
+    if name is not None:
+        try:
+            yield from accomplish(robot.navigate_to(name))
+            yield from turn(robot, _AROUND)
+        except ActionFailed:
+            watch.check_stop()  # the robot doesn't know it, or it isn't there any more
+    left = robot.place_names()
+    while left:
+        nearest = min(left, key=lambda place: robot.pose.distance_to(robot.locate(place)))
+        left.remove(nearest)
+        try:
+            yield from travel(robot, nearest)
+        except ActionFailed:
+            watch.check_stop()
+            continue  # no way leads there
+        yield from turn(robot, _AROUND)

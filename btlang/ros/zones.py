@@ -1,0 +1,132 @@
+"""The zones of the world on a ROS 2 robot: goals and plans are checked against them, and slow ones limit its speed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+from math import ceil, dist, inf, isfinite
+
+from nav_msgs.msg import Path
+from rclpy.node import Node
+from std_msgs.msg import Bool
+
+from btlang.robots.geometry import Point, Pose
+from btlang.robots.robot import RobotError
+from btlang.robots.world import Zone, said
+from btlang.robots.zones import Zones
+from btlang.ros.available import optional_interface
+from btlang.ros.names import graph_names
+from btlang.ros.node import LATCHED
+from btlang.ros.subscription_cache import SubscriptionCache
+
+PLAN, SPEED_LIMIT = "plan", "speed_limit"
+_STEP = 0.1  # metres between two points of a plan that are looked at
+_SAME_GOAL = 1.0  # metres from the goal at which a plan to it ends
+_NEW_PLAN = 1.0  # seconds of the mission in which the robot plans anew when a zone was closed or opened
+_REPEAT = 1.0  # seconds after which a limit is told again
+_LONGEST = 100_000  # points of a plan
+_NO_LIMIT = 0.0  # in the message of Nav2
+
+
+class RosZones:
+    """`zones` are those of the world, which a mission may close and open; topics tell the robot which are closed."""
+
+    def __init__(self, node: Node, subscriptions: SubscriptionCache, zones: Zones, world_zones: Sequence[Zone]) -> None:
+        self.zones = zones
+        self._subscriptions = subscriptions
+        topics = zone_topics(world_zones)
+        self._closed = {name: node.create_publisher(Bool, topic, LATCHED) for name, topic in topics.items()}
+        self._limit_type = optional_interface("nav2_msgs/msg/SpeedLimit")
+        has_limits = bool(world_zones) and self._limit_type is not None
+        self._limits = node.create_publisher(self._limit_type, SPEED_LIMIT, 10) if has_limits else None
+        self._time = self._changed = self._limited = 0.0
+        self._limit = _NO_LIMIT
+        self._goal: tuple[str, Point] | None = None
+        self._plan: list[Point] = []
+        self._version = self._checked = -1
+        if world_zones:
+            subscriptions.listen(PLAN, Path, "plan", qos="events", refuses=_fault)
+
+    def begin(self) -> None:
+        """A run begins, or all are over: zones are as the world says."""
+        self.zones.begin()
+        self._announce()
+
+    def set_out(self, name: str, pose: Pose) -> None:
+        """The robot is to go there. Raises RobotError for a goal in a closed zone."""
+        zone = self.zones.closed_at((pose.x, pose.y))
+        if zone is not None:
+            raise RobotError(f"{said(name)} is in the {zone.name}, where the robot may not go")
+        self._announce()
+        self._goal, self._plan = (name, (pose.x, pose.y)), []
+
+    def step(self, dt: float, pose: Pose | None) -> str:
+        """`dt` seconds have passed; returns why the robot must not follow its plan, "" where it may."""
+        self._time += dt
+        self._announce()
+        self._tell_limit(pose)
+        if not self._closed:
+            return ""
+        for message in self._subscriptions.events(PLAN):
+            points = [(at.pose.position.x, at.pose.position.y) for at in message.poses]
+            if self._goal is not None and points and dist(points[-1], self._goal[1]) <= _SAME_GOAL:
+                self._plan, self._checked = points, -1
+        if not self._plan or self._checked == self.zones.version or self._time - self._changed < _NEW_PLAN:
+            return ""
+        self._checked = self.zones.version
+        zone = next((zone for zone in self.zones.closed if enters(self._plan, zone)), None)
+        if zone is None or self._goal is None:
+            return ""
+        return f"the way to {said(self._goal[0])} leads through the {zone.name}, where the robot may not go"
+
+    def limit(self, pose: Pose | None) -> float:
+        """Metres a second that the slow zones at a pose allow; infinite where there is none."""
+        if pose is None:
+            return inf
+        return min((zone.speed for zone in self.zones.slow if zone.contains((pose.x, pose.y))), default=inf)
+
+    def _announce(self) -> None:
+        """Topics say which zones are closed, if that has changed."""
+        if self._version == self.zones.version:
+            return
+        if self._version >= 0:
+            self._changed = self._time
+        self._version = self.zones.version
+        for name, publisher in self._closed.items():
+            publisher.publish(Bool(data=self.zones.is_closed(name)))
+
+    def _tell_limit(self, pose: Pose | None) -> None:
+        if self._limits is None or pose is None:
+            return
+        allowed = self.limit(pose)
+        limit = _NO_LIMIT if allowed == inf else allowed
+        if limit != self._limit or (limit != _NO_LIMIT and self._time - self._limited >= _REPEAT):
+            self._limit, self._limited = limit, self._time
+            self._limits.publish(self._limit_type(speed_limit=limit))
+
+
+def zone_topics(zones: Iterable[Zone]) -> dict[str, str]:
+    """The topic of each zone that says whether it is closed."""
+    tokens = graph_names((zone.name for zone in zones), "zone")
+    return {name: f"zones/{token}/closed" for name, token in tokens.items()}
+
+
+def enters(plan: Sequence[Point], zone: Zone) -> bool:
+    """Whether a plan leads into a zone; one that only leads out of it doesn't."""
+    was_inside = True
+    for (ax, ay), (bx, by) in pairwise((plan[0], *plan)):
+        steps = max(1, ceil(dist((ax, ay), (bx, by)) / _STEP))
+        for step in range(1, steps + 1):
+            share = step / steps
+            inside = zone.contains((ax + share * (bx - ax), ay + share * (by - ay)))
+            if inside and not was_inside:
+                return True
+            was_inside = inside
+    return False
+
+
+def _fault(message: Path) -> str:
+    if len(message.poses) > _LONGEST:
+        return f"sends a plan of more than {_LONGEST:,} points"
+    points = (at.pose.position for at in message.poses)
+    return "" if all(isfinite(at.x) and isfinite(at.y) for at in points) else "sends numbers that are not finite"

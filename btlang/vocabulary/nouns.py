@@ -1,0 +1,164 @@
+"""Noun phrases in the place of a name: `nearest person`, `someone`, `red cup`, `every place`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+
+from btlang.record import Record
+from btlang.text.words import Words
+from btlang.vocabulary.pattern import Form, Slot, forms
+from btlang.vocabulary.references import CHOICES, SIZED, Parts
+from btlang.vocabulary.value_type import OBJECT, WORLD
+from btlang.vocabulary.word_tree import END, SLOTS, WordTree, find, insert
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+ALL = "all"  # of the names of a type
+Features = Mapping[str, tuple[tuple[str, Parts], ...]]
+"""What the names of a world are like, by their types."""
+_PLURALS = {"kind": "kinds"}
+"""The slots that are also said in the plural where all are meant: `all red cups`."""
+
+
+class Noun(Record):
+    """A noun phrase as a keyword file declares it: `[{color}] {kind}`, of which the robot chooses one by `how`."""
+
+    type: str
+    how: str
+    phrase: str
+    slots: Mapping[str, str]
+
+
+class Description(Record):
+    """Which names of a type are meant: `how` is a way to choose one, or "all"; `parts` are what they have in common."""
+
+    type: str
+    how: str
+    parts: Parts = ()
+
+
+class Nouns:
+    """The noun phrases of a language. `names` gives the word tree of the names that a slot of a type takes."""
+
+    def __init__(self) -> None:
+        self.tree: WordTree = {}
+        """Their words."""
+        self._types: WordTree = {}
+        self._said: dict[tuple[str, str, tuple[str, ...]], Form] = {}
+
+    def add(self, form: Form, slots: Mapping[str, str], kind: str, how: str) -> None:
+        """Adds one way to say it; what is known already keeps its meaning."""
+        node = self.tree
+        for part in form:
+            if isinstance(part, str):
+                node = node.setdefault(part, {})
+                continue
+            edges = node.setdefault(SLOTS, [])
+            of = slots[part.name]
+            known = next((child for name, other, child in edges if (name, other) == (part.name, of)), None)
+            node = {} if known is None else known
+            if known is None:
+                edges.append((part.name, of, node))
+        node.setdefault(END, (kind, how))
+        names = tuple(sorted(part.name for part in form if isinstance(part, Slot)))
+        self._said.setdefault((kind, how, names), form)
+
+    def longest(self, text: Words, at: int, names: Callable[[str], WordTree]) -> tuple[Description, int] | None:
+        """The longest noun phrase at a word, and where it ends."""
+        best: tuple[Description, int] | None = None
+        paths: list[tuple[WordTree, int, Parts]] = [(self.tree, at, ())]
+        while paths:
+            node, i, parts = paths.pop()
+            if END in node and (best is None or i > best[1]):
+                kind, how = node[END]
+                best = Description(kind, how, tuple(sorted(parts))), i
+            for name, of, child in node.get(SLOTS, ()):
+                value = find(names(of), text.words, i)
+                if value is not None:
+                    paths.append((child, value[1], (*parts, (name, value[0]))))
+            if text.words[i] in node:
+                paths.append((node[text.words[i]], i + 1, parts))
+        return best
+
+    def add_type(self, words: str, kind: str) -> None:
+        """Adds a word for a type: `places`."""
+        insert(self._types, words.split(), kind)
+
+    def noun(self, text: Words, at: int, names: Callable[[str], WordTree]) -> tuple[Description, int] | None:
+        """All names that a noun such as `places` or `red cup` is for, and where it ends."""
+        kind = find(self._types, text.words, at)
+        if kind is not None:
+            return Description(kind[0], ALL), kind[1]
+        found = self.longest(text, at, names)
+        return (found[0].replace(how=ALL), found[1]) if found is not None and found[0].parts else None
+
+    def starts(self, names: Callable[[str], WordTree]) -> frozenset[str]:
+        """The words at which a noun phrase may begin."""
+        slots = (word for _, kind, _ in self.tree.get(SLOTS, ()) for word in names(kind))
+        return frozenset((*self.tree, *slots)) - {END, SLOTS}
+
+    def words(self, meant: Description, spoken: Mapping[tuple[str, str], str]) -> str:
+        """The first way to say what has these parts, "" where there is none. `spoken` are the words of their names."""
+        parts = dict(meant.parts)
+        form = self._said.get((meant.type, meant.how, tuple(sorted(parts))), ())
+        pieces = ((part, "") if isinstance(part, str) else (part.name, parts[part.name]) for part in form)
+        return " ".join(spoken.get(piece, piece[1] or piece[0]) for piece in pieces)
+
+    def said(self, kind: str, likes: Iterable[Parts], spoken: Mapping[tuple[str, str], str]) -> list[str]:
+        """What can be said of a type whose names have these parts."""
+        likes = list(likes)
+        found: dict[str, None] = {}
+        for own, how, names in self._said:
+            if own != kind:
+                continue
+            for parts in likes if names else [()]:
+                some = tuple(part for part in parts if part[0] in names)
+                if tuple(name for name, _ in some) == names:
+                    found[self.words(Description(kind, how, some), spoken)] = None
+        return list(found)
+
+
+def with_plurals(
+    names: Mapping[str, list[tuple[str, str]]], endings: Mapping[str, str]
+) -> dict[str, list[tuple[str, str]]]:
+    """Names of types, each with its words, and those in the plural for types that have one."""
+    kinds = [(kind, many) for kind, many in _PLURALS.items() if kind in names]
+    return {**names, **{many: [(_plural(words, endings), name) for words, name in names[kind]] for kind, many in kinds}}
+
+
+def _plural(words: str, endings: Mapping[str, str]) -> str:
+    """By the endings of the language, the longest that fits: `box` as `boxes`."""
+    best = max((ending for ending in endings if words.endswith(ending)), key=len, default=None)
+    return words if best is None else words.removesuffix(best) + endings[best]
+
+
+def noun_phrases(kinds: Iterable[str], language: Mapping[str, Any], declared: Iterable[Noun]) -> Nouns:
+    """Those of a language for types with names, and those that files declare."""
+    found = Nouns()
+    roles: Mapping[str, list[str]] = language["roles"]
+    every = [(tuple(words.split()), ALL) for words in roles.get("all_names", ())]
+    chosen = [(tuple(words.split()), how) for how in CHOICES for words in roles.get(how, ())]
+    for kind in kinds:
+        ways = every + [way for way in chosen if kind in WORLD and (way[1] not in SIZED or kind == OBJECT)]
+        for words in language["nouns"].get(kind, (kind,)):
+            found.add_type(words, kind)
+            for before, how in ways:
+                found.add((*before, *words.split()), {}, kind, how)
+        for words in language["everyone"].get(kind, ()):
+            found.add(tuple(words.split()), {}, kind, ALL)
+        for noun in declared:
+            if noun.type == kind:
+                for form in forms(noun.phrase, frozenset(language["articles"])):
+                    takes_more = isinstance(form[0], Slot) or form[0] in language["nouns"].get(kind, (kind,))
+                    _add_declared(found, noun, form, ways if takes_more else ())
+    return found
+
+
+def _add_declared(nouns: Nouns, noun: Noun, form: Form, ways: Iterable[tuple[Form, str]]) -> None:
+    nouns.add(form, noun.slots, noun.type, noun.how)
+    for before, how in ways if any(isinstance(part, Slot) for part in form) else ():
+        nouns.add((*before, *form), noun.slots, noun.type, how)
+        if how == ALL and _PLURALS.keys() & noun.slots.keys():
+            nouns.add((*before, *form), {**noun.slots, **_PLURALS}, noun.type, how)

@@ -1,0 +1,34 @@
+"""Trees of words: word -> tree, `END` -> what the words up to there stand for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+END = "\0"  # no word of a text is this one
+SLOTS = "\1"
+"""Where phrases have slots: a list of (slot name, type, tree)."""
+WordTree = dict[str, "Any"]
+
+
+def insert(tree: WordTree, words: Sequence[str], value: object) -> None:
+    """Adds a sequence of words to a word tree."""
+    for word in words:
+        tree = tree.setdefault(word, {})
+    tree[END] = value
+
+
+def find(tree: WordTree, words: Sequence[str], at: int) -> tuple[Any, int] | None:
+    """The value of the longest sequence of the tree at a place, and where it ends."""
+    found = None
+    node = tree
+    while True:
+        node = node.get(words[at])  # type: ignore[assignment]
+        if node is None:
+            return found
+        at += 1
+        if END in node:
+            found = node[END], at
