@@ -32,6 +32,7 @@ _SIGNS = {
     "stuck": ("✖", "#c0440c", "stuck"),
     "grasp": ("▲", "#7a4f9e", "picked up"),
     "release": ("▼", "#7a4f9e", "put down"),
+    "give": ("▼", "#7a4f9e", "given"),
     "drop": ("▽", "#c0440c", "dropped"),
 }
 
@@ -114,7 +115,7 @@ class _Still:
                 said.append(mark)
                 continue
             sign, colour, _ = _SIGNS[mark.kind]
-            reach = self._record.radius if mark.kind in ("grasp", "release", "drop", "bump") else 0.0
+            reach = self._record.radius if mark.kind in ("grasp", "release", "give", "drop", "bump") else 0.0
             x, y = self._map.at(*mark.pose.ahead(reach))
             if any(kind == mark.kind and abs(px - x) + abs(py - y) < 7 for kind, px, py in drawn):
                 continue

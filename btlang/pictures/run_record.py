@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from math import dist
 
 from btlang.engine.leaves.leaf import ActionFailed
@@ -16,6 +17,7 @@ from btlang.run.events import (
     Called,
     DoorMoved,
     Dropped,
+    Given,
     Grasped,
     Heard,
     PeriodPassed,
@@ -27,7 +29,7 @@ from btlang.run.events import (
     Stuck,
 )
 from btlang.run.lines import is_asked_wait
-from btlang.run.robot_state import Movements, Whereabouts
+from btlang.run.robot_state import Movements, Whereabouts, asked
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -69,7 +71,7 @@ class Sighting(Record):
 
 
 class Mark(Record):
-    """Something that happened to the robot: kind say, ask, call, hear, print, bump, stuck, grasp, release or drop.
+    """What happened to the robot: kind say, print, ask, hear, call, bump, stuck, grasp, release, give or drop.
 
     `who` is the person who was asked or heard, "" for any.
     """
@@ -135,7 +137,7 @@ class RunRecord:
         else:
             self.track.append(sample)
         for name in self._put_down:
-            self._moved(t, name, robot.locate(name))
+            self._moved(t, name, asked(partial(robot.locate, name)) or robot.pose.ahead(robot.radius))
         self._put_down.clear()
 
     def _sight(self, t: float, things: list[Whereabouts]) -> None:
@@ -162,7 +164,7 @@ class RunRecord:
         elif isinstance(event, Grasped):
             self._mark(event, event.name)
             self._moved(event.t, event.name, None)
-        elif isinstance(event, Released | Dropped) and event.name:
+        elif isinstance(event, Released | Dropped | Given) and event.name:
             self._mark(event, event.name)
             self._put_down.append(event.name)
 

@@ -9,7 +9,7 @@ const SAID: Record<string, Key> = {
   RUNNING: "log.running", SUCCESS: "log.success", FAILURE: "log.failure", SKIPPED: "log.skipped",
   say: "log.say", print: "log.print", navigate: "log.navigate", choose: "log.choose", arrive: "log.arrive", bump: "log.bump",
   stuck: "log.stuck", stop: "log.stop", grasp: "log.grasp", release: "log.release", drop: "log.drop", dock: "log.dock",
-  come: "log.come", leave: "log.leave", see: "log.see", call: "log.call", undock: "log.undock", battery: "log.battery", fault: "log.fault", part: "log.part", warning: "log.warning", error: "log.error",
+  come: "log.come", leave: "log.leave", see: "log.see", give: "log.give", picture: "log.picture", call: "log.call", undock: "log.undock", battery: "log.battery", fault: "log.fault", part: "log.part", warning: "log.warning", error: "log.error",
 };
 const BAD = new Set(["FAILURE", "bump", "stuck", "drop", "battery", "fault", "warning", "error"]);
 
