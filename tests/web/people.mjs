@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { accessible, fits, logIn, submit, visit } from "./browser.mjs";
 
 const [base, password, pictures] = process.argv.slice(2);
-const MISSION = 'ask "Shall I close the door?" then if the answer is yes, close the door then close the wet floor then wait 20 s';
+const MISSION = 'ask "Shall I close the door?" then if the answer is yes, (retry (wait 1 s then close the door) 30 times) then close the wet floor then wait 20 s';
 const shot = (page, name) => page.screenshot({ path: `${pictures}/${name}.png`, fullPage: true });
 const logged = (page, text) => page.waitForSelector(`.log li:has-text("${text}")`);
 
