@@ -38,6 +38,7 @@ class Watch implements View {
   private empty = h("p", { class: "empty" }, t("watch.nothing"));
   private map = new MapView(() => this.robot);
   private log = new LogView();
+  private visitor = h("button", { type: "button", class: "visitor", hidden: true, onclick: () => void this.act("visitor", {}) }, t("visitor"));
   private question: Question;
   private parts: Parts;
   private failure: Failure;
@@ -61,7 +62,7 @@ class Watch implements View {
       h(
         "div",
         { class: "side" },
-        h("div", { class: "card place" }, this.map.canvas, this.says, this.question.element),
+        h("div", { class: "card place" }, this.map.canvas, this.visitor, this.says, this.question.element),
         operates && h("details", { class: "card" }, h("summary", {}, t("submit.title")), submitForm(context)),
         this.parts.element,
         h("div", { class: "card events" }, h("h2", {}, t("log")), this.log.element),
@@ -122,8 +123,8 @@ class Watch implements View {
   private showControls(): void {
     const paused = this.robot.state?.paused ?? false;
     const task = this.queue.underway;
-    const visitors = this.robot.state?.visitors ?? false;
-    const shown = JSON.stringify([paused, task?.id, visitors, this.robot.up]);
+    this.visitor.hidden = !may(this.context.me, "operator") || !this.robot.state?.visitors;
+    const shown = JSON.stringify([paused, task?.id, this.robot.up]);
     if (!may(this.context.me, "operator") || shown === this.shownControls) return;
     this.shownControls = shown;
     const button = (key: Key, name: string, fields = {}): HTMLElement =>
@@ -133,7 +134,6 @@ class Watch implements View {
       paused ? button("resume", "resume") : button("pause", "pause"),
       paused && button("step", "step"),
       task && button("cancel", "cancel", { task: task.id }),
-      visitors && button("visitor", "visitor"),
     );
   }
 
