@@ -125,7 +125,8 @@ def with_plurals(
 ) -> dict[str, list[tuple[str, str]]]:
     """Names of types, each with its words, and those in the plural for types that have one."""
     kinds = [(kind, many) for kind, many in _PLURALS.items() if kind in names]
-    return {**names, **{many: [(_plural(words, endings), name) for words, name in names[kind]] for kind, many in kinds}}
+    plurals = {many: [(_plural(words, endings), name) for words, name in names[kind]] for kind, many in kinds}
+    return {**names, **{many: plurals[many] + names[kind] for kind, many in kinds}}
 
 
 def _plural(words: str, endings: Mapping[str, str]) -> str:

@@ -274,3 +274,99 @@ CASES = {
         seconds=(225, 240),
     ),
 }  # fmt: skip
+
+_COFFEE, _MEDICINE = "Would you like some coffee?", "Have you taken your medicine?"
+
+CASES |= {
+    "waiter": Case(
+        world="hotel",
+        done=(
+            "GoToPerson {guest}", f"Ask {{guest}} {_COFFEE}", "Bring coffee {guest}", "Say Enjoy it!",
+            "GoToPerson {guest}", f"Ask {{guest}} {_COFFEE}", "Say Maybe later.", "GoTo reception",
+        ),
+        said=(_COFFEE, "Enjoy it!", _COFFEE, "Maybe later."),
+        met=("ask", "hear", "grasp coffee", "give coffee"),
+        at="reception",
+        seconds=(120, 160),
+    ),
+    "errands": Case(
+        world="hotel",
+        done=("PickUp newspaper", "Bring newspaper Omar", "Take parcel store", "ComeBack"),
+        met=("give newspaper", "release parcel", "come Vera"),
+        put={"parcel": "store"},
+        seconds=(160, 210),
+    ),
+    "greeter": Case(
+        world="hotel",
+        done=("GoTo reception", "WaitForPerson Vera", "Ask Vera May I show you your room?", "Guide Vera room 1",
+              "Say Here we are."),
+        said=("May I show you your room?", "Please follow me, Vera.", "Here we are."),
+        met=("come Vera", "see Vera", "hear"),
+        at="room 1",
+        seconds=(45, 90),
+    ),
+    "guided_tour": Case(
+        world="hotel",
+        done=("FindPerson Omar", "Say Follow me, please.", "Guide Omar corridor", "Say This is the corridor.",
+              "Guide Omar dining room", "Say Breakfast is from seven to ten."),
+        said=("Follow me, please.", "Please follow me, Omar.", "This is the corridor.", "Please follow me, Omar.",
+              "Breakfast is from seven to ten."),
+        at="dining room",
+        seconds=(80, 240),
+    ),
+    "night_patrol": Case(
+        world="night",
+        done=("Ask What is the word?", "RaiseAlarm There is an intruder.", "Patrol store", "Patrol dining room",
+              "Patrol kitchen", "Patrol reception", "Dock"),
+        said=("What is the word?",),
+        met=("see stranger", "hear", "call", "dock"),
+        at="dock",
+        seconds=(100, 160),
+    ),
+    "room_search": Case(
+        world="hotel",
+        done=("LookForObject key", "Take key reception", "Say Here is the key."),
+        said=("Here is the key.",),
+        met=("see key", "grasp key", "release key"),
+        put={"key": "reception"},
+        cells=20,
+        seconds=(120, 250),
+    ),
+    "counting": Case(
+        world="hotel",
+        done=("GoTo store", "CountKind box", "Say {_1}", "TakePicture"),
+        said=("There are 2 boxes in the store.",),
+        met=("picture",),
+        at="store",
+        seconds=(30, 45),
+    ),
+    "medicine_round": Case(
+        world="hotel",
+        done=(
+            "GoToPerson {patient}", f"Ask {{patient}} {_MEDICINE}", "Say Please take it now.", "Say Thank you.",
+            "GoToPerson {patient}", f"Ask {{patient}} {_MEDICINE}", "Say Thank you.", "GoTo reception",
+        ),
+        said=(_MEDICINE, "Please take it now.", "Thank you.", _MEDICINE, "Thank you."),
+        met=("ask", "hear"),
+        at="reception",
+        seconds=(390, 430),
+    ),
+    "delivery": Case(
+        world="hotel",
+        done=("WaitForWay 10", "AvoidZone wet floor", "PickUp parcel", "GoTo store", "Say Delivered.",
+              "PutDown parcel"),
+        said=("Delivered.",),
+        put={"parcel": "store"},
+        seconds=(40, 60),
+    ),
+    "seek": Case(
+        world="hide",
+        done=("Say Three, two, one. I am coming!", "LookForPerson {player}", "GoToPerson {player}", "Say I see you!",
+              "LookForPerson {player}", "GoToPerson {player}", "Say I see you!", "ComeBack"),
+        said=("Three, two, one. I am coming!", "I see you!", "I see you!"),
+        met=("see Nina", "see Omar"),
+        cells=20,
+        seconds=(200, 500),
+    ),
+}  # fmt: skip
+"""Those with people in their worlds."""
