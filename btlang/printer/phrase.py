@@ -146,7 +146,7 @@ def value_of(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
         return text
     ways = [f'"{text}"', f"'{text}'"]
     if kind.kind == "names":
-        ways = [text, vocabulary.values.spoken(kind.name, text), *ways]
+        ways = [vocabulary.values.spoken(kind.name, text), text, *ways]
     elif not _says_more(text, vocabulary):
         ways.insert(0, text)
     return next((way for way in ways if vocabulary.value(kind.name, way) == text), ways[0])
