@@ -206,7 +206,7 @@ def test_without_interfaces_it_does_all_the_rest(tmp_path: Path, domain: int, na
     assert listen.process.wait(2 * LONG) == 2
     assert "BT110" in listen.err
     assert sim.end() == 130
-    assert sim.err.startswith("btlang sim-ros: no /heard, /asking, /sightings and /follow: ")
+    assert sim.err.startswith("btlang sim-ros: no /heard, /asking, /sightings, /follow and /hand_over: ")
 
 
 @pytest.mark.long
