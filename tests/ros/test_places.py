@@ -64,7 +64,7 @@ def test_it_chooses_by_what_things_are_like(places: Places) -> None:
 def test_it_chooses_among_what_it_has_seen(places: Places) -> None:
     with pytest.raises(RobotError, match=r"^I haven't seen a box$"):
         choose(places, "object", "nearest", {"kind": "box"})
-    with pytest.raises(RobotError, match=r"^I don't see anybody waving$"):
+    with pytest.raises(RobotError, match=r"^I don't see anybody who is waving$"):
         choose(places, "person", "seen", {"gesture": "waving"})
     assert choose(places, "person", "seen") == "Ann"
     places.notice({"Bob": ("person", (3.0, 2.5)), "crate": ("object", (1.5, 1.0))}, 1.0, HERE)
