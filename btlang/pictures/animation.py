@@ -8,14 +8,16 @@ from math import ceil
 
 from btlang.pictures import letters
 from btlang.pictures.canvas import Canvas
+from btlang.pictures.people import PERSON, WALKED, draw_standing, place_of, sighting_at
 from btlang.pictures.placing import Area, Placer, along
 from btlang.pictures.run_legend import outcome
-from btlang.pictures.run_record import RunRecord, Sample
-from btlang.pictures.style import INK, SMALL, SOFT, TITLE
+from btlang.pictures.run_record import Mark, RunRecord, Sample
+from btlang.pictures.style import BUBBLES, INK, SMALL, SOFT, TITLE
 from btlang.pictures.track import END, draw_body, way
+from btlang.pictures.world_details import DOOR_COLOUR, draw_door, draw_route
 from btlang.pictures.world_map import OBJECT, WorldMap
 from btlang.robots.geometry import Point, Pose, wrap
-from btlang.robots.world import World
+from btlang.robots.world import PERSON_RADIUS, World
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -25,6 +27,7 @@ FRAMES = 140
 _EACH, _LAST = 90, 2500  # milliseconds that a frame is shown, and the last one
 _LEAST = 0.25  # seconds of the mission between two frames, at least
 _COLOURS = 96
+_SMALL_COLOURS, _SWATCH = (END[0], PERSON, WALKED, OBJECT, DOOR_COLOUR), 60
 _DPI = 90
 _MARGIN, _HEAD = 10.0, 48.0
 _LINE = 30.0  # of the commands under way, below the title
@@ -50,11 +53,13 @@ def _palette(frames: list[Image]) -> Image:
     """Colours of the whole film, from some of its frames one below the other."""
     from PIL import Image
 
-    chosen = [frames[0], frames[len(frames) // 2], frames[-1]]
+    chosen = [*frames[:: max(1, len(frames) // 8)], frames[-1]]
     width, height = chosen[0].size
-    strip = Image.new("RGB", (width, height * len(chosen)))
+    strip = Image.new("RGB", (width, height * len(chosen) + _SWATCH))
     for number, frame in enumerate(chosen):
         strip.paste(frame, (0, number * height))
+    for number, colour in enumerate(_SMALL_COLOURS):  # which a few pixels have
+        strip.paste(colour, (number * _SWATCH, height * len(chosen), (number + 1) * _SWATCH, strip.height))
     return strip.quantize(_COLOURS)
 
 
@@ -65,14 +70,26 @@ class _Film:
         self._record = record
         self._times = [sample.t for sample in record.track]
         self._things = {thing.name: thing for thing in world.objects if thing.name in record.moved}
-        still = world.replace(objects=tuple(thing for thing in world.objects if thing.name not in record.moved))
+        self._world = world
+        self._swung = [door for door in world.doors if any(name == door.name for _, name, _ in record.doors)]
+        moving = {*record.moved, *record.sightings}
+        still = world.replace(
+            objects=tuple(thing for thing in world.objects if thing.name not in moving),
+            people=tuple(person for person in world.people if person.name not in moving),
+            doors=tuple(door for door in world.doors if door not in self._swung),
+        )
         extent = [*way(record), *((thing.x, thing.y) for thing in self._things.values())]
+        extent += [each.point for known in record.sightings.values() for each in known if each.point is not None]
+        extent += [point for door in self._swung for point in (door.start, door.end)]
         self._map = WorldMap(still, _ROOM, extent)
         area = self._map.area
         self._canvas = Canvas(max(area.width, 300.0) + 2 * _MARGIN, area.y + area.height + _MARGIN, title)
         text = letters.clipped(title, self._canvas.width - 2 * _MARGIN - 4, SMALL)
         self._canvas.text(_MARGIN + 2, 12, text, size=SMALL, colour=SOFT)
         self._map.draw(self._canvas)
+        for person in world.people:
+            if person.name in moving:
+                draw_route(self._canvas, person, self._map.at)
         placer = Placer(area)
         placer.avoid(along([self._map.at(*place) for place in way(record)], 4.0))
         self._map.draw_names(self._canvas, placer)
@@ -92,8 +109,10 @@ class _Film:
         self._grow(max(before, 0.0), now)
         sample = self._sample(now)
         self._things_at(now, sample.pose)
+        self._surroundings_at(now)
         draw_body(self._canvas, self._map, sample.pose, self._record.radius, END, 6)
         self._speech(now, sample.pose, (now - before) * _SPOKEN)
+        self._answers(now, sample.pose, (now - before) * _SPOKEN)
         self._headline(before, now, sample, last)
         self._canvas.lay()
         size, pixels = self._canvas.pixels()
@@ -131,23 +150,49 @@ class _Film:
                 text = letters.clipped(letters.shown(name), 100, SMALL)
                 self._canvas.text(x + radius + 2, y, text, size=SMALL, colour=OBJECT, halo=True, z=5)
 
+    def _surroundings_at(self, now: float) -> None:
+        """People and unknown things where they are, and doors as they are."""
+        for name, sightings in self._record.sightings.items():
+            if name not in self._record.moved:
+                draw_standing(self._canvas, self._map, self._world, name, sighting_at(sightings, now))
+        for door in self._swung:
+            is_open = {name: opened for t, name, opened in self._record.doors if t <= now}.get(door.name, door.open)
+            draw_door(self._canvas, door.replace(open=is_open), self._map.at, self._map.area.middle)
+            x, y = self._map.at(*door.middle)
+            text = letters.clipped(letters.shown(door.name), 100, SMALL)
+            self._canvas.text(x + 5, y, text, size=SMALL, colour=DOOR_COLOUR, halo=True, z=3)
+
     def _speech(self, now: float, pose: Pose, least: float) -> None:
         """What the robot says, above it; what it last said stays for some frames."""
-        said = [mark for mark in self._record.marks if mark.kind in ("say", "print") and mark.t <= now]
-        if not said or now > said[-1].t + max(least, 0.35 + 0.06 * len(said[-1].text)):
-            return
-        text = letters.clipped(letters.shown(said[-1].text), 180, SMALL)
+        mark = self._latest(("say", "print", "ask", "call"), now, least)
+        if mark is not None:
+            self._bubble(mark, (pose.x, pose.y), self._record.radius)
+
+    def _answers(self, now: float, pose: Pose, least: float) -> None:
+        """What the robot hears, at whoever says it."""
+        mark = self._latest(("hear",), now, least)
+        if mark is not None:
+            speaker = place_of(self._world, self._record, mark.who, now)
+            self._bubble(mark, speaker or (pose.x, pose.y), -self._record.radius if speaker is None else PERSON_RADIUS)
+
+    def _latest(self, kinds: tuple[str, ...], now: float, least: float) -> Mark | None:
+        """What was said last, as long as it is shown."""
+        said = [mark for mark in self._record.marks if mark.kind in kinds and mark.text and mark.t <= now]
+        return said[-1] if said and now <= said[-1].t + max(least, 0.35 + 0.06 * len(said[-1].text)) else None
+
+    def _bubble(self, mark: Mark, place: Point, radius: float) -> None:
+        """Above a place, or below it where there is no room, or for a negative radius."""
+        text = letters.clipped(letters.shown(mark.text), 180, SMALL)
+        fill, edge = BUBBLES.get(mark.kind, BUBBLES["say"])
         width = letters.width(text, SMALL) + 12
-        x, y = self._map.at(pose.x, pose.y)
-        area = self._map.area
+        x, y = self._map.at(*place)
+        area, away = self._map.area, abs(radius) * self._map.scale
         left = min(max(x - width / 2, area.x), area.x + max(area.width - width, 0))
-        top = y - self._record.radius * self._map.scale - 24
-        if top < area.y:
-            top = y + self._record.radius * self._map.scale + 9
-        self._canvas.polygon(
-            [(x - 3, top + 8), (x + 3, top + 8), (x, y)], fill="#fffdf2", edge="#9a8f6a", line=0.7, z=8
-        )
-        self._canvas.box(left, top, width, 15, round=5, fill="#fffdf2", edge="#9a8f6a", line=0.8, z=8)
+        top = y - away - 24
+        if top < area.y or radius < 0:
+            top = y + away + 9
+        self._canvas.polygon([(x - 3, top + 8), (x + 3, top + 8), (x, y)], fill=fill, edge=edge, line=0.7, z=8)
+        self._canvas.box(left, top, width, 15, round=5, fill=fill, edge=edge, line=0.8, z=8)
         self._canvas.text(left + 6, top + 7.5, text, size=SMALL, z=8)
 
     def _headline(self, before: float, now: float, sample: Sample, last: bool) -> None:

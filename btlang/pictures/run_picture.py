@@ -9,12 +9,14 @@ from btlang.engine.status import FAILURE
 from btlang.pictures import letters
 from btlang.pictures.canvas import Canvas, drawing
 from btlang.pictures.files import MOVING, STILL, ending
+from btlang.pictures.people import WALKED, draw_walks, name_walks, place_of, ways
 from btlang.pictures.placing import Area, Placer, along
 from btlang.pictures.run_legend import WIDTH, Legend, listed
 from btlang.pictures.run_record import Command, Mark, RunRecord
-from btlang.pictures.style import HEADING, INK, LOOKS, SMALL, SOFT, TITLE
+from btlang.pictures.style import BUBBLES, HEADING, INK, LOOKS, SMALL, SOFT, TITLE
 from btlang.pictures.track import END, START, draw_body, draw_track, shade, way
 from btlang.pictures.world_map import WorldMap
+from btlang.robots.geometry import Point
 from btlang.robots.world import World
 from btlang.run.bus import INLINE
 from btlang.tree.node import Node
@@ -30,6 +32,7 @@ _SIGNS = {
     "stuck": ("✖", "#c0440c", "stuck"),
     "grasp": ("▲", "#7a4f9e", "picked up"),
     "release": ("▼", "#7a4f9e", "put down"),
+    "give": ("▼", "#7a4f9e", "given"),
     "drop": ("▽", "#c0440c", "dropped"),
 }
 
@@ -69,9 +72,9 @@ class RunPicture:
 
 class _Still:
     def __init__(self, world: World, record: RunRecord, title: str) -> None:
-        self._record = record
-        self._way = way(record)
-        self._map = WorldMap(world, _ROOM, self._way)
+        self._record, self._world = record, world
+        self._way, self._walked = way(record), _walked(record, world)
+        self._map = WorldMap(_in_the_end(world, record), _ROOM, (*self._way, *self._walked))
         area, legend = self._map.area, Legend(record)
         self._key = self._key_items()
         wide = max(area.width, _LEAST_WIDE)
@@ -80,15 +83,17 @@ class _Still:
         text = letters.clipped(title, wide + _GUTTER + WIDTH, TITLE, True)
         self.canvas.text(_MARGIN, _MARGIN + 4, text, size=TITLE, bold=True)
         self._placer = Placer(area)
-        self._map.draw(self.canvas)
+        self._map.draw(self.canvas, [name for name in record.sightings if ways(record.sightings[name])])
         points = draw_track(self.canvas, self._map, record)
         self._placer.avoid(along(points, 4.0))
         self._placer.avoid(self._map.lines())
+        draw_walks(self.canvas, self._map, record, world, self._placer)
         self._bodies()
         groups = _groups(listed(record.commands), self._map)
         self._placer.taken += [Area(x - 2, y - 2, 4, 4) for (x, y), _ in groups]
         marks = self._marks()
         self._map.draw_names(self.canvas, self._placer, record.moved)
+        name_walks(self.canvas, self._map, record, world, self._placer)
         self._numbers(groups)
         self._bubbles(marks)
         legend.draw(self.canvas, _MARGIN + wide + _GUTTER, _TOP)
@@ -110,7 +115,7 @@ class _Still:
                 said.append(mark)
                 continue
             sign, colour, _ = _SIGNS[mark.kind]
-            reach = self._record.radius if mark.kind in ("grasp", "release", "drop", "bump") else 0.0
+            reach = self._record.radius if mark.kind in ("grasp", "release", "give", "drop", "bump") else 0.0
             x, y = self._map.at(*mark.pose.ahead(reach))
             if any(kind == mark.kind and abs(px - x) + abs(py - y) < 7 for kind, px, py in drawn):
                 continue
@@ -139,13 +144,16 @@ class _Still:
             self.canvas.text(*middle, text, size=SMALL, bold=True, colour="white", align="center", z=6)
 
     def _bubbles(self, said: list[Mark]) -> None:
-        """What the robot said, each text once, as long as there is room for it."""
+        """What the robot and others said, each text once, as long as there is room for it."""
         texts: dict[str, Mark] = {}
         for mark in said:
-            texts.setdefault(mark.text, mark)
+            if mark.text:
+                texts.setdefault(mark.text, mark)
         for mark in list(texts.values())[:_BUBBLES]:
             text = letters.clipped(letters.shown(mark.text), _WIDEST_BUBBLE, SMALL)
-            x, y = self._map.at(mark.pose.x, mark.pose.y)
+            speaker = place_of(self._world, self._record, mark.who, mark.t) if mark.kind == "hear" else None
+            x, y = self._map.at(*(speaker or (mark.pose.x, mark.pose.y)))
+            fill, edge = BUBBLES.get(mark.kind, BUBBLES["say"])
             width = letters.width(text, SMALL) + 10
             area, overlap = self._placer.place(x, y, width, 14.0, max(8.0, self._record.radius * self._map.scale + 4))
             if overlap > 20:
@@ -153,9 +161,9 @@ class _Still:
                 continue
             cx, cy = area.middle
             cx = min(max(x, area.x + 8), area.x + width - 8)
-            self.canvas.polygon([(cx - 3, cy), (cx + 3, cy), (x, y)], fill="#fffdf2", edge="#9a8f6a", line=0.7, z=2.5)
-            self.canvas.box(area.x, area.y, width, 14, round=5, fill="#fffdf2", edge="#9a8f6a", line=0.7, z=2.6)
-            self.canvas.box(cx - 2.6, cy - 5, 5.2, 10, fill="#fffdf2", z=2.7)
+            self.canvas.polygon([(cx - 3, cy), (cx + 3, cy), (x, y)], fill=fill, edge=edge, line=0.7, z=2.5)
+            self.canvas.box(area.x, area.y, width, 14, round=5, fill=fill, edge=edge, line=0.7, z=2.6)
+            self.canvas.box(cx - 2.6, cy - 5, 5.2, 10, fill=fill, z=2.7)
             self.canvas.text(area.x + 5, cy, text, size=SMALL, colour=INK, z=2.8)
 
     def _key_items(self) -> list[tuple[str, str, str]]:
@@ -178,12 +186,31 @@ class _Still:
         canvas.text(x + 6, y, "n", size=SMALL, bold=True, colour="white", align="center")
         canvas.text(x + 15, y, "command begins", size=SMALL, colour=SOFT)
         x += 15 + letters.width("command begins", SMALL) + 14
+        if self._walked:
+            canvas.line([(x, y), (x + 18, y)], colour=WALKED, line=1.1, dashed=True, round=False)
+            canvas.text(x + 23, y, "people", size=SMALL, colour=SOFT)
+            x += 23 + letters.width("people", SMALL) + 14
         for sign, colour, word in self._key:
             if x + 12 + letters.width(word, SMALL) > _MARGIN + wide:
                 break
             canvas.text(x + 4, y, sign, colour=colour, align="center")
             canvas.text(x + 12, y, word, size=SMALL, colour=SOFT)
             x += 12 + letters.width(word, SMALL) + 14
+
+
+def _in_the_end(world: World, record: RunRecord) -> World:
+    """The world with its doors as they were at last."""
+    is_open = {name: opened for _, name, opened in record.doors}
+    changed: World = world.replace(
+        doors=tuple(door.replace(open=is_open.get(door.name, door.open)) for door in world.doors)
+    )
+    return changed
+
+
+def _walked(record: RunRecord, world: World) -> list[Point]:
+    """All points of the ways of people."""
+    names = [name for name in record.sightings if name not in world.names.objects]
+    return [point for name in names for way in ways(record.sightings[name]) for point in way]
 
 
 def numbers(values: list[int]) -> str:

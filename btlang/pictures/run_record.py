@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from math import dist
 
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.status import IDLE, RUNNING, SKIPPED
@@ -10,9 +12,14 @@ from btlang.record import Record
 from btlang.robots.geometry import Point, Pose
 from btlang.run.bus import INLINE
 from btlang.run.events import (
+    Asked,
     Bumped,
+    Called,
+    DoorMoved,
     Dropped,
+    Given,
     Grasped,
+    Heard,
     PeriodPassed,
     Printed,
     Released,
@@ -22,6 +29,7 @@ from btlang.run.events import (
     Stuck,
 )
 from btlang.run.lines import is_asked_wait
+from btlang.run.robot_state import Movements, Whereabouts, asked
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -31,6 +39,7 @@ if TYPE_CHECKING:
     from btlang.run.events import Event
 
 _MOVED, _TURNED, _WAITED = 0.02, 4.0, 1.0  # metres, degrees and seconds: what is less is no new sample
+_STEP = 0.2  # metres between two sightings
 
 
 class Sample(Record):
@@ -53,20 +62,33 @@ class Command:
         self.reason = ""
 
 
+class Sighting(Record):
+    """Where somebody or something was from a time on, None for nowhere, and whether the robot saw it."""
+
+    t: float
+    point: Point | None
+    seen: bool
+
+
 class Mark(Record):
-    """Something that happened to the robot: kind say, print, bump, stuck, grasp, release or drop."""
+    """What happened to the robot: kind say, print, ask, hear, call, bump, stuck, grasp, release, give or drop.
+
+    `who` is the person who was asked or heard, "" for any.
+    """
 
     t: float
     kind: str
     text: str
     pose: Pose
+    who: str = ""
 
 
 class RunRecord:
     """A sink. `label` and `is_action` are those of btlang.api.Mission.
 
     Commands are numbered from 1 in the order in which they began. `ended` holds status and time of the whole mission.
-    `moved` says where each object that was picked up lies; None is in the robot's hand.
+    `moved` says where each object that was picked up lies; None is in the robot's hand. `sightings` are those of people
+    who walk, and of what the robot doesn't know by its world; `doors` say when which door was opened or closed.
     """
 
     policy = INLINE
@@ -81,6 +103,9 @@ class RunRecord:
         self.marks: list[Mark] = []
         self.moved: dict[str, Point | None] = {}
         self.moves: list[tuple[float, str, Point | None]] = []
+        self.sightings: dict[str, list[Sighting]] = {}
+        self.doors: list[tuple[float, str, bool]] = []
+        self._movements = Movements()
         self.ended: tuple[int, float] | None = None
         self.radius = 0.0
 
@@ -93,6 +118,8 @@ class RunRecord:
         if isinstance(event, PeriodPassed):
             if event.robot is not None:
                 self._see(event.t, event.robot)
+            if event.state is not None and self.track:
+                self._sight(event.t, self._movements.changed(event.state.things))
         elif isinstance(event, StatusesChanged) and self.track:
             for change in event:
                 self._changed(change, event.valued.get(change.index, change.node))
@@ -110,12 +137,26 @@ class RunRecord:
         else:
             self.track.append(sample)
         for name in self._put_down:
-            self._moved(t, name, robot.locate(name))
+            self._moved(t, name, asked(partial(robot.locate, name)) or robot.pose.ahead(robot.radius))
         self._put_down.clear()
+
+    def _sight(self, t: float, things: list[Whereabouts]) -> None:
+        for name, x, y, seen in things:
+            point = None if x is None or y is None else (x, y)
+            known = self.sightings.setdefault(name, [])
+            if len(known) >= 2 and _stays(known[-2], Sighting(t, point, seen)):
+                known.pop()  # the latest one is always kept
+            known.append(Sighting(t, point, seen))
 
     def _happened(self, event: Event) -> None:
         if isinstance(event, Said | Printed):
             self._mark(event, event.text)
+        elif isinstance(event, Asked | Heard):
+            self._mark(event, event.text, event.who)
+        elif isinstance(event, Called):
+            self._mark(event, event.text)
+        elif isinstance(event, DoorMoved):
+            self.doors.append((event.t, event.name, event.open))
         elif isinstance(event, Bumped):
             self._mark(event, event.into)
         elif isinstance(event, Stuck):
@@ -123,12 +164,12 @@ class RunRecord:
         elif isinstance(event, Grasped):
             self._mark(event, event.name)
             self._moved(event.t, event.name, None)
-        elif isinstance(event, Released | Dropped) and event.name:
+        elif isinstance(event, Released | Dropped | Given) and event.name:
             self._mark(event, event.name)
             self._put_down.append(event.name)
 
-    def _mark(self, event: Event, text: str) -> None:
-        self.marks.append(Mark(event.t, event.tag, text, self.track[-1].pose))
+    def _mark(self, event: Event, text: str, who: str = "") -> None:
+        self.marks.append(Mark(event.t, event.tag, text, self.track[-1].pose, who))
 
     def _moved(self, t: float, name: str, place: Point | None) -> None:
         self.moved[name] = place
@@ -150,6 +191,13 @@ class RunRecord:
         if event.status == RUNNING:
             self._running[event.path] = command
         command.status, command.end, command.reason = event.status, event.t, event.reason
+
+
+def _stays(before: Sighting, now: Sighting) -> bool:
+    """Whether one in between says nothing more."""
+    if before.point is None or now.point is None or before.seen != now.seen:
+        return False
+    return dist(before.point, now.point) < _STEP
 
 
 def _same(a: Sample, b: Sample) -> bool:

@@ -14,6 +14,14 @@ SMALL, TEXT, TITLE = 7.5, 9.0, 11.0
 HEADING = 24.0  # room for the title of a picture
 
 
+BUBBLES = {
+    "say": ("#fffdf2", "#9a8f6a"),
+    "hear": ("#fdf1f7", "#9c3f74"),
+    "call": ("#fde4da", "#c0440c"),
+}
+"""Fill and edge of what is said: by the robot, by people, and when it calls for help."""
+
+
 class Look(Record):
     """How a status is shown: its sign, the word for it, a strong colour and a pale one."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 
 from btlang.pictures import letters
 from btlang.pictures.canvas import Canvas
@@ -54,8 +54,11 @@ class WorldMap:
         """Points of the canvas, of metres."""
         return self.area.x + (x - self._left) * self.scale, self.area.y + (self._top - y) * self.scale
 
-    def draw(self, canvas: Canvas) -> None:
-        """The floor, zones, walls, doors and furniture, and a ring and the route of each person."""
+    def draw(self, canvas: Canvas, walked: Container[str] = ()) -> None:
+        """The floor, zones, walls, doors and furniture, and a ring and the route of each person.
+
+        The rings of those who have `walked` away are dashed.
+        """
         world, s = self._world, self.scale
         canvas.box(self.area.x, self.area.y, self.area.width, self.area.height, round=4, fill=_FLOOR)
         draw_zones(canvas, world, self.at)
@@ -69,12 +72,21 @@ class WorldMap:
         for person in world.people:
             draw_route(canvas, person, self.at)
         for person in world.people:
-            canvas.circle(*self.at(person.x, person.y), person.radius * s, fill="#f3dcea", edge=_PERSON)
             x, y = self.at(person.x, person.y)
+            if person.name in walked:
+                canvas.circle(x, y, person.radius * s, fill="white", edge=_PERSON, dashed=True)
+                continue
+            canvas.circle(x, y, person.radius * s, fill="#f3dcea", edge=_PERSON)
             canvas.circle(x, y, max(person.radius * s * 0.45, 2.0), fill=_PERSON)
 
     def draw_names(self, canvas: Canvas, placer: Placer, moved: Mapping[str, Point | None] = {}) -> None:
         """Marks and names of what is in the world; `moved` says where objects lie in the end."""
+        for zone in self._world.zones:
+            x, y = self.at(*middle_of(zone))
+            text = letters.clipped(letters.shown(zone.name), _LONGEST_NAME, SMALL)
+            canvas.text(x, y, text, size=SMALL, colour=zone_colour(zone), align="center", halo=True, z=1.5)
+            width = letters.width(text, SMALL)
+            placer.taken.append(Area(x - width / 2, y - SMALL / 2, width, SMALL))
         for place in self._world.places:
             x, y = self.at(place.x, place.y)
             if self._world.dock is not None and place.name == self._world.dock.name:
@@ -93,8 +105,6 @@ class WorldMap:
             self._name(canvas, placer, person.name, (x, y), "#9c3f74", radius + 1.5)
         for thing in self._world.objects:
             self._object(canvas, placer, thing, moved)
-        for zone in self._world.zones:
-            self._name(canvas, placer, zone.name, self.at(*middle_of(zone)), zone_colour(zone), 0.0)
         for door in self._world.doors:
             self._name(canvas, placer, door.name, self.at(*door.middle), DOOR_COLOUR, 4.0)
 

@@ -22,6 +22,7 @@ from btlang.run.events import (
     Warned,
 )
 from btlang.run.json_log import as_json, described
+from btlang.run.robot_state import Movements
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -61,6 +62,10 @@ STATE = Channel("/robot/state", "btlang.RobotState", _object(
     **_COMMON, ticks=_WHOLE, overruns=_WHOLE, battery={"type": ["number", "null"]},
     left={"type": ["string", "null"]}, right={"type": ["string", "null"]}, pose={"type": ["array", "null"]},
 ))  # fmt: skip
+THINGS = Channel("/robot/things", "btlang.Things", _object(
+    **_COMMON, things={"type": "array", "items": {"type": "array"}},
+))  # fmt: skip
+"""People and objects that moved, or that the robot begins or ceases to see: see btlang.run.robot_state.Whereabouts."""
 VALUES = Channel("/btlang/values", "btlang.Values", _object(**_COMMON, values={"type": "object"}))
 POSE = Channel("/robot/pose", "foxglove.PoseInFrame", _object(timestamp=_TIME, frame_id=_TEXT, pose=_POSE))
 SCAN = Channel("/robot/scan", "foxglove.LaserScan", _object(
@@ -78,12 +83,14 @@ CLASSES = {channel.topic: kind for kind, channel in EVENTS.items()}
 
 
 def messages(
-    event: Event, nanoseconds: int, label: Callable[[Node], str]
+    event: Event, nanoseconds: int, label: Callable[[Node], str], movements: Movements
 ) -> Iterator[tuple[Channel, dict[str, Any] | str]]:
-    """What is written of an event, at a time since 1970; a text is JSON already."""
+    """What is written of an event, at a time since 1970; a text is JSON already. `movements` are those of the file."""
     if isinstance(event, StatusesChanged):
         yield STATUSES, _statuses(event)
     elif isinstance(event, PeriodPassed):
+        if event.state is not None and (moved := movements.changed(event.state.things)):
+            yield THINGS, _common(event) | {"things": moved}
         yield from _period(event, nanoseconds)
     elif isinstance(event, Sampled):
         if event.values:

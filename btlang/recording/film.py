@@ -13,7 +13,7 @@ from btlang.robots.world_problem import read_world
 from btlang.run.bus import BLOCK
 from btlang.run.events import LOGGED, Event, PeriodPassed, Sampled, StatusesChanged
 from btlang.run.json_log import as_json
-from btlang.run.robot_state import rounded_scan
+from btlang.run.robot_state import Movements, rounded_scan
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -23,6 +23,8 @@ MOST_CHANGES = 200_000
 """Of statuses in a film; a longer run ends there."""
 _MOST_EVENTS = 20_000
 _MOST_STATES = 50_000
+_MOST_PLACES = 200_000  # of people and objects
+_APART = 0.1  # seconds between two looks at where people are: more would fill the memory, and nobody would see it
 
 
 class Film:
@@ -36,6 +38,9 @@ class Film:
         self._story = Story(mission, self._nodes, self._about)
         self._statuses: list[list[float | int]] = []
         self._robot: list[list[Any]] = []
+        self._things: list[list[Any]] = []
+        self._movements, self._next_look = Movements(), 0.0
+        self._latest: PeriodPassed | None = None
         self._scans: list[list[Any]] = []
         self._events: list[dict[str, Any]] = []
         self._count, self._end = 0, 0.0
@@ -60,12 +65,16 @@ class Film:
             self._count += len(pairs) // 2
         elif isinstance(event, PeriodPassed):
             self._take_state(event)
+            if event.t >= self._next_look - 1e-9:
+                self._next_look = event.t + _APART
+                self._take_things(event)
+            self._latest = event
         elif isinstance(event, Sampled) and event.scan:
             self._scans.append([round(event.t, 3), rounded_scan(event.scan)])
         elif isinstance(event, LOGGED):
             self._events.append(as_json(event, self._mission.label))
         full = self._count > MOST_CHANGES or len(self._events) > _MOST_EVENTS
-        self.is_cut = full or len(self._robot) > _MOST_STATES
+        self.is_cut = full or len(self._robot) > _MOST_STATES or len(self._things) > _MOST_PLACES
 
     def _take_state(self, event: PeriodPassed) -> None:
         state = event.state
@@ -75,6 +84,10 @@ class Film:
         if not self._robot or self._robot[-1][1:] != now:
             self._robot.append([round(event.t, 3), *now])
 
+    def _take_things(self, event: PeriodPassed) -> None:
+        if event.state is not None:
+            self._things += [[round(event.t, 3), *each] for each in self._movements.changed(event.state.things)]
+
     def data(self) -> dict[str, Any]:
         """As JSON has it.
 
@@ -82,11 +95,15 @@ class Film:
           and the characters of the text that say it (None for none); `names`: those of statuses;
         - `statuses`: a time in seconds, then node and status (a number of `names`) in turn;
         - `robot`: time, x, y (metres), heading (degrees), battery (percent), what the left and the right hand hold;
+        - `things`: time, name, x, y (metres, None where it isn't there) and whether the robot sees it, where one of
+          these is new; of people who walk and of what the robot doesn't know by its world;
         - `scans`: time and metres, counter-clockwise from straight ahead; `events`: see btlang/run/events.schema.json;
         - `story`: time, node (-1: none) and words; `why`: how it ended; `failed`: the node that failed, or -1;
         - `seconds`: how long it is; `is_cut`: whether more happened than is kept; `map`: see World.as_map.
         """
         nodes, mission = self._nodes, self._mission
+        if self._latest is not None:
+            self._take_things(self._latest)
         text = "" if mission.syntax is None else mission.syntax.span.source.text
         listed = []
         for index in range(nodes.size):
@@ -106,6 +123,7 @@ class Film:
             "nodes": listed,
             "statuses": self._statuses,
             "robot": self._robot,
+            "things": self._things,
             "scans": self._scans,
             "events": self._events,
             "story": [[round(t, 3), index, words] for t, index, words in self._story.notes],

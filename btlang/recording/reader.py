@@ -13,11 +13,11 @@ from btlang.diagnostics.reading import reason_of
 from btlang.engine.status import NAMES
 from btlang.engine.status_trace import Changes
 from btlang.record import Record
-from btlang.recording.channels import CLASSES, LOG, POSE, SCAN, STATE, STATUSES, VALUES
+from btlang.recording.channels import CLASSES, LOG, POSE, SCAN, STATE, STATUSES, THINGS, VALUES
 from btlang.recording.recorder import ABOUT
 from btlang.robots.geometry import Pose
 from btlang.run.events import Event, PeriodPassed, Sampled, StatusesChanged
-from btlang.run.robot_state import RobotState
+from btlang.run.robot_state import RobotState, Whereabouts
 from btlang.text.source import NOWHERE, Span
 from btlang.tree.node import Node
 
@@ -98,9 +98,10 @@ class Recording(Record):
     def events(self, nodes: RecordedNodes) -> Iterator[Event]:
         """What happened, as the classes of events, up to the first that is broken."""
         run = self.about.get("run", "")
+        things: dict[str, Whereabouts] = {}
         for topic, data in self.entries:
             try:
-                event = _event(topic, json.loads(data), run, nodes)
+                event = _event(topic, json.loads(data), run, nodes, things)
             except (ValueError, KeyError, IndexError, TypeError, AttributeError, RecursionError):
                 return
             if event is not None:
@@ -158,7 +159,10 @@ def read_about(path: str) -> dict[str, str]:
     return {}
 
 
-def _event(topic: str, data: Mapping[str, Any], run: str, nodes: RecordedNodes) -> Event | None:
+def _event(
+    topic: str, data: Mapping[str, Any], run: str, nodes: RecordedNodes, things: dict[str, Whereabouts]
+) -> Event | None:
+    """`things` are those that were written so far."""
     if topic == STATUSES.topic:
         common = data["t"], run, data["number"], data["wall"]
         valued = {int(index): _with_ports(nodes, int(index), ports) for index, ports in data.get("values", {}).items()}
@@ -167,8 +171,13 @@ def _event(topic: str, data: Mapping[str, Any], run: str, nodes: RecordedNodes) 
         common = data["t"], run, data["number"], data["wall"]
         pose = Pose(*data["pose"]) if data.get("pose") else None
         known = "battery" in data
-        state = RobotState(pose, data["battery"], data["left"], data["right"]) if known else None
+        hands = data["left"], data["right"]
+        state = RobotState(pose, data["battery"], *hands, tuple(things.values())) if known else None
         return PeriodPassed(*common, data["ticks"], data["overruns"], state, None)
+    if topic == THINGS.topic:
+        for name, x, y, seen in data["things"]:
+            things[name] = str(name), _metres(x), _metres(y), bool(seen)
+        return None
     if topic == VALUES.topic:
         return Sampled(data["t"], run, data["number"], data["wall"], data["values"])
     kind = CLASSES.get(topic)
@@ -179,6 +188,10 @@ def _event(topic: str, data: Mapping[str, Any], run: str, nodes: RecordedNodes) 
         given["node"] = Node(data["id"], (), tuple(data.get("ports", {}).items()))
     missing = [name for name in kind.fields if name not in given and name not in kind.field_defaults]
     return kind(**{**dict.fromkeys(missing), **given})
+
+
+def _metres(value: Any) -> float | None:
+    return None if value is None else float(value)
 
 
 def _changes(data: Mapping[str, Any], size: int) -> Changes:

@@ -17,6 +17,7 @@ from btlang.recording.bundle import files_of
 from btlang.recording.channels import Channel, messages
 from btlang.run.bus import BLOCK
 from btlang.run.events import Ended, Event, PeriodPassed
+from btlang.run.robot_state import Movements
 from btlang.text.source import NOWHERE
 from btlang.tree.node import Node
 
@@ -76,7 +77,7 @@ class Recorder:
             self._writer.add_metadata(ABOUT, self._about)
         at = self._began + int(event.t * 1e9)  # mission time, so that it is played at its pace
         published = int(event.wall * 1e9)
-        for channel, data in messages(event, at, self._label):
+        for channel, data in messages(event, at, self._label, self._movements):
             text = (data if isinstance(data, str) else _encode(data)).encode()
             known = self._channels.get(channel.topic)
             if known is None:  # the writer puts the channel before its first message
@@ -115,6 +116,7 @@ class Recorder:
         # in chunks, what is not yet written of one would be lost with the process
         self._writer = Writer(self._file, compression=CompressionType.NONE, use_chunking=False, use_statistics=False)
         self._channels: dict[str, int] = {}
+        self._movements = Movements()
         now = time.time_ns()
         self._writer.start(library=f"btlang {self._about.get('btlang', '')}".strip())
         self._writer.add_metadata(ABOUT, self._about)

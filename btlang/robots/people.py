@@ -8,7 +8,7 @@ Waiting times are by chance, so that two who meet don't mirror each other for ev
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, hypot, inf, radians, sin
+from math import cos, dist, hypot, inf, radians, sin
 from random import Random
 
 from btlang.robots.geometry import Point, Pose
@@ -21,6 +21,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.walkways import Walkways
 
+_ARRIVES = 0.3  # metres that a guest needs
 _HEARD = 8.0  # metres from which a question is understood
 _WIDEST = 0.3  # metres of radius that ways leave room for
 _GUEST = "visitor"
@@ -47,6 +48,7 @@ class People:
         self._answers: list[tuple[float, str, str]] = []
         self._said: dict[str, str] = {}
         self._invited = 0
+        self._robot: Point = (world.start.x, world.start.y)
         self.begin(world.seed or 0)
         if self._walkers:
             self._arrive(0.0, Other(world.start.x, world.start.y, 0.0, 0.0, radius))
@@ -61,6 +63,7 @@ class People:
         """Lets `dt` seconds pass until `now`, while the robot drives at `velocity` metres a second."""
         if self._speeches or self._answers:
             self._speak(now)
+        self._robot = pose.x, pose.y
         if not self._walkers:
             return
         heading = radians(pose.heading)
@@ -123,8 +126,11 @@ class People:
                 return name
         self._invited += 1
         name = f"{_GUEST} {self._invited}"
-        doors = [place for place in self._world.places if place.name.lower() in _DOORS] or self._world.places
-        point = (doors[0].x, doors[0].y) if doors else (self._world.start.x, self._world.start.y)
+        doors = [place for place in self._world.places if place.name.lower() in _DOORS]
+        spots = [(place.x, place.y) for place in (*doors, *self._world.places)]
+        room = (spot for spot in spots if self._obstacles.nearest(*spot)[0] > _ARRIVES)
+        free = (spot for spot in room if dist(spot, self._robot) > 1.0)
+        point = next(free, (self._world.start.x, self._world.start.y))
         self._people[name] = guest = Person(name, *point, 0.25, wanders=True)
         self._obstacles.add(guest)
         self._walkers[name] = walker = Walker(guest, self._places)

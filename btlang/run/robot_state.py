@@ -41,6 +41,19 @@ class RobotState(Record):
         return None if self.battery is None else round(self.battery, 1)
 
 
+class Movements:
+    """Remembers whereabouts, so that those who keep or send them need only what has changed."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, Whereabouts] = {}
+
+    def changed(self, things: Iterable[Whereabouts]) -> list[Whereabouts]:
+        """Those that are not as they were at the last call."""
+        found = [each for each in things if self._known.get(each[0]) != each]
+        self._known.update((each[0], each) for each in found)
+        return found
+
+
 def read_robot(robot: Any) -> RobotState | None:
     """The state of a robot, None where there is no robot. For the thread of the run."""
     if robot is None:

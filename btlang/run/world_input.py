@@ -6,13 +6,14 @@ from collections import deque
 from collections.abc import Callable, Mapping
 
 from btlang.run.bus import INLINE
-from btlang.run.events import Asked, Event, PeriodPassed
+from btlang.run.events import Asked, Ended, Event, PeriodPassed
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
 _ANY = "*"
+_MOST = 100  # of what waits for the run: who sends more is not heard
 
 
 class WorldInput:
@@ -26,7 +27,7 @@ class WorldInput:
 
     def __init__(self, answers: Mapping[str, list[str]] | None = None) -> None:
         self._answers = {words.lower(): list(texts) for words, texts in (answers or {}).items()}
-        self._calls: deque[Callable[[Any], object]] = deque()
+        self._calls: deque[Callable[[Any], object]] = deque(maxlen=_MOST)
         self.question = ""
         """The open question, "" while there is none."""
 
@@ -41,6 +42,8 @@ class WorldInput:
                 self._calls.popleft()(event.robot)
             if not getattr(getattr(event.robot, "ears", None), "asking", ""):
                 self.question = ""
+        elif isinstance(event, Ended):
+            self.question = ""
 
     def type(self, text: str) -> None:
         """Somebody answers."""

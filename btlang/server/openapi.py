@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 from btlang.server.checking import ASKED, TextQuery
-from btlang.task.messages import schema
+from btlang.task.command_schema import schema
 from btlang.task.task import Kind
 
 TYPE_CHECKING = False

@@ -29,7 +29,7 @@ _VIEWER = (
 _OPERATOR = (
     messages.Submit, messages.Cancel, messages.Kill, messages.Interrupt, messages.Resume, messages.Skip,
     messages.Reorder, messages.Again, messages.AddSchedule, messages.RemoveSchedule, messages.Pause, messages.Step,
-    messages.Release, messages.Say, messages.Trail,
+    messages.Release, messages.Say, messages.Trail, messages.AnswerQuestion, messages.InviteVisitor,
 )  # fmt: skip
 _EDITOR = (messages.Put, messages.Delete)
 _ADMINISTRATOR = (messages.Down, messages.ChangeComponent)

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
+from math import inf
 
 from btlang.task.messages import wrong
 
 _UP = (
     "robot", "over", "simulate", "world", "keywords", "rules", "store", "durable", "keep", "record", "no_recordings",
-    "allow_keywords", "include_root", "speed", "serve", "host", "port", "join", "code",
+    "allow_keywords", "include_root", "speed", "serve", "host", "port", "join", "code", "answers",
 )  # fmt: skip
 _ADD = ("code", "priority", "label", "restart", "set", "keywords", "json")
 _ROBOT: Mapping[str, Sequence[str]] = {
     "up": _UP, "down": ("json",), "status": ("json",), "report": ("since", "json"), "stop": ("reason", "json"),
     "release": ("json",), "pause": ("json",), "resume": ("json",), "step": ("json",), "say": ("json",),
+    "visitor": ("json",),
     "unit": _UP, "check": (), "show": (),
     "backup": ("store",), "restore": ("store",), "invite": (), "revoke": (), "invited": ("json",),
 }  # fmt: skip
@@ -24,7 +26,7 @@ _TASK: Mapping[str, Sequence[str]] = {
     "resume": ("token", "json"), "skip": ("reason", "json"), "move": ("priority", "before", "json"),
     "again": ("json",), "schedule": (*_ADD, "every", "zone", "overlap", "missed", "within"),
     "schedules": ("json",), "unschedule": ("json",), "put": ("code", "kind", "json"),
-    "delete": ("kind", "json"), "library": ("kind", "json"), "trail": ("limit", "json"),
+    "delete": ("kind", "json"), "library": ("kind", "json"), "trail": ("limit", "json"), "answer": ("json",),
 }  # fmt: skip
 """By the acts, the options that mean something there; `--name` always does."""
 ROBOT_ACTS, TASK_ACTS = tuple(_ROBOT), tuple(_TASK)
@@ -33,8 +35,8 @@ COMPONENT_ACTS = ("list", "restart", "load", "unload")
 """What `btc components` does."""
 FLEET_ACTS = ("invite", "revoke", "invited")
 """Those of `btc robot` that are about a server's robots elsewhere."""
-_NO_WORDS = ("up", "down", "status", "report", "release", "pause", "resume", "step", "unit", "invited")
-_MOST_WORDS = {"list": 0, "schedules": 0, "trail": 0, "put": 2}
+_NO_WORDS = ("up", "down", "status", "report", "release", "pause", "resume", "step", "visitor", "unit", "invited")
+_MOST_WORDS = {"list": 0, "schedules": 0, "trail": 0, "put": 2, "answer": inf}
 """Where it isn't one."""
 _NOT_GIVEN = object()
 
@@ -95,6 +97,6 @@ def _check(options: argparse.Namespace, found: set[str], allowed: Sequence[str])
             raise wrong(options.act, f"{flag} doesn't apply to it")
 
 
-def _check_count(options: argparse.Namespace, most: int) -> None:
+def _check_count(options: argparse.Namespace, most: float) -> None:
     if len(options.item) > most:
-        raise wrong(options.act, f"'{options.item[most]}' is more than it takes")
+        raise wrong(options.act, f"'{options.item[int(most)]}' is more than it takes")

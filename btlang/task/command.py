@@ -86,6 +86,8 @@ def _command(options: argparse.Namespace) -> Command:
         return messages.Library(_word(options, "") if options.item else "", options.kind)
     if act == "trail":
         return messages.Trail() if options.limit is None else messages.Trail(options.limit)
+    if act == "answer":
+        return messages.AnswerQuestion(" ".join(options.item))
     if act == "delete":
         return messages.Delete(_word(options, f"the name of a {options.kind}"), options.kind)
     number = _number(options)

@@ -11,12 +11,13 @@ from contextlib import suppress
 from btlang.api import Mission
 from btlang.engine.status import IDLE, NAMES
 from btlang.run.bus import INLINE
-from btlang.run.events import LOGGED, Event, PeriodPassed, StatusesChanged
+from btlang.run.events import LOGGED, DoorMoved, Event, PeriodPassed, StatusesChanged
 from btlang.run.json_log import as_json
-from btlang.run.robot_state import RobotState, asked, rounded_scan
+from btlang.run.robot_state import RobotState, Whereabouts, asked, rounded_scan
 from btlang.session import Run
 from btlang.task.allowance import Allowance
 from btlang.task.database import StoreError
+from btlang.task.map_now import MapNow
 from btlang.task.store import Store
 from btlang.task.task import Task
 
@@ -48,7 +49,8 @@ class Feed:
     """`sinks` makes the sinks of a run; `watch` tells what happens, beginning with what is now.
 
     `robot` gives what keeps the robot from working, `words` are where its words and its world are, `world` is its map
-    where it has one, `recordings` the folder of its recordings, "" for none, `parts` gives its components and devices.
+    where it has one, `recordings` the folder of its recordings, "" for none, `parts` gives its components and devices,
+    `question` gives what the robot is asking, "" for nothing.
     Methods may be called from any thread.
     """
 
@@ -60,10 +62,12 @@ class Feed:
         world: World | None = None,
         recordings: str = "",
         parts: Callable[[], dict[str, Any]] = dict,
+        question: Callable[[], str] = str,
     ) -> None:
-        self._recordings, self._look_at_parts = recordings, parts
+        self._recordings, self._look_at_parts, self._question = recordings, parts, question
         self._parts = parts()
-        self._store, self._robot, self._words, self._world = store, robot, words, world
+        self._store, self._robot, self._words = store, robot, words
+        self._map = None if world is None else MapNow(world)
         self._watchers: list[_Watcher] = []
         self._current: _Watched | None = None
         self._state: RobotState | None = None
@@ -111,6 +115,8 @@ class Feed:
         """In the thread of the run."""
         if isinstance(event, PeriodPassed):
             self._state = event.state
+            if self._map is not None:
+                self._map.look(event.robot)
             if self._watchers:
                 self._take_way(asked(lambda: event.robot.way) or ())
             if self._watchers and event.wall >= self._next_scan:
@@ -119,6 +125,8 @@ class Feed:
                 self._parts = self._look_at_parts()
         elif isinstance(event, StatusesChanged):
             watched.changed = event.wall
+        elif isinstance(event, DoorMoved) and self._map is not None:
+            self._map.move_door(event)
         for watcher in tuple(self._watchers):
             if isinstance(event, LOGGED):
                 watcher.events.append((watched, event))
@@ -161,9 +169,16 @@ class Feed:
         if self._parts != watcher.parts:
             watcher.parts = self._parts
             yield {"type": "components", **self._parts}
-        if self._world is not None and not watcher.has_map:
-            watcher.has_map = True
-            yield {"type": "map", **self._world.as_map()}
+        if self._map is not None and watcher.world is not self._map.world:
+            watcher.world = self._map.world
+            yield {"type": "map", **watcher.world.as_map()}
+        things = () if self._state is None else self._state.things
+        if things != watcher.things:
+            watcher.things = things
+            yield {"type": "things", "things": things}
+        if (question := self._question()) != watcher.question:
+            watcher.question = question
+            yield {"type": "asking", "text": question}
         if self._scan != watcher.scan:
             watcher.scan = self._scan
             yield {"type": "scan", "ranges": self._scan, "pose": self._scanned_from}
@@ -182,7 +197,9 @@ class _Watcher:
         self.events: deque[tuple[_Watched, Event]] = deque(maxlen=_MOST_EVENTS)
         self.robot: dict[str, Any] = {}
         self.parts: dict[str, Any] = {"components": [], "devices": []}
-        self.has_map = False
+        self.world: World | None = None
+        self.things: tuple[Whereabouts, ...] = ()
+        self.question = ""
         self.scan: list[float | None] = []
         self.way: list[list[float]] = []
         self.run = ""

@@ -36,6 +36,7 @@ from btlang.task.report import report
 from btlang.task.schedule_handler import ScheduleHandler
 from btlang.task.store import Store
 from btlang.task.task import ACTIVE, FINAL, WAITING, Act, Ending, MissionText, Restart, State, Task
+from btlang.task.world_handler import WorldHandler
 from btlang.text.escaping import one_line
 from btlang.text.source import NOWHERE
 
@@ -43,6 +44,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.run.world_input import WorldInput
     from btlang.session import Session
 
 _BEGINNING = 3.0  # seconds of real time that a task may take from its claim to its first tick
@@ -52,7 +54,7 @@ _MOMENT = 0.01
 class Handler:
     """`handle` is for any thread. `admit` reads a mission for this robot and refuses what it can't do, with all
     reasons (MissionError); `now` gives the time since 1970, `down` ends the process, `needs` is what a mission needs,
-    `overs` is what robot files of others may run on.
+    `overs` is what robot files of others may run on, `world_input` a sink of all runs.
     """
 
     def __init__(
@@ -67,12 +69,13 @@ class Handler:
         down: Callable[[], object],
         needs: Callable[[MissionText], tuple[str, ...]],
         overs: Collection[str],
+        world_input: WorldInput,
     ) -> None:
         self._store, self._manager, self._executor, self._emergency = store, manager, executor, emergency
         self._session, self._admit, self._now, self._down, self._needs = session, admit, now, down, needs
         schedules = ScheduleHandler(store, executor.wake, self._mission, now)
         library = LibraryHandler(store, admit, now, getattr(session.robot, "body", None), overs)
-        components = ComponentHandler(session)
+        components, world = ComponentHandler(session), WorldHandler(session, world_input)
         self._does: dict[type[Command], Callable[[Any, str], Answer]] = {
             messages.Submit: self._submit, messages.List: self._list, messages.Show: self._show,
             messages.Cancel: partial(self._end, State.CANCELED), messages.Kill: partial(self._end, State.KILLED),
@@ -84,7 +87,8 @@ class Handler:
             messages.Release: self._release, messages.Say: self._say, messages.Down: self._end_all,
             messages.Status: self._status, messages.Report: self._report, messages.Trail: self._trail,
             messages.Components: components.list, messages.ChangeComponent: components.change,
-            messages.Picture: components.picture,
+            messages.Picture: components.picture, messages.AnswerQuestion: world.answer,
+            messages.InviteVisitor: world.invite,
         }  # fmt: skip
 
     def handle(self, command: Command, person: str) -> Answer:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 
 from btlang.api import Mission
@@ -13,6 +13,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.robots.needs import check_body, needs_of_tree
 from btlang.robots.registry import runs_on
 from btlang.robots.zone_check import check_zones
+from btlang.run.world_input import WorldInput
 from btlang.session import Run, Session
 from btlang.task.component_handler import component_data
 from btlang.task.emergency import EmergencyStop, latch_path
@@ -26,6 +27,7 @@ from btlang.task.missions import MissionReader
 from btlang.task.recordings import Recordings
 from btlang.task.store import open_store
 from btlang.task.task import MissionText, Task
+from btlang.task.world_handler import takes_visitors
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
@@ -53,7 +55,7 @@ class TaskLayer:
     the robot, and begins at the moment `begins` (seconds since 1970). `recordings` is the folder for the recordings of
     tasks, None for none. Tasks that are over are kept for `keeps` seconds. `trouble` gets what goes wrong, for people.
     `sinks` makes sinks for each run (None: of the house rules between tasks), `down` is what the command of that name
-    calls. Raises MissionError.
+    calls. `answers` to the robot's questions are those of WorldInput. Raises MissionError.
     """
 
     def __init__(
@@ -73,6 +75,7 @@ class TaskLayer:
         trouble: Callable[[str], object] = lambda text: None,
         down: Callable[[], object] = lambda: None,
         sinks: Callable[[Task | None, Mission, Run], list[Sink]] = lambda task, mission, run: [],
+        answers: Mapping[str, list[str]] | None = None,
     ) -> None:
         os.makedirs(folder, mode=0o700, exist_ok=True)
         self.reader = reader or MissionReader()
@@ -88,9 +91,11 @@ class TaskLayer:
         self._real = speed == "real"
         self.emergency = EmergencyStop(latch_path(folder), self.session.emergency_stop)
         knows = self.reader.world is not None or not getattr(self.session.robot, "moves_by_itself", True)
+        self.world_input = WorldInput(answers)
         self.feed = Feed(
             self.store, self._hindrances, self.reader.words, self.session.world if knows else None,
             "" if recordings is None else os.path.abspath(recordings), partial(component_data, self.session),
+            lambda: self.world_input.question,
         )  # fmt: skip
         self.emergency.listeners.append(self.feed.wake)
         self.manager = Manager(self.store, keeps, self._needs)
@@ -99,7 +104,7 @@ class TaskLayer:
             missions=self.reader.read, now=self.now, trouble=trouble,
             recordings=None if recordings is None else Recordings(recordings, trouble),
             speed=speed, idle_rate=20.0 if self._real else _SLOW,
-            sinks=lambda *run: [*self.feed.sinks(*run), *sinks(*run)],
+            sinks=lambda *run: [self.world_input, *self.feed.sinks(*run), *sinks(*run)],
         )  # fmt: skip
         self.handler = Handler(
             self.store,
@@ -112,6 +117,7 @@ class TaskLayer:
             down,
             self._needs,
             {"simulated": None, _over(robot, over): None},
+            self.world_input,
         )
 
     def now(self) -> float:
@@ -179,7 +185,7 @@ class TaskLayer:
     def _hindrances(self) -> dict[str, Any]:
         return {
             "stopped": self.emergency.reason, "paused": self.executor.is_paused,
-            "hindrance": self.executor.hindrance(),
+            "hindrance": self.executor.hindrance(), "visitors": takes_visitors(self.session),
         }  # fmt: skip
 
     def _admitted(self, text: MissionText) -> Mission:

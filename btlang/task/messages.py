@@ -1,6 +1,6 @@
 """What may be asked of a robot: a class for each command. The CLI, the library, ROS 2 and servers all send these.
 
-As JSON a command is an object with its name under "command" and its fields; `schema` describes them all.
+As JSON a command is an object with its name under "command" and its fields; `command_schema.py` describes them all.
 """
 
 from __future__ import annotations
@@ -221,6 +221,19 @@ class Say(Command):
     text: str
 
 
+class AnswerQuestion(Command):
+    """The robot hears this text after its question. Refused if it isn't asking anything. At most 500 characters."""
+
+    tag = "answer"
+    text: str
+
+
+class InviteVisitor(Command):
+    """Somebody comes to the robot, which must be in a simulated world: the next one who is to come, else a guest."""
+
+    tag = "visitor"
+
+
 class Down(Command):
     """The robot's process ends, as after SIGTERM."""
 
@@ -282,8 +295,8 @@ COMMANDS: dict[str, type[Command]] = {
     kind.tag: kind
     for kind in (
         Submit, List, Show, Cancel, Kill, Interrupt, Resume, Skip, Reorder, Again, AddSchedule, RemoveSchedule,
-        Schedules, Put, Delete, Library, Pause, Step, EmergencyStop, Release, Say, Down, Status, Report,
-        Trail, Components, ChangeComponent, Picture,
+        Schedules, Put, Delete, Library, Pause, Step, EmergencyStop, Release, Say, AnswerQuestion, InviteVisitor,
+        Down, Status, Report, Trail, Components, ChangeComponent, Picture,
     )
 }  # fmt: skip
 """By their names."""
@@ -336,29 +349,8 @@ def as_json(command: Command) -> dict[str, Any]:
     return written
 
 
-def schema() -> dict[str, Any]:
-    """The JSON schema (draft 2020-12) of a command, made from the classes."""
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "A command for a robot of btlang",
-        "oneOf": [_described(kind) for kind in COMMANDS.values()],
-    }
-
-
-def _described(kind: type[Command]) -> dict[str, Any]:
-    fields = {field: _TYPES[kind.__annotations__[field]][1] for field in kind.fields}
-    return {
-        "title": kind.__name__,
-        "description": " ".join((kind.__doc__ or "").split()),
-        "type": "object",
-        "properties": {"command": {"const": kind.tag}, **fields},
-        "required": ["command", *(field for field in kind.fields if field not in kind.field_defaults)],
-        "additionalProperties": False,
-    }
-
-
 _NUMBER, _TEXT, _TEXTS = {"type": "number"}, {"type": "string"}, {"type": "array", "items": {"type": "string"}}
-_TYPES: dict[str, tuple[Any, dict[str, Any]]] = {
+FIELD_TYPES: dict[str, tuple[Any, dict[str, Any]]] = {
     "str": (str, _TEXT),
     "int": (int, {"type": "integer"}),
     "int | None": (int | None, {"type": ["integer", "null"]}),
@@ -372,7 +364,7 @@ _TYPES: dict[str, tuple[Any, dict[str, Any]]] = {
 
 def _checked(kind: type[Command], field: str, value: Any) -> Any:
     annotation = kind.__annotations__[field]
-    expected, described = _TYPES[annotation]
+    expected, described = FIELD_TYPES[annotation]
     texts = annotation == "tuple[str, ...]"
     if annotation in ("int", "int | None") and isinstance(value, float) and value.is_integer():
         value = int(value)  # JSON knows one kind of number

@@ -46,6 +46,7 @@ def add_layer_options(parser: argparse.ArgumentParser) -> None:
         "--keep", type=between(0.0, 100_000.0), metavar="DAYS", help="how long ended tasks are kept (default: 90)"
     )
     parser.add_argument("--record", metavar="FOLDER", help="where missions are recorded (default: beside the store)")
+    parser.add_argument("--answers", metavar="FILE", help="answer what the robot asks from a TOML file")
     parser.add_argument("--no-recordings", action="store_true", help="don't record missions")
     parser.add_argument(
         "--allow-keywords",

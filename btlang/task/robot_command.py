@@ -15,6 +15,7 @@ from urllib.parse import parse_qs, urlsplit
 from btlang.components.file_command import serve_file
 from btlang.components.words import robot_words
 from btlang.diagnostics.errors import MissionError
+from btlang.robots.answers_file import read_answers
 from btlang.robots.registry import connector, runs_in_real_time
 from btlang.run.emergency import emergency_signal
 from btlang.task import messages
@@ -90,7 +91,7 @@ def serve(options: argparse.Namespace) -> int:
     commands: dict[str, Callable[[], messages.Command]] = {
         "down": messages.Down, "status": messages.Status, "report": partial(messages.Report, options.since),
         "release": messages.Release, "pause": messages.Pause, "resume": messages.Resume,
-        "step": messages.Step, "say": partial(messages.Say, " ".join(options.item)),
+        "step": messages.Step, "say": partial(messages.Say, " ".join(options.item)), "visitor": messages.InviteVisitor,
     }  # fmt: skip
     with Client(options.name) as client:
         return tell(client.send(commands[act]()), options.json)
@@ -104,6 +105,7 @@ def layer_options(options: argparse.Namespace, name: str) -> dict[str, Any]:
         "folder": folder, "store": options.store or os.path.join(folder, "tasks.db"), "rules": options.rules,
         "durable": options.durable, "recordings": recordings,
         "keeps": KEPT if options.keep is None else options.keep * DAY,
+        "answers": options.answers and read_answers(options.answers),
     }  # fmt: skip
 
 
@@ -174,7 +176,19 @@ def _from_library(options: argparse.Namespace, kept: Mapping[str, Any]) -> tuple
 def _unit(options: argparse.Namespace) -> str:
     """A unit of systemd that brings the robot up with these options."""
     words = [sys.executable, "-m", "btlang", "robot", "up"]
-    for option in ("name", "robot", "over", "world", "rules", "store", "record", "include_root", "join", "code"):
+    for option in (
+        "name",
+        "robot",
+        "over",
+        "world",
+        "rules",
+        "store",
+        "record",
+        "include_root",
+        "join",
+        "code",
+        "answers",
+    ):
         value = getattr(options, option)
         if value and value != "simulated":
             words += [f"--{option.replace('_', '-')}", os.path.abspath(value) if os.path.exists(value) else value]

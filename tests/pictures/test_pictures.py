@@ -10,12 +10,15 @@ import time
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 from PIL import Image
 
 import btlang
 from btlang.cli import main
+from btlang.pictures.people import PERSON, WALKED
 from btlang.pictures.tree_picture import draw_tree
+from tests.world.worlds import LIVELY
 
 ROOT = Path(__file__).parent.parent.parent
 SVG = "{http://www.w3.org/2000/svg}"
@@ -60,6 +63,26 @@ def test_a_run_as_gif(tmp_path: Path) -> None:
         assert image.convert("RGB").tobytes() != first
         assert image.info["loop"] == 0
     assert path.stat().st_size < 2_000_000
+
+
+def test_people_on_pictures(tmp_path: Path) -> None:
+    (tmp_path / "lively.toml").write_text(LIVELY)
+    mission = 'ask Olga "Coffee?" then close the door then wait 9 s'
+    options = ["--world", tmp_path / "lively.toml", "--seed", "3", "--record", tmp_path / "run.mcap"]
+    for name in ("a.svg", "a.gif"):
+        assert run(mission, *options, "--picture", tmp_path / name) == 0
+    assert btc("replay", tmp_path / "run.mcap", "--lines", "--speed", "max", "--picture", tmp_path / "b.svg") == 0
+    still = (tmp_path / "a.svg").read_bytes()
+    assert WALKED.encode() in still
+    assert len((tmp_path / "b.svg").read_bytes()) == pytest.approx(len(still), rel=0.1)
+    wanted = [int(PERSON[at : at + 2], 16) for at in (1, 3, 5)]
+    with Image.open(tmp_path / "a.gif") as image:
+        counts = []
+        for frame in range(image.n_frames):  # type: ignore[attr-defined]
+            image.seek(frame)
+            pixels = np.asarray(image.convert("RGB"), dtype=int)
+            counts.append(int((abs(pixels - wanted).max(axis=2) < 12).sum()))
+    assert counts[0] < max(counts) / 2  # nobody who walks is seen yet
 
 
 def test_a_short_run_as_gif(tmp_path: Path) -> None:

@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+import pytest
+
+from btlang.api import parse_tree
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.engine.status_trace import Changes
+from btlang.pictures.people import place_of, sighting_at, ways
 from btlang.pictures.run_picture import numbers
-from btlang.pictures.run_record import RunRecord
+from btlang.pictures.run_record import RunRecord, Sighting
 from btlang.pictures.statuses import LastStatuses, by_definition
+from btlang.robots.geometry import Point
+from btlang.robots.world_file import load_world
 from btlang.run.events import StatusesChanged
+from btlang.session import Session
+from btlang.text.source import Source
 from btlang.tree.node import Node, Tree
 from tests.trial import Trial
+from tests.world.worlds import LIVELY
 
 
 def recorded(mission: str, time_limit: float | None = None) -> tuple[RunRecord, dict[str, int]]:
@@ -68,6 +77,42 @@ def test_bumps_and_speech_are_marked() -> None:
     assert record.marks[0].text == "hello"
     assert record.ended is not None
     assert record.ended[0] == FAILURE
+
+
+def test_people_doors_and_what_was_heard() -> None:
+    text = 'ask Olga "Coffee?" then call the staff saying "One coffee" then close the door then wait 10 s'
+    record, world = RunRecord(str, lambda node: True), Source(LIVELY, "lively.toml")
+    with Session(world=world) as session:
+        session.run(parse_tree(text, world=world), speed="max", sinks=[record], seed=3)
+    vera = record.sightings["Vera"]
+    assert vera[0] == Sighting(0.0, None, False)
+    assert len(vera) < 100
+    assert {each.seen for each in vera} == {True, False}
+    [way] = ways(vera)
+    assert way[0] == pytest.approx((9, 3.2), abs=0.2)
+    assert way[-1] == pytest.approx((3, 3.2), abs=0.3)
+    assert sighting_at(vera, -1.0).point is None
+    passing = next(each for each in vera if each.point is not None and each.point[0] < 6)
+    assert sighting_at(vera, passing.t + 0.01).point == pytest.approx(passing.point, abs=0.05)
+    assert [(name, is_open) for _, name, is_open in record.doors] == [("door", False)]
+    heard = [(mark.kind, mark.text, mark.who) for mark in record.marks]
+    assert heard == [
+        ("say", "Coffee?", ""),
+        ("ask", "Coffee?", "Olga"),
+        ("hear", "yes", "Olga"),
+        ("call", "One coffee", ""),
+    ]
+    assert place_of(load_world(world), record, "Olga", 5.0) == (2.4, 2.8)
+    assert place_of(load_world(world), record, "Nobody", 5.0) is None
+
+
+def test_who_leaves_and_comes_back_walked_twice() -> None:
+    def seen(*points: Point | None) -> list[Sighting]:
+        return [Sighting(float(t), point, True) for t, point in enumerate(points)]
+
+    assert ways(seen((0, 0), (0.5, 0), None, (4, 0), (4, 0.5))) == [[(0, 0), (0.5, 0)], [(4, 0), (4, 0.5)]]
+    assert ways(seen((0, 0), (0, 0), (9, 9))) == []  # it was put there
+    assert ways([]) == []
 
 
 def test_last_statuses() -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
+from math import dist
 from pathlib import Path
 
 import pytest
@@ -13,6 +15,8 @@ from btlang.diagnostics.errors import MissionError
 from btlang.recording.film import Film
 from btlang.recording.open import opened
 from btlang.recording.trial import tried
+from btlang.text.source import Source
+from tests.world.worlds import LIVELY
 
 TEXT = """\
 greet is say "hello" then wave
@@ -52,6 +56,18 @@ def test_a_trial() -> None:
     assert data["map"]["places"]
     assert data["stopped"] == ""
     assert any(event.get("event") == "say" for event in data["events"])
+
+
+def test_people_in_a_film() -> None:
+    data = tried(parse_tree("wait 28 s", world=Source(LIVELY, "lively.toml")), seed=3)
+    places = [row for row in data["things"] if row[1] == "Vera"]
+    assert places[0] == [0.0, "Vera", None, None, False]
+    assert places[1][2:4] == pytest.approx([9, 3.2], abs=0.3)
+    assert any(seen for *_, seen in places)
+    assert min(after[0] - before[0] for before, after in pairwise(places[:-1])) > 0.09
+    ways = [dist(a[2:4], b[2:4]) for a, b in pairwise(places) if None not in (*a[2:4], *b[2:4])]
+    assert max(ways) < 0.3
+    assert {event["event"] for event in data["events"]} >= {"come", "see"}
 
 
 def test_a_trial_without_an_end() -> None:

@@ -24,10 +24,13 @@ from mcap.stream_reader import StreamReader
 import btlang
 from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
+from btlang.recording.channels import THINGS
 from btlang.recording.reader import read_recording
 from btlang.run.events import Ended, PeriodPassed, Said, Sampled
+from btlang.text.source import Source
 from tests.profiles import amount, searches
 from tests.recording.runs import changes, recorded, replayed
+from tests.world.worlds import LIVELY
 
 ROUND = """
 set visits to 0
@@ -56,6 +59,20 @@ def test_the_robot_and_the_values_are_there_at_each_moment(tmp_path: Path) -> No
     states = [[(e.t, e.ticks, e.state) for e in found if isinstance(e, PeriodPassed)] for found in (again, events)]
     assert states[0] == states[1]
     assert len(states[0]) > 100
+
+
+def test_people_are_there_at_each_moment_and_kept_only_where_they_change(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    mission, events = recorded("wait 10 s then close the door", path, world=Source(LIVELY, "lively.toml"))
+    states = [e.state for e in events if isinstance(e, PeriodPassed)]
+    assert [e.state for e in replayed(mission, path) if isinstance(e, PeriodPassed)] == states
+    with path.open("rb") as file:
+        data = [
+            json.loads(m.data) for _, channel, m in make_reader(file).iter_messages() if channel.topic == THINGS.topic
+        ]
+    assert data[0]["things"] == [["cup", 8.5, 3.6, False], ["Vera", None, None, False]]
+    assert [name for each in data[1:] for name, *_ in each["things"] if name != "Vera"] == ["cup"]  # seen at the door
+    assert len(data) < len(states)
 
 
 def test_values_and_scans_are_sampled(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -221,6 +221,16 @@ def test_options_may_stand_anywhere(robot: TaskLayer, btc: Btc) -> None:
     assert said == ["hi there", "--json"]
 
 
+def test_an_answer_and_a_visitor(robot: TaskLayer, btc: Btc) -> None:
+    assert "The robot isn't asking anything." in btc("task", "answer", "yes")[1]
+    ask(robot, "resume")
+    submit(robot, 'ask "Shall I go?" then wait 1 h')
+    wait_until(lambda: robot.world_input.question)
+    assert btc("task", "answer", "yes", "please") == (0, "The robot hears that.\n")
+    wait_until(lambda: robot.session.robot.ears.answer == "yes please")
+    assert btc("robot", "visitor") == (0, "A visitor comes.\n")
+
+
 def test_values_that_the_mission_has_are_given(robot: TaskLayer, btc: Btc) -> None:
     mission = 'repeat twice: increase my visitors then print "{my visitors} for {guide}"'
     assert btc("task", "add", "-c", mission, "--set", "My Visitors=3", "--set", "guide=Ann")[0] == 0

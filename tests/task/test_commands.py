@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from btlang.diagnostics.errors import MissionError
 from btlang.task import messages
-from btlang.task.messages import COMMANDS, as_json, read_command, schema
+from btlang.task.command_schema import schema
+from btlang.task.messages import COMMANDS, as_json, read_command
 from tests.profiles import searches
 
 SCHEMA = Path(messages.__file__).parent / "commands.schema.json"

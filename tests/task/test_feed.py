@@ -16,10 +16,13 @@ import pytest
 
 from btlang.task.feed import _MOST_CHANGES
 from btlang.task.layer import TaskLayer
+from btlang.task.missions import MissionReader
 from btlang.task.paths import USUAL_NAME, socket_path
 from btlang.task.task import FINAL, State
+from btlang.text.source import Source
+from tests.world.worlds import LIVELY
 
-from .layers import ask, layer_in, robot_up, submit, wait_for
+from .layers import ask, layer_in, refusal, robot_up, submit, wait_for
 from .places import a_task
 
 
@@ -87,6 +90,49 @@ def test_the_way_that_it_follows(tmp_path: Path) -> None:
         way = watcher.wait(lambda message: message["type"] == "way")["points"]
         assert hypot(way[-1][0] - 6.0, way[-1][1] - 6.2) < 0.1
         watcher.wait(lambda message: message["type"] == "way" and not message["points"])
+
+
+def test_people_doors_and_zones(tmp_path: Path) -> None:
+    with layer_in(tmp_path, reader=MissionReader((), Source(LIVELY, "lively.toml"))) as layer:
+        watcher = Watcher(layer)
+        vera = watcher.wait(
+            lambda m: m["type"] == "things" and any(each[0] == "Vera" and each[1] for each in m["things"])
+        )
+        assert all(name in ("Vera", "cup") for name, *_ in vera["things"])
+        submit(layer, "close the door then close the wet floor then open the stairs then wait 5 min")
+        watcher.wait(lambda m: m["type"] == "map" and not m["doors"][0]["open"])
+        watcher.wait(lambda m: m["type"] == "map" and [each["kind"] for each in m["zones"]] == ["keep out", "open"])
+        late = Watcher(layer)
+        assert not late.wait(lambda m: m["type"] == "map")["doors"][0]["open"]
+        late.wait(lambda m: m["type"] == "things")
+
+
+def test_a_question_and_its_answer(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        watcher = Watcher(layer)
+        assert "isn't asking" in refusal(layer, "answer", text="yes")
+        number = submit(layer, 'ask "Shall I go?" then if the answer is yes, say "Off I go"')
+        assert watcher.wait(lambda m: m["type"] == "asking")["text"] == "Shall I go?"
+        late = Watcher(layer)
+        assert late.wait(lambda m: m["type"] == "asking")["text"] == "Shall I go?"
+        for text in ("", "  ", "x" * 501):
+            assert "1 to 500" in refusal(layer, "answer", text=text)
+        assert ask(layer, "answer", text=" Yes, please ")["question"] == "Shall I go?"
+        watcher.wait(lambda m: m["type"] == "asking" and not m["text"])
+        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        heard = [m["event"] for m in watcher.of("event") if m["event"]["event"] in ("hear", "say")]
+        assert [each["text"] for each in heard] == ["Shall I go?", "Yes, please", "Off I go"]
+
+
+def test_answers_from_a_file_and_a_visitor(tmp_path: Path) -> None:
+    with layer_in(tmp_path, answers={"coffee": ["yes"], "*": ["no"]}) as layer:
+        watcher = Watcher(layer)
+        mission = 'ask "Some coffee?", check that the answer is yes, ask "Tea?" then check that the answer is no'
+        assert wait_for(layer, submit(layer, mission), *FINAL).state is State.COMPLETED
+        assert watcher.wait(lambda m: m["type"] == "robot")["visitors"] is True
+        ask(layer, "visitor")
+        come = watcher.wait(lambda m: m.get("event", {}).get("event") == "come")["event"]["name"]
+        watcher.wait(lambda m: m["type"] == "things" and come in [name for name, *_ in m["things"]])
 
 
 def test_who_comes_back_misses_no_change(tmp_path: Path) -> None:

@@ -36,6 +36,14 @@ await visit(base, async (page, context) => {
   await page.waitForSelector(".latch", { state: "detached" });
   await page.setViewportSize({ width: 1280, height: 800 });
 
+  await submit(page, 'ask "Coffee?" then wait 10 minutes');
+  await page.waitForSelector(".asks:has-text('Coffee?')");
+  await accessible(page, "question");
+  await page.fill(".question input", "Yes, please");
+  await page.click(".question .primary");
+  await page.waitForSelector(".question form", { state: "hidden" });
+  await page.waitForSelector(".log li:has-text('hears “Yes, please”')");
+
   // Without the socket the request alone stops it, also by the key.
   await page.evaluate(() => {
     window.isCut = true;

@@ -13,12 +13,12 @@ from pathlib import Path
 from tests.server.doors import PASSWORD, Program, free_port
 from tests.web.packages import LONG
 
-USERS = (("olga", "operator"), ("ed", "editor"), ("ann", "administrator"))
+USERS = (("vic", "viewer"), ("olga", "operator"), ("ed", "editor"), ("ann", "administrator"))
 
 
 @contextmanager
 def served(*options: str, prepare: Callable[[Path], object] | None = None) -> Iterator[str]:
-    """The address of `btc robot up --serve`, with the users olga, ed and ann; `prepare` gets its data folder before."""
+    """The address of `btc robot up --serve`, with all `USERS`; `prepare` gets its data folder before."""
     with tempfile.TemporaryDirectory(prefix="bt") as folder:
         environment = {**os.environ, "XDG_DATA_HOME": f"{folder}/data", "XDG_RUNTIME_DIR": folder}
         if prepare is not None:

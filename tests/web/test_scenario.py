@@ -14,6 +14,7 @@ from tests.profiles import amount, only_long
 from tests.server.doors import PASSWORD, Program
 from tests.web.packages import installed, node
 from tests.web.served import served
+from tests.world.worlds import LIVELY
 
 HERE = Path(__file__).parent
 
@@ -51,6 +52,14 @@ def test_components_devices_and_a_camera(tmp_path: Path) -> None:
     robot = robot_file(tmp_path, f"{machine()}\n{eye}{sonar}")
     with served("--robot", robot) as address:
         node(HERE / "parts.mjs", address, PASSWORD, str(tmp_path), folder=installed(HERE))
+
+
+@only_long
+def test_people_zones_doors_and_questions(page: Path, tmp_path: Path) -> None:
+    world = tmp_path / "lively.toml"
+    world.write_text(LIVELY)
+    with served("--world", str(world), "--speed", "2") as address:
+        node(HERE / "people.mjs", address, PASSWORD, str(tmp_path), folder=installed(HERE))
 
 
 @only_long

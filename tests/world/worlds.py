@@ -71,3 +71,37 @@ x = {east}
 y = {heights[1]}
 walks = [[1, 1]]
 """)
+
+
+LIVELY = (
+    TWO_ROOMS
+    + """
+objects = [{ name = "cup", x = 8.5, y = 3.6, known = false }]
+[[zones]]
+name = "wet floor"
+kind = "slow"
+speed = 0.2
+points = [[2.2, 0.3], [4.2, 0.3], [4.2, 1.3], [2.2, 1.3]]
+[[zones]]
+name = "stairs"
+kind = "keep out"
+points = [[6, 0.3], [7.5, 0.3], [7.5, 1.2], [6, 1.2]]
+[[doors]]
+name = "door"
+from = [5, 1.5]
+to = [5, 2.5]
+[[people]]
+name = "Vera"
+x = 9
+y = 3.2
+comes = 2
+walks = [[6.2, 2], [3, 3.2]]
+leaves = 25
+[[people]]
+name = "Olga"
+x = 2.4
+y = 2.8
+answers = { "coffee" = "yes" }
+"""
+)
+"""The two rooms with zones, a door, somebody who comes and goes, and somebody who answers."""

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 
     Handle = Callable[[Command | dict[str, Any]], Answer]
 
-_PLAIN = (messages.Pause, messages.Step, messages.Release, messages.Status, messages.Components)
+_PLAIN = (
+    messages.Pause, messages.Step, messages.Release, messages.Status, messages.Components, messages.InviteVisitor,
+)  # fmt: skip
 _OF_A_TASK = (
     messages.Cancel, messages.Kill, messages.Interrupt, messages.Resume, messages.Skip, messages.Again, messages.Show,
 )  # fmt: skip

@@ -12,9 +12,28 @@ export interface WorldMap {
   boxes: { x: number; y: number; width: number; height: number }[];
   places: { name: string; x: number; y: number; facing: number | null }[];
   objects: { name: string; x: number; y: number; radius: number }[];
-  people: { name: string; x: number; y: number; radius: number }[];
+  people: { name: string; x: number; y: number; radius: number; walks?: Point[] }[];
+  zones?: Zone[];
+  doors?: Door[];
   dock: { x: number; y: number } | null;
 }
+
+/** `kind` is "keep out", "slow", or "open" for one that is closed otherwise. */
+export interface Zone {
+  name: string;
+  kind: string;
+  points: Point[];
+}
+
+export interface Door {
+  name: string;
+  start: Point;
+  end: Point;
+  open: boolean;
+}
+
+/** Where somebody or something is (metres, null where it isn't there), and whether the robot sees it. */
+export type Thing = [name: string, x: number | null, y: number | null, seen: boolean];
 
 /** A mission under way, or the latest one. `task` is 0 for the house rules between tasks. */
 export interface Run {
@@ -58,8 +77,12 @@ export class Robot {
   up = false;
   /** The server says that it can't reach it. */
   away = false;
-  state: { stopped: string; paused: boolean; hindrance: string; pose: [number, number, number] | null; battery: number | null; left: string | null; right: string | null } | null = null;
+  state: { stopped: string; paused: boolean; hindrance: string; pose: [number, number, number] | null; battery: number | null; left: string | null; right: string | null; visitors?: boolean } | null = null;
   map: WorldMap | null = null;
+  /** Those that may be elsewhere than the map has them. */
+  things: Thing[] = [];
+  /** What it asks, "" for nothing. */
+  asking = "";
   parts: { components: Component[]; devices: Device[] } = { components: [], devices: [] };
   /** What its scanner saw, counter-clockwise from straight ahead, and where it was then. */
   scan: { ranges: (number | null)[]; pose: [number, number, number] } | null = null;
@@ -82,7 +105,7 @@ export class Robot {
   constructor(readonly name: string) {}
 }
 
-export type Kind = "up" | "away" | "run" | "statuses" | "robot" | "map" | "scan" | "way" | "components" | "event" | "change" | "offline";
+export type Kind = "up" | "away" | "run" | "statuses" | "robot" | "map" | "things" | "asking" | "scan" | "way" | "components" | "event" | "change" | "offline";
 export type Watcher = (robot: Robot, kind: Kind, news: News | null) => void;
 
 /** All robots by their names. Watchers are called after each message has been taken in. */
@@ -113,12 +136,16 @@ export class Fleet {
 
   take(news: News): void {
     const robot = this.get(news.robot);
-    if (news.type === "up") [robot.up, robot.fresh, robot.away] = [true, true, false];
-    else if (news.type === "away") {
+    if (news.type === "up") {
+      [robot.up, robot.fresh, robot.away] = [true, true, false];
+      [robot.things, robot.asking] = [[], ""];
+    } else if (news.type === "away") {
       [robot.up, robot.away] = [false, true];
       robot.state = null;
     } else if (news.type === "robot") this.state(robot, news);
     else if (news.type === "map") robot.map = news as unknown as WorldMap;
+    else if (news.type === "things") robot.things = news["things"];
+    else if (news.type === "asking") robot.asking = news["text"];
     else if (news.type === "scan") robot.scan = news["pose"] ? { ranges: news["ranges"], pose: news["pose"] } : null;
     else if (news.type === "way") robot.way = news["points"];
     else if (news.type === "components") robot.parts = { components: news["components"], devices: news["devices"] };

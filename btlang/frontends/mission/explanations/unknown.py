@@ -69,7 +69,8 @@ def explain_unknown(
             return _number_misfit(text, at, number, [vocabulary.types[kind]], "", "", kind, vocabulary)
     if number is not None or text.words[at][0] == '"':
         return diagnostic("BT019", text.span(at, end), example='say "hello"')
-    part = explain_fragment(text, at, end, _asks(before), vocabulary, context)
+    goes_on = bool(before) and before[-1].kind == "command" and _ends_in_a_bare_text(before[-1])  # `say still here`
+    part = None if goes_on else explain_fragment(text, at, end, _asks(before), vocabulary, context)
     return part or _unknown_phrase(text, at, end, vocabulary, definitions, before)
 
 

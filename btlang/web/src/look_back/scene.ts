@@ -1,6 +1,6 @@
 // A run at one moment: its tree, its map, its story, and the words of a node.
 import { fill, h, oncePerFrame } from "../dom";
-import { Robot, STATUSES, type Point, type Status, type WorldMap } from "../fleet";
+import { Robot, STATUSES, type Point, type Status, type Thing, type WorldMap } from "../fleet";
 import { t } from "../texts";
 import { TreeView, type TreeNode } from "../tree/tree_view";
 import { MapView } from "../watch/map";
@@ -14,6 +14,8 @@ export interface Film {
   nodes: (TreeNode & { start: number | null; end: number | null })[];
   statuses: number[][];
   robot: [t: number, x: number | null, y: number | null, heading: number | null, battery: number | null, left: string | null, right: string | null][];
+  things: [t: number, ...Thing][];
+  events: Record<string, any>[];
   story: [t: number, node: number, words: string][];
   map: WorldMap;
   why: string;
@@ -107,6 +109,15 @@ export class Scene {
       const [, x, y, heading, battery, left, right] = latest;
       robot.state = { stopped: "", paused: false, hindrance: "", pose: x === null || y === null ? null : [x, y, heading ?? 0], battery, left, right };
     }
+    const things = new Map<string, Thing>();
+    for (const [seconds, ...thing] of film.things) {
+      if (seconds > now) break;
+      things.set(thing[0], thing);
+    }
+    robot.things = [...things.values()];
+    const moved = film.events.filter((event) => event["event"] === "door" && event["t"] <= now);
+    const doors = new Map(moved.map((event) => [event["name"], event["open"]]));
+    robot.map = { ...film.map, doors: film.map.doors?.map((door) => ({ ...door, open: doors.get(door.name) ?? door.open })) };
     this.map.redraw();
   }
 

@@ -9,7 +9,7 @@ const SAID: Record<string, Key> = {
   RUNNING: "log.running", SUCCESS: "log.success", FAILURE: "log.failure", SKIPPED: "log.skipped",
   say: "log.say", print: "log.print", navigate: "log.navigate", choose: "log.choose", arrive: "log.arrive", bump: "log.bump",
   stuck: "log.stuck", stop: "log.stop", grasp: "log.grasp", release: "log.release", drop: "log.drop", dock: "log.dock",
-  undock: "log.undock", battery: "log.battery", fault: "log.fault", part: "log.part", warning: "log.warning", error: "log.error",
+  come: "log.come", leave: "log.leave", see: "log.see", give: "log.give", picture: "log.picture", call: "log.call", undock: "log.undock", battery: "log.battery", fault: "log.fault", part: "log.part", warning: "log.warning", error: "log.error",
 };
 const BAD = new Set(["FAILURE", "bump", "stuck", "drop", "battery", "fault", "warning", "error"]);
 
@@ -20,8 +20,18 @@ export function inWords(event: Record<string, any>): string {
     return event["outcome"] === "FAILURE" ? t("log.failed", { why: event["reason"] ?? "" }) : event["outcome"] === "SUCCESS" ? t("log.succeeded") : "";
   }
   if (event["event"] === "part" && !event["text"]) return "";
-  const key = SAID[event["event"]];
+  const key = SAID[event["event"]] ?? manner(event);
   return key ? t(key, event) : "";
+}
+
+/** The words of an event that says one of several things. */
+function manner(event: Record<string, any>): Key | undefined {
+  const { event: kind, who, text, open, on } = event;
+  if (kind === "hear") return who ? "log.hear_from" : "log.hear";
+  if (kind === "ask") return !text ? "log.listen" : who ? "log.ask_person" : "log.ask";
+  if (kind === "door") return open ? "log.door_open" : "log.door_closed";
+  if (kind === "switch") return on ? "log.switch_on" : "log.switch_off";
+  return undefined;
 }
 
 /** The log, of which only the newest lines are shown. New ones come at its end. */

@@ -1,7 +1,9 @@
-// The robot on its map, on a canvas: walls, boxes, places, people, objects, its way, and what its scanner sees.
+// The robot on its map, on a canvas: walls, zones, places, people, objects, its way, and what its scanner sees.
 import { h, oncePerFrame } from "../dom";
 import type { Point, Robot } from "../fleet";
 import { t } from "../texts";
+import { Pen } from "./pen";
+import { drawDoors, drawRoutes, drawZones, nameZones, objectsOf, peopleOf } from "./surroundings";
 
 const EDGE = 0.6; // metres around what is drawn
 const ROBOT = 0.28; // metres: robots don't say how large they are
@@ -46,87 +48,72 @@ export class MapView {
     const scale = Math.min(width / (bounds.right - bounds.left), height / (bounds.top - bounds.bottom));
     const left = (width - scale * (bounds.left + bounds.right)) / 2;
     const bottom = (height + scale * (bounds.bottom + bounds.top)) / 2;
-    const at = ([x, y]: Point): Point => [left + x * scale, bottom - y * scale];
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, width, height);
-    pen.lineJoin = pen.lineCap = "round";
-    const line = (points: Point[], stroke: string, thick: number, dashes: number[] = []): void => {
-      pen.beginPath();
-      points.forEach((point, index) => (index ? pen.lineTo(...at(point)) : pen.moveTo(...at(point))));
-      pen.strokeStyle = stroke;
-      pen.lineWidth = thick;
-      pen.setLineDash(dashes);
-      pen.stroke();
-    };
-    const disc = ([x, y]: Point, radius: number, paint: string): void => {
-      pen.beginPath();
-      pen.arc(...at([x, y]), radius, 0, 2 * Math.PI);
-      pen.fillStyle = paint;
-      pen.fill();
-    };
-    const write = (text: string, [x, y]: Point, paint: string, above: number): void => {
-      const [px, py] = at([x, y]);
-      pen.font = "12px system-ui, sans-serif";
-      pen.textAlign = "center";
-      pen.lineWidth = 3;
-      pen.setLineDash([]);
-      pen.strokeStyle = colour("surface");
-      pen.strokeText(text, px, py - above);
-      pen.fillStyle = paint;
-      pen.fillText(text, px, py - above);
-    };
-    const { map, scan, path, way } = robot;
-    const pose = robot.state?.pose ?? null;
-    for (const box of map?.boxes ?? []) {
-      const [x, y] = at([box.x - box.width / 2, box.y + box.height / 2]);
-      pen.fillStyle = colour("box");
-      pen.fillRect(x, y, box.width * scale, box.height * scale);
-    }
-    for (const wall of map?.walls ?? []) line(wall, colour("wall"), 2.5);
-    for (const [index, range] of scan?.ranges.entries() ?? []) {
-      if (range === null || !scan) continue;
-      const [x, y, heading] = scan.pose;
-      const angle = (heading * Math.PI) / 180 + (2 * Math.PI * index) / scan.ranges.length;
-      disc([x + range * Math.cos(angle), y + range * Math.sin(angle)], 1.2, colour("scan"));
-    }
-    const goal = map?.places.find((place) => place.name === robot.goal) ?? map?.people.find((person) => person.name === robot.goal) ?? map?.objects.find((object) => object.name === robot.goal);
-    for (const place of map?.places ?? []) {
-      line([[place.x - 0.1, place.y], [place.x + 0.1, place.y]], colour("muted"), 1.5);
-      line([[place.x, place.y - 0.1], [place.x, place.y + 0.1]], colour("muted"), 1.5);
-      write(place.name, [place.x, place.y], colour("muted"), 8);
-    }
-    for (const object of map?.objects ?? []) {
-      disc([object.x, object.y], Math.max(3, object.radius * scale), colour("object"));
-      write(object.name, [object.x, object.y], colour("muted"), 8);
-    }
-    for (const person of map?.people ?? []) {
-      disc([person.x, person.y], Math.max(4, person.radius * scale), colour("person"));
-      write(person.name, [person.x, person.y], colour("text"), person.radius * scale + 5);
-    }
-    line(path, colour("running"), 2);
-    if (!pose) return;
-    const here: Point = [pose[0], pose[1]];
-    if (way.length) line(way, colour("running"), 1.5, [4, 5]);
-    else if (goal) line([here, [goal.x, goal.y]], colour("running"), 1.5, [4, 5]);
-    const size = Math.max(7, ROBOT * scale);
-    disc(here, size + 2, colour("surface"));
-    disc(here, size, colour("running"));
-    const [x, y] = at(here);
-    const heading = (-pose[2] * Math.PI) / 180;
-    pen.beginPath();
-    pen.moveTo(x + size * 0.75 * Math.cos(heading), y + size * 0.75 * Math.sin(heading));
-    for (const side of [2.4, -2.4]) pen.lineTo(x + size * 0.6 * Math.cos(heading + side), y + size * 0.6 * Math.sin(heading + side));
-    pen.closePath();
-    pen.fillStyle = colour("surface");
-    pen.fill();
+    drawMap(new Pen(pen, scale, left, bottom, colour), robot);
   }
 }
 
+function drawMap(pen: Pen, robot: Robot): void {
+  const { context, colour, scale } = pen;
+  const { map, scan, path, way } = robot;
+  const pose = robot.state?.pose ?? null;
+  const [people, objects, zones] = [peopleOf(robot), objectsOf(robot), map?.zones ?? []];
+  drawZones(pen, zones);
+  for (const box of map?.boxes ?? []) {
+    const [x, y] = pen.at([box.x - box.width / 2, box.y + box.height / 2]);
+    context.fillStyle = colour("box");
+    context.fillRect(x, y, box.width * scale, box.height * scale);
+  }
+  for (const wall of map?.walls ?? []) pen.line(wall, colour("wall"), 2.5);
+  drawDoors(pen, map?.doors ?? []);
+  drawRoutes(pen, robot);
+  for (const [index, range] of scan?.ranges.entries() ?? []) {
+    if (range === null || !scan) continue;
+    const [x, y, heading] = scan.pose;
+    const angle = (heading * Math.PI) / 180 + (2 * Math.PI * index) / scan.ranges.length;
+    pen.disc([x + range * Math.cos(angle), y + range * Math.sin(angle)], 1.2, colour("scan"));
+  }
+  nameZones(pen, zones);
+  for (const place of map?.places ?? []) {
+    pen.line([[place.x - 0.1, place.y], [place.x + 0.1, place.y]], colour("muted"), 1.5);
+    pen.line([[place.x, place.y - 0.1], [place.x, place.y + 0.1]], colour("muted"), 1.5);
+    pen.write(place.name, [place.x, place.y], colour("muted"), 8);
+  }
+  for (const { name, x, y, radius, seen } of objects) {
+    pen.mark([x, y], Math.max(3, radius * scale), colour("object"), seen);
+    pen.write(name, [x, y], colour("muted"), 8);
+  }
+  for (const { name, x, y, radius, seen } of people) {
+    pen.mark([x, y], Math.max(4, radius * scale), colour("person"), seen);
+    pen.write(name, [x, y], colour("text"), radius * scale + 5);
+  }
+  pen.line(path, colour("running"), 2);
+  if (!pose) return;
+  const here: Point = [pose[0], pose[1]];
+  const goal = [...(map?.places ?? []), ...people, ...objects].find(({ name }) => name === robot.goal);
+  if (way.length) pen.line(way, colour("running"), 1.5, [4, 5]);
+  else if (goal) pen.line([here, [goal.x, goal.y]], colour("running"), 1.5, [4, 5]);
+  const size = Math.max(7, ROBOT * scale);
+  pen.disc(here, size + 2, colour("surface"));
+  pen.disc(here, size, colour("running"));
+  const [x, y] = pen.at(here);
+  const heading = (-pose[2] * Math.PI) / 180;
+  context.beginPath();
+  context.moveTo(x + size * 0.75 * Math.cos(heading), y + size * 0.75 * Math.sin(heading));
+  for (const side of [2.4, -2.4]) context.lineTo(x + size * 0.6 * Math.cos(heading + side), y + size * 0.6 * Math.sin(heading + side));
+  context.closePath();
+  context.fillStyle = colour("surface");
+  context.fill();
+}
+
 /** What is to be seen, in metres. */
-function boundsOf({ map, path, state }: Robot): Bounds {
+function boundsOf(robot: Robot): Bounds {
+  const { map, path, state } = robot;
   const points: Point[] = [...(map?.walls.flat() ?? []), ...path];
   for (const box of map?.boxes ?? []) points.push([box.x - box.width / 2, box.y - box.height / 2], [box.x + box.width / 2, box.y + box.height / 2]);
-  for (const each of [...(map?.places ?? []), ...(map?.people ?? []), ...(map?.objects ?? [])]) points.push([each.x, each.y]);
+  for (const each of [...(map?.places ?? []), ...(map?.people ?? []), ...(map?.objects ?? []), ...peopleOf(robot)]) points.push([each.x, each.y]);
+  points.push(...(map?.zones ?? []).flatMap((zone) => zone.points), ...(map?.people ?? []).flatMap((person) => person.walks ?? []));
   if (state?.pose) points.push([state.pose[0], state.pose[1]]);
   const found: Bounds = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
   for (const [x, y] of points) {

@@ -12,6 +12,7 @@ import { Failure } from "./failure";
 import { LogView } from "./log";
 import { MapView } from "./map";
 import { Parts } from "./parts";
+import { Question } from "./question";
 
 const MOST_RUNNING = 12; // that are listed
 const RESTING = 2; // nodes of the tree of a robot that has nothing to do
@@ -37,6 +38,8 @@ class Watch implements View {
   private empty = h("p", { class: "empty" }, t("watch.nothing"));
   private map = new MapView(() => this.robot);
   private log = new LogView();
+  private visitor = h("button", { type: "button", class: "visitor", hidden: true, onclick: () => void this.act("visitor", {}) }, t("visitor"));
+  private question: Question;
   private parts: Parts;
   private failure: Failure;
   private queue: Queue;
@@ -46,6 +49,7 @@ class Watch implements View {
 
   constructor(private context: Context) {
     this.robot = context.fleet.get(context.robot);
+    this.question = new Question(context);
     this.parts = new Parts(context);
     this.failure = new Failure(context, (path) => this.select(path));
     this.queue = new Queue(context, () => this.refresh());
@@ -58,7 +62,7 @@ class Watch implements View {
       h(
         "div",
         { class: "side" },
-        h("div", { class: "card place" }, this.map.canvas, this.says),
+        h("div", { class: "card place" }, this.map.canvas, this.visitor, this.says, this.question.element),
         operates && h("details", { class: "card" }, h("summary", {}, t("submit.title")), submitForm(context)),
         this.parts.element,
         h("div", { class: "card events" }, h("h2", {}, t("log")), this.log.element),
@@ -92,8 +96,9 @@ class Watch implements View {
     fill(this.gone, robot.away && t("watch.gone"));
     this.tree.element.classList.toggle("stale", robot.away);
     fill(this.title, task ? called(task) : robot.name);
-    fill(this.says, robot.says && `“${robot.says}”`);
+    fill(this.says, robot.says && robot.says !== robot.asking && `“${robot.says}”`);
     this.map.redraw();
+    this.question.show(robot);
     this.parts.show(robot);
     this.log.update(robot.entries);
     this.showControls();
@@ -118,6 +123,7 @@ class Watch implements View {
   private showControls(): void {
     const paused = this.robot.state?.paused ?? false;
     const task = this.queue.underway;
+    this.visitor.hidden = !may(this.context.me, "operator") || !this.robot.state?.visitors;
     const shown = JSON.stringify([paused, task?.id, this.robot.up]);
     if (!may(this.context.me, "operator") || shown === this.shownControls) return;
     this.shownControls = shown;
