@@ -109,5 +109,6 @@ def patrol(
 
 
 def localize(robot: Driving) -> Steps:
-    """Turns once around, so that the sensors see everything that the robot knows its place by."""
+    """Forgets its place on the map, where the robot can find that out, and turns once around so that its sensors do."""
+    robot.reset_localization()
     yield from turn(robot, 360.0)

@@ -38,7 +38,9 @@ def look_for_person(
 def look_for_object(
     robot: Searching, object: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
-    """Searches a place, or all of them, until an object is in view. Fails where it is in none."""
+    """Searches a place, or all of them, until an object is in view or in a hand. Fails where it is in none."""
+    if robot.body.has("holding") and object in (robot.holding("left"), robot.holding("right")):
+        return
     yield from _search(robot, object, lambda: robot.sees(object), place, x, y)
 
 
@@ -142,8 +144,6 @@ def _search(
     x: float | None,
     y: float | None,
 ) -> Steps:
-    if name is not None and robot.body.has("holding") and name in (robot.holding("left"), robot.holding("right")):
-        return
     is_here = place is not None or x is not None
     tour = _look_in(robot, place, x, y) if is_here else _tour(robot, name)
     with closing(tour):

@@ -160,6 +160,9 @@ class Base(Machine, Protocol):
     def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
         """The names of the objects or people with these parts that the robot knows, nearest first."""
 
+    def reset_localization(self) -> None:
+        """Forgets its place on the map, where something can find it again from what the sensors see."""
+
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """A run begins, whose random choices follow from the seed; so many have been made before, in another run."""
 

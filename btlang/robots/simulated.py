@@ -215,6 +215,9 @@ class SimulatedRobot:
     def pace(self, share: float) -> None:
         self._navigator.pace = share
 
+    def reset_localization(self) -> None:
+        """Does nothing: it always knows its place."""
+
     def place_names(self) -> list[str]:
         """The names of all places, those of the mission among them."""
         return list(self.world.names.places)

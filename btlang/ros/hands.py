@@ -1,4 +1,4 @@
-"""The hands of a ROS 2 robot: a service closes and opens each, a topic tells what it holds."""
+"""The hands of a ROS 2 robot: services close and open them and hand over, topics tell what they hold."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ from btlang.robots.body import Body
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import Hand, RobotError
 from btlang.robots.world import said
+from btlang.ros.available import optional_interface
 from btlang.ros.places import Places
 from btlang.ros.services import Call, Services
 from btlang.ros.subscription_cache import SubscriptionCache
 
+HAND_OVER = "hand_over"
 _HANDS: tuple[Hand, Hand] = ("left", "right")
 
 
@@ -33,6 +35,7 @@ class RosHands:
         emit: Callable[..., object],
         body: Body,
     ) -> None:
+        self._node = node
         self._hands: list[Hand] = [hand for hand in _HANDS if body.hand(hand) is not None]
         self._subscriptions, self._services, self._places = subscriptions, services, places
         self._where, self._emit = where, emit
@@ -41,6 +44,10 @@ class RosHands:
         for hand in self._hands:
             subscriptions.listen(_held(hand), String, f"message from the {hand} hand", qos="state")
             services.add(_close(hand), SetBool)
+        service = optional_interface("btlang_interfaces/srv/HandOver")
+        self._gives = service is not None
+        if self._gives:
+            services.add(HAND_OVER, service)
 
     def grasp(self, hand: Hand, name: str | None) -> Call:
         """Closes a hand; where it closes on another object than the named one, it opens again. Raises RobotError."""
@@ -52,6 +59,17 @@ class RosHands:
     def release(self, hand: Hand) -> Call:
         """Opens a hand. Raises RobotError."""
         self._opening[hand] = self._services.call(_close(hand), partial(self._released, hand), data=False)
+        return self._opening[hand]
+
+    def hand_over(self, hand: Hand, person: str) -> Call:
+        """Gives what a hand holds to a person. Raises RobotError."""
+        name, known = self.holding(hand), self._places.known(person)
+        if name is None:
+            raise RobotError(f"the {hand} hand is empty")
+        if not self._gives:
+            raise RobotError("btlang's interfaces aren't compiled, so it can't hand over anything")
+        given = partial(self._given, hand, name, known)
+        self._opening[hand] = self._services.call(HAND_OVER, given, hand=hand, person=known)
         return self._opening[hand]
 
     def holding(self, hand: Hand) -> str | None:
@@ -72,6 +90,11 @@ class RosHands:
                 if before and not message.data and not opens:
                     self._emit("drop", hand=hand, name=before)
 
+    def awaited(self) -> list[str]:
+        """The topics that somebody publishes and that have said nothing yet."""
+        topics = map(_held, self._hands)
+        return [each for each in topics if not self._subscriptions.has(each) and self._node.count_publishers(each)]
+
     def _grasped(self, hand: Hand, wanted: str | None, found: str) -> None:
         if wanted is not None and found.lower() != wanted.lower():
             self._services.fire(_close(hand), data=False)
@@ -82,6 +105,12 @@ class RosHands:
     def _released(self, hand: Hand, name: str) -> None:
         self._holds(hand, "")
         self._emit("release", hand=hand, name=name or None)
+
+    def _given(self, hand: Hand, name: str, person: str, message: str) -> None:
+        self._holds(hand, "")
+        if name in self._places.world.names.objects:
+            self._places.give(name, person)
+        self._emit("give", hand=hand, name=name, who=person)
 
     def _holds(self, hand: Hand, name: str) -> None:
         before = self._holding.get(hand, "")

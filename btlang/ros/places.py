@@ -37,6 +37,7 @@ class Places:
         self._in_view: dict[str, Point] = {}
         self.sight = Sight(world, self.obstacles, lambda name, pose: self._in_view.get(name), tell)
         self._planner: Planner | None = None
+        self._given_to: dict[str, str] = {}
 
     def name_places(self, places: Iterable[Place]) -> None:
         """The places of a mission beside those of the world, in place of those of the mission before."""
@@ -151,11 +152,13 @@ class Places:
         return self.goal("dock", robot) if "dock" in map(str.lower, self.world.names.places) else robot
 
     def goal(self, name: str, robot: Pose) -> Pose:
-        """Where the robot has to stand for it, and which way to face. Raises RobotError for an unknown name.
+        """Where the robot has to stand for it, and which way to face. Raises RobotError for an unknown name, and for
+        what somebody was given.
 
         Before an object or a person that is where the free way there ends, by the walls and boxes of the world file.
         """
         known = self.known(name)
+        self._check_free(known)
         point = self.locate(known, robot)
         for place in self.world.places:
             if place.name == known:
@@ -175,9 +178,15 @@ class Places:
         ahead = (part.puts_at if part is not None else self._body.radius) + self.obstacles.things[name].radius
         self.obstacles.put_down(name, *robot.ahead(ahead))
 
+    def give(self, name: str, person: str) -> None:
+        """A person has an object from now on."""
+        self.obstacles.pick_up(name)
+        self._given_to[name] = person
+
     def check_movable(self, name: str) -> None:
         """Raises RobotError for an object that can't be picked up, or that the robot hasn't seen."""
         known = self.known(name)
+        self._check_free(known)
         self.locate(known, Pose(0.0, 0.0, 0.0))
         if getattr(self.obstacles.things.get(known), "fixed", False):
             raise RobotError(f"{said(known)} is fixed")
@@ -202,6 +211,10 @@ class Places:
         """A door is open or closed from now on."""
         if self.obstacles.doors[name].open != is_open:
             self.obstacles.swing(name, is_open)
+
+    def _check_free(self, name: str) -> None:
+        if name in self._given_to:
+            raise RobotError(f"{said(self._given_to[name])} has {said(name)}")
 
     def _stand(self, robot: Pose, point: Point, reach: float) -> Point:
         with suppress(RobotError):  # a world too large to plan in

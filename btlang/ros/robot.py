@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from rclpy.node import Node
 from std_msgs.msg import String
-from std_srvs.srv import Trigger
+from std_srvs.srv import Empty, Trigger
 
 from btlang.robots.body import Body
 from btlang.robots.body_file import standard_body
@@ -53,11 +53,11 @@ if TYPE_CHECKING:
 
 CALL, FOLLOW = "call", "follow"
 _STOP = "stop"
-_CLEAR = "nav2_msgs/srv/ClearEntireCostmap"
+_LOCALIZE = "reinitialize_global_localization"
+_COSTMAPS = ("global_costmap/clear_entirely_global_costmap", "local_costmap/clear_entirely_local_costmap")
 _OPTIONAL = {
     FOLLOW: "btlang_interfaces/srv/Follow",
-    "global_costmap/clear_entirely_global_costmap": _CLEAR,
-    "local_costmap/clear_entirely_local_costmap": _CLEAR,
+    **dict.fromkeys(_COSTMAPS, "nav2_msgs/srv/ClearEntireCostmap"),
 }
 _TOLD_TO_STOP = "the robot was stopped"
 _STOPPING = 5.0  # seconds for which a robot that was stopped is told zero velocity
@@ -106,18 +106,20 @@ class RosRobot:
         self._voice = RosSpeech(node, subscriptions)
         self._services = Services(node, self._executor)
         self._services.add(_STOP, Trigger)
+        self._services.add(_LOCALIZE, Empty)
         self._senses = RosSensors(subscriptions, self._base, self._emit)
         make_docking = partial(make_docking_clients, node, self._executor, self._base.where, now)
         self.power = RosPower(node, subscriptions, self._services, self._emit, make_docking)
         self._hands = RosHands(node, subscriptions, self._services, self._places, self._base.where, self._emit, body)
         self._ears = RosEars(node, subscriptions, self._emit)
         self._perception = RosPerception(node, subscriptions, self._places)
-        self._zones = RosZones(node, subscriptions, self._places.zones, world.zones)
+        self._zones = RosZones(node, subscriptions, self._places.zones, world.zones, self.normal_speed)
         self._protection = Protection(self._places.obstacles, self._places.zones, body)
         self._doors = RosDoors(node, subscriptions, self._services, self._places, world, self._emit)
         self._calls = node.create_publisher(String, CALL, 10)
         self._optional = [name for name, kind in _OPTIONAL.items() if self._offer(name, kind)]
         self._last_said = ""
+        self._began: Pose | None = None
         self._pursuit: Pursuit | None = None
         self._navigation: RosNavigation | None = None
         self.pending: Callable[[], Iterable[str]] = tuple
@@ -150,6 +152,7 @@ class RosRobot:
         self._base.step(dt)
         self._voice.step(dt)
         here = self._base.where()
+        self._began = self._began or here
         self._perception.step(self.time, here)
         self._protect(self._base.backward)
         off_limits = self._zones.step(dt, here)
@@ -334,6 +337,28 @@ class RosRobot:
             operation.end(_TOLD_TO_STOP)  # `stop` came in between from another thread
         return operation
 
+    @property
+    def set_out_from(self) -> Pose:
+        """Where it was when the run began. Raises RobotError where the odometry is silent."""
+        return self._began or self.pose
+
+    @property
+    def pace(self) -> float:
+        """The share of the normal speed at which it goes its ways; a topic limits the navigation server to it."""
+        return self._zones.pace
+
+    @pace.setter
+    def pace(self, share: float) -> None:
+        self._zones.pace = share
+
+    def place_names(self) -> list[str]:
+        """The names of all places, those of the mission among them."""
+        return list(self.world.names.places)
+
+    def reset_localization(self) -> None:
+        """See `Base.reset_localization`: a service does it, where it is served."""
+        self._services.fire(_LOCALIZE)
+
     # Senses
     def scan(self) -> npt.NDArray[np.float64]:
         """The nearest echo in each degree. Raises RobotError when the scanner is silent."""
@@ -359,6 +384,7 @@ class RosRobot:
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """A run begins, whose random choices follow from the seed; so many have been made."""
         self._choices.begin(seed, made)
+        self._began = None
         self._zones.begin()
         self._ears.begin()
 
@@ -378,6 +404,11 @@ class RosRobot:
     def seen(self, kind: str) -> list[str]:
         """The objects or people in view, nearest first. Raises RobotError where nothing tells of them."""
         return self._perception.seen(kind, self.pose)
+
+    def take_picture(self) -> Operation:
+        """An event names what is in view. Raises RobotError where nothing tells of it."""
+        self._emit("picture", name=", ".join((*self.seen("person"), *self.seen("object"))))
+        return CompletedOperation()
 
     @property
     def things(self) -> tuple[Whereabouts, ...]:
@@ -410,8 +441,8 @@ class RosRobot:
     def forget_map(self) -> None:
         """Forgets where it saw objects and people; the costmaps of Nav2 are cleared where there are some."""
         self._places.sight.forget()
-        for name in self._optional:
-            if name != FOLLOW:
+        for name in _COSTMAPS:
+            if name in self._optional:
                 self._services.fire(name)
 
     def beside_door(self, name: str) -> list[Pose]:
@@ -438,7 +469,7 @@ class RosRobot:
 
     def awaited(self) -> list[str]:
         """The topics of which somebody publishes how things are, and that have said nothing yet."""
-        return [*self._doors.awaited(), *self._perception.awaited()]
+        return [*self._doors.awaited(), *self._perception.awaited(), *self._hands.awaited()]
 
     # Power
     @property
@@ -508,6 +539,11 @@ class RosRobot:
     def release(self, hand: Hand) -> Operation:
         """Opens a hand, or fails with the robot's reason. Raises RobotError where nothing serves it."""
         return CompletedOperation() if self._latch.refuses else self._hands.release(hand)
+
+    def hand_over(self, hand: Hand, person: str) -> Operation:
+        """Gives what a hand holds to a person, or fails with the reason. Raises RobotError where nothing serves it."""
+        self._check_stop()
+        return self._hands.hand_over(hand, person)
 
     def holding(self, hand: Hand) -> str | None:
         """The name of what the hand holds. Raises RobotError where nothing tells of it."""

@@ -1,4 +1,4 @@
-"""The zones of the world on a ROS 2 robot: goals and plans are checked against them, and slow ones limit its speed."""
+"""The zones of the world on a ROS 2 robot, against which goals and plans are checked, and the limit of its speed."""
 
 from __future__ import annotations
 
@@ -25,20 +25,32 @@ _SAME_GOAL = 1.0  # metres from the goal at which a plan to it ends
 _NEW_PLAN = 1.0  # seconds of the mission in which the robot plans anew when a zone was closed or opened
 _REPEAT = 1.0  # seconds after which a limit is told again
 _LONGEST = 100_000  # points of a plan
-_NO_LIMIT = 0.0  # in the message of Nav2
+_NO_LIMIT = False, 0.0  # in the message of Nav2: whether it is a percentage, and how much
 
 
 class RosZones:
-    """`zones` are those of the world, which a mission may close and open; topics tell the robot which are closed."""
+    """`zones` are those of the world, which a mission may close and open; topics tell the robot which are closed.
 
-    def __init__(self, node: Node, subscriptions: SubscriptionCache, zones: Zones, world_zones: Sequence[Zone]) -> None:
+    A topic limits its speed to that of the slow zone it is in, or to `pace` if that is slower.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        subscriptions: SubscriptionCache,
+        zones: Zones,
+        world_zones: Sequence[Zone],
+        normal_speed: float,
+    ) -> None:
         self.zones = zones
+        self.pace = 1.0
+        """The share of the normal speed at which the robot goes its ways; above 1 there is no limit."""
+        self._normal_speed = normal_speed
         self._subscriptions = subscriptions
         topics = zone_topics(world_zones)
         self._closed = {name: node.create_publisher(Bool, topic, LATCHED) for name, topic in topics.items()}
         self._limit_type = optional_interface("nav2_msgs/msg/SpeedLimit")
-        has_limits = bool(world_zones) and self._limit_type is not None
-        self._limits = node.create_publisher(self._limit_type, SPEED_LIMIT, 10) if has_limits else None
+        self._limits = node.create_publisher(self._limit_type, SPEED_LIMIT, 10) if self._limit_type else None
         self._time = self._changed = self._limited = 0.0
         self._limit = _NO_LIMIT
         self._goal: tuple[str, Point] | None = None
@@ -48,9 +60,12 @@ class RosZones:
             subscriptions.listen(PLAN, Path, "plan", qos="events", refuses=_fault)
 
     def begin(self) -> None:
-        """A run begins, or all are over: zones are as the world says."""
+        """A run begins, or all are over: zones are as the world says, and the pace is the normal one."""
         self.zones.begin()
         self._announce()
+        self.pace = 1.0
+        if self._limit != _NO_LIMIT:
+            self._publish_limit(_NO_LIMIT)
 
     def set_out(self, name: str, pose: Pose) -> None:
         """The robot is to go there. Raises RobotError for a goal in a closed zone."""
@@ -99,10 +114,16 @@ class RosZones:
         if self._limits is None or pose is None:
             return
         allowed = self.limit(pose)
-        limit = _NO_LIMIT if allowed == inf else allowed
+        limit = _NO_LIMIT if allowed == inf else (False, allowed)
+        if self.pace < 1.0 and self.pace * self._normal_speed <= allowed:
+            limit = True, 100.0 * self.pace
         if limit != self._limit or (limit != _NO_LIMIT and self._time - self._limited >= _REPEAT):
-            self._limit, self._limited = limit, self._time
-            self._limits.publish(self._limit_type(speed_limit=limit))
+            self._publish_limit(limit)
+
+    def _publish_limit(self, limit: tuple[bool, float]) -> None:
+        self._limit, self._limited = limit, self._time
+        if self._limits is not None:
+            self._limits.publish(self._limit_type(percentage=limit[0], speed_limit=limit[1]))
 
 
 def zone_topics(zones: Iterable[Zone]) -> dict[str, str]:

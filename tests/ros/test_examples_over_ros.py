@@ -23,6 +23,8 @@ USUAL = ("museum_tour", "oily_floor", "locked_lab", "find_someone", "obedience")
 """Those of each run: together they use every part of the robot. `-m long` runs all."""
 LATER = 0.1
 """How much longer or shorter a mission may take over ROS 2."""
+BY_CHANCE = {"guided_tour": 0.5}
+"""The same where chance decides how well somebody keeps up."""
 TURN = 1.0
 """Seconds within which the order of two commands that go on at the same time may be another one."""
 
@@ -48,14 +50,14 @@ def story(path: Path, world: str | None) -> list[tuple[float, str, str]]:
     return told
 
 
-def assert_same(over_ros: Path, built_in: Path, world: str | None) -> None:
+def assert_same(over_ros: Path, built_in: Path, world: str | None, later: float) -> None:
     """The same happened in the same order, took as long, and ended for the same reason."""
     found, expected = story(over_ros, world), story(built_in, world)
     assert sorted(what for _, *what in found) == sorted(what for _, *what in expected)
     for (_, *what), (turn, *_) in zip(found, expected, strict=True):
         assert any(what == other and abs(when - turn) <= TURN for when, *other in expected), f"{what} at {turn}"
     end, expected_end = ending(over_ros), ending(built_in)
-    assert end.pop("seconds") == pytest.approx(expected_end.pop("seconds"), rel=LATER)
+    assert end.pop("seconds") == pytest.approx(expected_end.pop("seconds"), rel=later)
     assert end == expected_end
 
 
@@ -93,7 +95,7 @@ def test_an_example_does_as_in_the_simulation(
     assert simulator.err == ""
 
     assert bool(capsys.readouterr().err) == bool(expected)
-    assert_same(over_ros, built_in, world)
+    assert_same(over_ros, built_in, world, BY_CHANCE.get(name, LATER))
 
 
 def test_it_does_with_clocks_that_wait_for_nobody(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from std_msgs.msg import Bool
-from std_srvs.srv import SetBool
+from std_srvs.srv import Empty, SetBool
 
 from tests.ros.client import LATCHED, Client
 from tests.ros.processes import LONG, Command
@@ -36,6 +36,9 @@ VISIT = """
 wait until the robot sees Alice
 ask Alice "Would you like some coffee?"
 if the answer is yes, say "Coffee!"
+take a picture of Alice
+pick up the cup then give the cup to Alice
+go to the cup, otherwise come back
 avoid the stairs
 go to the landing, otherwise say "Not there."
 open the lab door
@@ -120,6 +123,9 @@ def test_a_visit(hall: Hall) -> None:
         'asks Alice: "Would you like some coffee?"',
         'hears "Sure, thanks!" from Alice',
         'says "Coffee!"',
+        "picture Alice, cup",
+        "gives cup to Alice",
+        "failed approach cup: Alice has the cup",
         "failed go to landing: the landing is in the stairs, where the robot may not go",
         'says "Not there."',
         "door lab door open",
@@ -206,13 +212,13 @@ def test_without_interfaces_it_does_all_the_rest(tmp_path: Path, domain: int, na
     assert listen.process.wait(2 * LONG) == 2
     assert "BT110" in listen.err
     assert sim.end() == 130
-    assert sim.err.startswith("btlang sim-ros: no /heard, /asking, /sightings and /follow: ")
+    assert sim.err.startswith("btlang sim-ros: no /heard, /asking, /sightings, /follow and /hand_over: ")
 
 
 @pytest.mark.long
 def test_what_other_programs_see(hall: Hall, client: Client) -> None:
     from btlang_interfaces.msg import Heard, Question, Sightings
-    from btlang_interfaces.srv import Follow
+    from btlang_interfaces.srv import Follow, HandOver
 
     heard, seen = client.hear(Heard, "/heard"), client.hear(Sightings, "/sightings")
     lamp = client.hear(Bool, "/switches/lamp/state", LATCHED)
@@ -234,3 +240,25 @@ def test_what_other_programs_see(hall: Hall, client: Client) -> None:
     assert not far.success
     assert far.message.startswith("the lab door is 3.")
     assert not client.call(SetBool, "/switches/lamp", data=True).success
+    empty = client.call(HandOver, "/hand_over", hand="left", person="Alice")
+    assert (empty.success, empty.message) == (False, "the left hand is empty")
+
+
+@pytest.mark.long
+def test_who_goes_slowly_and_who_has_lost_its_place(hall: Hall, client: Client) -> None:
+    from nav2_msgs.msg import SpeedLimit
+
+    limits, asked = client.hear(SpeedLimit, "/speed_limit"), []
+
+    def localize(request: Empty.Request, response: Empty.Response) -> Empty.Response:
+        asked.append(request)
+        return response
+
+    client.node.create_service(Empty, "/reinitialize_global_localization", localize)
+    hall.open()
+    code, out, err = hall.run("go slowly to (2.2, 2) then localize")
+    assert code == 0, err + out
+    assert len(asked) == 1
+    told = [(each.percentage, each.speed_limit) for each in limits.messages]
+    assert told[0] == (True, 50.0)
+    assert told[-1] == (False, 0.0)

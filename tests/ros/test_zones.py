@@ -14,7 +14,7 @@ from btlang.robots.robot import RobotError
 from btlang.robots.world import KEEP_OUT, SLOW, Zone
 from btlang.robots.zones import Zones
 from btlang.ros.names import graph_names
-from btlang.ros.zones import PLAN, RosZones, _fault, enters
+from btlang.ros.zones import PLAN, SPEED_LIMIT, RosZones, _fault, enters
 
 STAIRS = Zone("stairs", KEEP_OUT, ((2.0, 0.0), (3.0, 0.0), (3.0, 1.0), (2.0, 1.0)))
 CARPET = Zone("carpet", SLOW, ((5.0, 0.0), (6.0, 0.0), (6.0, 1.0), (5.0, 1.0)), 0.2)
@@ -58,7 +58,7 @@ def graph() -> Graph:
 @pytest.fixture
 def zones(graph: Graph) -> RosZones:
     made = (STAIRS, CARPET)
-    zones = RosZones(graph, graph, Zones(made), made)  # type: ignore[arg-type]
+    zones = RosZones(graph, graph, Zones(made), made, 0.5)  # type: ignore[arg-type]
     zones.begin()
     assert zones.step(2.0, HERE) == ""
     return zones
@@ -106,6 +106,20 @@ def test_slow_zones_limit_the_speed(graph: Graph, zones: RosZones) -> None:
     for at, seconds in ((5.5, 0.1), (5.6, 0.1), (5.7, 1.0), (7.0, 0.1), (7.1, 2.0)):
         zones.step(seconds, Pose(at, 0.5))
     assert [message.speed_limit for message in graph.told["speed_limit"]] == [0.2, 0.2, 0.0]
+
+
+def test_the_slower_of_pace_and_zone_is_the_limit(graph: Graph, zones: RosZones) -> None:
+    pytest.importorskip("nav2_msgs.msg._speed_limit")
+    zones.pace = 0.5
+    for at in (0.0, 5.5, 7.0):
+        zones.step(0.1, Pose(at, 0.5))
+    zones.pace = 0.2
+    zones.step(0.1, Pose(5.5, 0.5))
+    zones.begin()
+    zones.pace = 1.6
+    zones.step(0.1, HERE)
+    told = [(limit.percentage, limit.speed_limit) for limit in graph.told[SPEED_LIMIT]]
+    assert told == [(True, 50.0), (False, 0.2), (True, 50.0), (True, 20.0), (False, 0.0)]
 
 
 def test_a_plan_that_cannot_be_is_refused() -> None:

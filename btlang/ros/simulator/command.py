@@ -25,8 +25,8 @@ PACKAGES = (
 )  # fmt: skip
 """The packages of messages that it needs beside rclpy."""
 _UNCOMPILED = (
-    "no /heard, /asking, /sightings and /follow: btlang's interfaces are not compiled (python -m btlang.ros.interfaces"
-    " --own)"
+    "no /heard, /asking, /sightings, /follow and /hand_over: btlang's interfaces are not compiled"
+    " (python -m btlang.ros.interfaces --own)"
 )
 
 

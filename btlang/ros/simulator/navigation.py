@@ -1,4 +1,4 @@
-"""The action server /navigate_to_pose: drives to a pose, around obstacles. Its way is on /plan."""
+"""The action server /navigate_to_pose: drives to a pose, around obstacles, as fast as /speed_limit allows, on /plan."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from math import isfinite
 
 from nav2_msgs.action import NavigateToPose
+from nav2_msgs.msg import SpeedLimit
 from nav_msgs.msg import Path
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.action.server import ServerGoalHandle
@@ -21,6 +22,7 @@ from btlang.ros.simulator.call_queue import CallQueue
 from btlang.ros.simulator.publishing import COMMANDS, Every, Moment
 from btlang.ros.simulator.wheels import Wheels
 from btlang.ros.times import duration
+from btlang.ros.zones import SPEED_LIMIT
 
 FAILED = 9000
 """The error code of all that can go wrong, as of Nav2 for what it has no own code for; `error_msg` says what it is."""
@@ -64,6 +66,9 @@ class Navigation:
         self._plan = node.create_publisher(Path, "plan", COMMANDS)
         self._way: Sequence[Point] = ()
         self._leases = Leases(node)
+        node.create_subscription(
+            SpeedLimit, SPEED_LIMIT, lambda limit: calls.post(lambda: self._limit(limit)), COMMANDS
+        )
         ActionServer(
             node,
             NavigateToPose,
@@ -114,6 +119,11 @@ class Navigation:
         else:
             goal.abort()
         return NavigateToPose.Result(error_code=FAILED, error_msg=ride.failure)
+
+    def _limit(self, limit: SpeedLimit) -> None:
+        """As in Nav2: a percentage, or metres a second; 0 for no limit."""
+        share = limit.speed_limit / (100.0 if limit.percentage else self._robot.normal_speed)
+        self._robot.pace = min(1.0, share) if share > 0.0 else 1.0
 
     def _begin(self, ride: Ride) -> None:
         if ride.refused is not None:

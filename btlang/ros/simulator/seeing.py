@@ -1,15 +1,16 @@
-"""What the robot recognises, and who follows it: /sightings, /follow."""
+"""What the robot recognises, who follows it and who takes what it hands over: /sightings, /follow, /hand_over."""
 
 from __future__ import annotations
 
 from functools import partial
 
 from btlang_interfaces.msg import Sighting, Sightings
-from btlang_interfaces.srv import Follow
+from btlang_interfaces.srv import Follow, HandOver
 from geometry_msgs.msg import Point
 from rclpy.node import Node
 
 from btlang.robots.simulated import SimulatedRobot
+from btlang.ros.hands import HAND_OVER
 from btlang.ros.perception import KINDS, SIGHTINGS
 from btlang.ros.poses import MAP
 from btlang.ros.robot import FOLLOW
@@ -18,7 +19,7 @@ from btlang.ros.simulator.publishing import COMMANDS, Every, Moment
 
 
 class Seeing:
-    """Publishes what is in view, where the body recognises anything."""
+    """Publishes what is in view, where the body recognises anything; people follow and take what they are given."""
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot
@@ -29,7 +30,12 @@ class Seeing:
             response.success, response.message = calls.ask(partial(robot.guide, request.person, request.follow))
             return response
 
+        def hand_over(request: HandOver.Request, response: HandOver.Response) -> HandOver.Response:
+            response.success, response.message = calls.ask(partial(robot.hand_over, request.hand, request.person))
+            return response
+
         node.create_service(Follow, FOLLOW, follow)
+        node.create_service(HandOver, HAND_OVER, hand_over)
 
     def publish(self, now: Moment) -> None:
         """Tells what is in view."""
