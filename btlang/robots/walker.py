@@ -275,6 +275,7 @@ class Walker:
             if ways.is_clear(self.point, (x, y)):
                 self._crumbs = self._crumbs[at:]
                 return x, y
+        self._crumbs = [here]  # older ones would lead back
         if self._path and hypot(here[0] - self._path[-1][0], here[1] - self._path[-1][1]) > _TRAIL:
             self._path = []
         return self._along(ways, here)

@@ -296,7 +296,7 @@ def test_some_of_them():
     assert chosen(["speech", "move_forward", "TurnLeft"], ids, vocabulary) == [
         "Say",
         "Print",
-        *("Ask", "ListenForYesOrNo", "ListenFor", "CallStaff", "RaiseAlarm"),
+        *("Ask", "ListenForYesOrNo", "ListenFor", "CallStaff", "RaiseAlarm", "GreetPerson"),
         "MoveForward",
         "TurnLeft",
     ]

@@ -7,10 +7,12 @@ from math import dist
 
 import pytest
 
+import btlang
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError
 from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.world import World
+from btlang.vocabulary.shipped import shipped
 from tests.profiles import amount
 from tests.world.worlds import doorway, museum, rooms
 
@@ -205,3 +207,11 @@ def test_who_stands_can_be_told_to_walk() -> None:
     life.robot.surroundings.people.walk("Vera", (9, 1))
     life.until(lambda: life.near("Vera", 9, 1), 10)
     assert life.robot.locate("Vera") == (9, 3.5)  # where the robot last knew her
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_guided_tour_comes_to_its_end_whatever_happens_on_the_way(seed: int) -> None:
+    """Followers had turned back and forth at doors, and were lost."""
+    with open(shipped("examples/guided_tour.txt"), encoding="utf-8") as file:
+        mission = btlang.parse_tree(file.read(), world=shipped("examples/worlds/hotel.toml"))
+    assert mission.run(speed="max", seed=seed, time_limit=600).succeeded
