@@ -8,7 +8,7 @@ from math import ceil, hypot
 import numpy as np
 import numpy.typing as npt
 
-from btlang.robots.geometry import Point
+from btlang.robots.geometry import Point, edges
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.robot import RobotError
 from btlang.robots.world import World
@@ -57,7 +57,7 @@ class Grid:
     def to_polygon(self, points: Sequence[Point]) -> Array:
         """Metres from each cell to a polygon, 0 inside."""
         nearest2 = np.full(self.xs.shape, np.inf)
-        for start, end in zip(points, (*points[1:], points[0]), strict=True):
+        for start, end in edges(points):
             nearest2 = np.minimum(nearest2, self._squared((*start, *end)))
         nearest2[self._inside(points)] = 0.0
         distances: Array = np.sqrt(nearest2)
@@ -98,7 +98,7 @@ class Grid:
 
     def _inside(self, points: Sequence[Point]) -> Bools:
         inside = np.zeros(self.xs.shape, dtype=bool)
-        for (ax, ay), (bx, by) in zip(points, (*points[1:], points[0]), strict=True):
+        for (ax, ay), (bx, by) in edges(points):
             if ay != by:
                 crosses = ((ay > self.ys) != (by > self.ys)) & (self.xs < ax + (self.ys - ay) * (bx - ax) / (by - ay))
                 inside ^= crosses

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import cos, hypot, inf, radians, sin, sqrt
 
 from btlang.robots.body import Body
-from btlang.robots.geometry import Point, Pose, segment_distance
+from btlang.robots.geometry import Point, Pose, edges, segment_distance
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.world import Zone
 from btlang.robots.zones import Zones
@@ -87,5 +86,4 @@ class Protection:
 
 def edge_distance(zone: Zone, point: Point) -> float:
     """Metres from a point to the border of a zone."""
-    edges: Sequence[Point] = zone.points
-    return min(segment_distance(point, (*a, *b)) for a, b in zip(edges, (*edges[1:], edges[0]), strict=True))
+    return min(segment_distance(point, (*a, *b)) for a, b in edges(zone.points))
