@@ -38,6 +38,7 @@ MOST_LINES = 400
 LONG: dict[str, str] = {
     "btlang/task/commands.schema.json": "made from the classes of commands",
     "btlang/web/package-lock.json": "made by npm",
+    "btlang/robots/capabilities.py": "what robots can do, one capability after the other",
     "btlang/robots/simulated.py": "the robot, one capability after the other",
     "btlang/run/events.py": "the classes of events, from which the schema of logs is made",
     "btlang/ros/robot.py": "the same over ROS 2",

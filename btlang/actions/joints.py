@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from btlang.actions.motion import Steps
 from btlang.actions.watch import Watch
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.body import BEARING
 from btlang.robots.capabilities import Joints
+from btlang.robots.gesture import BEARING
 
 
 def bring(robot: Joints, targets: Mapping[str, float]) -> Steps:

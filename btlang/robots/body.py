@@ -7,17 +7,15 @@ from collections.abc import Mapping
 from math import pi
 
 from btlang.record import Record
+from btlang.robots.gesture import BEARING, Gesture, Step
 from btlang.vocabulary.capabilities import POSTURE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-BEARING = "bearing"
-"""In a posture the angle towards what the robot points or looks at."""
-
-Step = Mapping[str, float | str]
-"""Joint -> degrees (metres where it slides) or BEARING."""
+Vector = tuple[float, float, float]
+"""Metres ahead, left and up."""
 
 
 class Limits(Record):
@@ -50,7 +48,12 @@ class Navigation(Record):
 
 
 class Joint(Record):
-    """Degrees, and degrees a second; metres where it `slides`. `part` is what it belongs to: "head", "lift"."""
+    """Degrees, and degrees a second; metres where it `slides`. `part` is what it belongs to: "head", "lift".
+
+    `acceleration` and `jerk` are in units a second squared and cubed; 0: it has its speed at once. It moves its `link`
+    around an `axis` through a point `at` of the `parent` link, both in its frame: metres ahead, left and up. "" is the
+    base, whose origin is on the floor below its centre.
+    """
 
     name: str
     part: str
@@ -59,6 +62,12 @@ class Joint(Record):
     speed: float
     rest: float = 0.0
     slides: bool = False
+    acceleration: float = 0.0
+    jerk: float = 0.0
+    link: str = ""
+    parent: str = ""
+    at: Vector = (0.0, 0.0, 0.0)
+    axis: Vector = (0.0, 0.0, 1.0)
 
     @property
     def si(self) -> float:
@@ -69,6 +78,15 @@ class Joint(Record):
     def close_enough(self) -> float:
         """A centimetre or a degree from where it should be."""
         return 0.01 if self.slides else 1.0
+
+
+class Capsule(Record):
+    """What is nearer than `radius` metres to a line between two points of a link, in its frame."""
+
+    link: str
+    start: Vector
+    end: Vector
+    radius: float
 
 
 class HandPart(Record):
@@ -190,7 +208,7 @@ class Body(Record):
 
     `over` is what it runs on where nothing else is said: a name of btlang.robots.registry.ROBOTS. Joints that a posture
     does not name stay where they are; its steps follow each other. `file` is where this comes from, `world` the path of
-    the world file of the place where it works; "" without one.
+    the world file of the place where it works; "" without one. `forbidden` are pairs of links that may not touch.
     """
 
     name: str
@@ -211,6 +229,9 @@ class Body(Record):
     file: str = ""
     world: str = ""
     ears: Ears | None = None
+    capsules: tuple[Capsule, ...] = ()
+    forbidden: tuple[tuple[str, str], ...] = ()
+    gestures: Mapping[str, Gesture] = {}
 
     @property
     def folder(self) -> str:

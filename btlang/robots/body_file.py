@@ -9,7 +9,6 @@ from functools import cache
 
 from btlang.diagnostics.reading import is_below, real_path
 from btlang.robots.body import (
-    BEARING,
     Base,
     Battery,
     Body,
@@ -23,10 +22,10 @@ from btlang.robots.body import (
     Navigation,
     RosNode,
     Sensor,
-    Step,
     Voice,
 )
 from btlang.robots.data_file import DataFileError, as_mission_error, load_data
+from btlang.robots.gesture import BEARING, Step
 from btlang.robots.platforms import ROBOTS
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem, Problems, Table

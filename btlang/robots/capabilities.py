@@ -227,6 +227,21 @@ class Joints(Machine, Protocol):
         """These joints stay where they are now."""
 
 
+class Gesturing(Joints, Base, Protocol):
+    """Gestures, played beside the ticks of the mission."""
+
+    def gesture(self, name: str, *, aim: Point | None = None, stroke_at: float | None = None) -> Operation:
+        """Starts one from wherever the body is. `aim` is a point of the map that it points at or is turned to.
+
+        With `stroke_at`, a second of `time`, its stroke is then, or as soon after as the limits of the body let it.
+        Cancelled, its joints come to rest within their limits. Raises RobotError for an unknown gesture, for an aim out
+        of reach, and where the body would touch itself.
+        """
+
+    def lead(self, name: str, aim: Point | None = None) -> float:
+        """Seconds that the gesture needs at least from now to its stroke. Raises RobotError as `gesture` does."""
+
+
 class Hands(Machine, Protocol):
     """The hands, which take objects and put them down."""
 

@@ -1,0 +1,44 @@
+"""Gestures: key frames in time, as their files describe them. Frozen data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from btlang.record import Record
+
+BEARING = "bearing"
+"""In a posture the angle towards what the robot points or looks at."""
+
+Step = Mapping[str, float | str]
+"""Joint -> degrees (metres where it slides) or BEARING."""
+
+
+class KeyFrame(Record):
+    """Where some joints are `at` so many seconds of the gesture, for `hold` seconds. The others stay where they are."""
+
+    at: float
+    joints: Step
+    hold: float = 0.0
+
+
+class Gesture(Record):
+    """`stroke` is the second of the gesture that its meaning is in, such as the lowest point of a bow.
+
+    The way to the stroke may take `least` to `most` times as long as its key frames say, so that the stroke meets a
+    word. `aim` is the part of the body, such as "right arm", that points at what the phrase names: its joints are found
+    by geometry at the stroke. `phrases` are those of the word, `help` says what it is.
+    """
+
+    name: str
+    frames: tuple[KeyFrame, ...]
+    stroke: float
+    phrases: tuple[str, ...] = ()
+    help: str = ""
+    aim: str = ""
+    least: float = 0.7
+    most: float = 1.5
+
+    @property
+    def seconds(self) -> float:
+        """How long it takes where no limit of the body slows it down."""
+        return self.frames[-1].at + self.frames[-1].hold
