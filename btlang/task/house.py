@@ -58,7 +58,7 @@ def furnished_layer(
 
 
 def _furnish(layer: TaskLayer, missions: str, wanted: list[AddSchedule]) -> None:
-    """Puts the missions of a folder, "" for none, into the library of a robot, and makes these its schedules in place of
+    """Puts the missions of a folder, "" for none, into the robot's library, and makes these its schedules in place of
     those that a file has made before. Others stay. Raises MissionError.
     """
     for name in sorted(os.listdir(missions)) if missions else ():
