@@ -29,5 +29,5 @@ def simulated_parts(world: World, obstacles: Obstacles, body: Body) -> Parts:
             scanners.append(Scanner(obstacles, body.range))
         return scanners[0].read(pose)
 
-    base, power = Base(world.start, obstacles, body), Power(world.battery, world.dock, body)
+    base, power = Base(world.start, obstacles, body), Power(world.battery, world.all_docks, body)
     return Parts(base, power, scan, Joints(body), Hands(obstacles, world.names.objects, body), Voice(body))
