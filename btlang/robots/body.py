@@ -271,6 +271,11 @@ class Body(Record):
         steps = self.postures.get(posture, ())
         return next((self.joint(name) for step in steps for name, at in step.items() if at in BEARINGS), None)
 
+    @property
+    def is_smooth(self) -> bool:
+        """Whether its joints have limits of acceleration, so that their movements are planned."""
+        return any(joint.acceleration for joint in self.joints)
+
     def falls_short(self, posture: str, bearing: float) -> Joint | None:
         """The joint that can't turn to what is `bearing` degrees to the left in a posture; None where all can."""
         for step in self.postures.get(posture, ()):

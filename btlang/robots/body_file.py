@@ -103,7 +103,7 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     joints = _listed(top, "joints", joint_tables.joint, problems)
     postures = problems.part(lambda: joint_tables.postures(top, joints), dict[str, tuple[Step, ...]]())
     capsules = tuple(each for each in problems.rows(top, "capsules", joint_tables.capsule) if each is not None)
-    forbidden = problems.part(lambda: joint_tables.forbidden_pairs(top), ())
+    forbidden = problems.part(lambda: joint_tables.forbidden_pairs(top), tuple[tuple[str, str], ...]())
     if not problems.found:
         problems.found += joint_tables.link_problems(joints, capsules, forbidden)
     hands = _listed(top, "hands", _hand, problems)

@@ -42,8 +42,9 @@ def joint(table: Table) -> Joint:
     if length < _LEAST:
         raise table.problem("axis", '"axis" must point somewhere; write axis = [0, 0, 1]')
     x, y, z = axis
-    frame = {"at": _vector(table, "at"), "axis": (x / length, y / length, z / length)}
-    return table.finish(made.replace(link=link, parent="" if parent == BASE else parent, **frame))
+    at, axis = _vector(table, "at"), (x / length, y / length, z / length)
+    moves: Joint = made.replace(link=link, parent="" if parent == BASE else parent, at=at, axis=axis)
+    return table.finish(moves)
 
 
 def capsule(table: Table) -> Capsule:
