@@ -13,6 +13,7 @@ from btlang.robots.geometry import Pose
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.scan import Array
+    from btlang.speech.engine import Utterance
 
 
 class BasePart(Protocol):
@@ -91,9 +92,12 @@ class HandsPart(Protocol):
 class VoicePart(Protocol):
     """The voice and the screen; see btlang.robots.voice.Voice."""
 
+    said: Utterance | None
+    position: float
+
     @property
     def speaking(self) -> bool: ...
-    def say(self, text: str) -> None: ...
+    def say(self, text: str, after: float = 0.0) -> None: ...
     def silence(self) -> None: ...
     def print(self, text: str) -> None: ...
     def step(self, dt: float) -> None: ...

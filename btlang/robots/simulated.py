@@ -20,6 +20,7 @@ from btlang.robots.power import staging_pose
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, SensorSilent
 from btlang.robots.simulated_parts import simulated_parts
 from btlang.robots.surroundings import Surroundings
+from btlang.robots.voice import speak
 from btlang.robots.world import Place, World, said
 from btlang.robots.zones import Zones
 from btlang.run.robot_state import Whereabouts
@@ -30,6 +31,7 @@ from btlang.vocabulary.capabilities import part_of
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.scan import Array
+    from btlang.speech.engine import Utterance
 
 _CONTROL_PERIOD = 0.05
 _HANDS: tuple[Hand, Hand] = ("left", "right")
@@ -96,7 +98,8 @@ class SimulatedRobot:
         self._navigator.protect()
         self._base.step(dt)
         self._joints.step(dt)
-        self._voice.step(dt)
+        if not self._latch.refuses:  # an emergency stop leaves the mouth as it is
+            self._voice.step(dt)
         self._hands.step(dt)
         self._drop()
         self._use_power(dt, self._base.travelled - travelled)
@@ -489,13 +492,23 @@ class SimulatedRobot:
         """The name of what the hand holds."""
         return self._hands.held.get(hand)
 
-    def say(self, text: str) -> None:
-        """Starts to speak, for as long as the body says."""
+    def say(self, text: str, after: float = 0.0) -> None:
+        """Starts to speak after so many seconds, for as long as the voice of the body takes. Raises RobotError."""
         self._need("voice")
         if not self._latch.refuses:
-            self._voice.say(text)
+            speak(self._voice, text, after)
             self._last_said = text
             self._emit("say", text=text)
+
+    @property
+    def said(self) -> Utterance | None:
+        """What it says, or said last."""
+        return self._voice.said
+
+    @property
+    def said_at(self) -> float:
+        """The second of `time` at which that begins."""
+        return self.time - self._voice.position
 
     @property
     def speaking(self) -> bool:

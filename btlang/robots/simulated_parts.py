@@ -30,4 +30,6 @@ def simulated_parts(world: World, obstacles: Obstacles, body: Body) -> Parts:
         return scanners[0].read(pose)
 
     base, power = Base(world.start, obstacles, body), Power(world.battery, world.dock, body)
-    return Parts(base, power, scan, Joints(body), Hands(obstacles, world.names.objects, body), Voice(body))
+    joints = Joints(body)
+    hands = Hands(obstacles, world.names.objects, body)
+    return Parts(base, power, scan, joints, hands, Voice(body, joints.move))
