@@ -15,7 +15,8 @@ from btlang.robots.geometry import Point, Pose
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.robot import RobotError
 from btlang.robots.walker import PERIOD, Other, Walker
-from btlang.robots.world import Person, World
+from btlang.robots.world import NEVER, Person, World
+from btlang.text.time_of_day import DAY
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 _ARRIVES = 0.3  # metres that a guest needs
 _HEARD = 8.0  # metres from which a question is understood
 _WIDEST = 0.3  # metres of radius that ways leave room for
+_ASKS_WITHIN, _ASKS_EVERY = 2.5, 90.0  # metres from the robot, and seconds there on average
 _GUEST = "visitor"
 _DOORS = ("entrance", "door")
 
@@ -48,6 +50,8 @@ class People:
         self._answers: list[tuple[float, str, str]] = []
         self._said: dict[str, str] = {}
         self._invited = 0
+        self._visits: dict[str, tuple[float, float]] = {}
+        self._been: dict[str, int] = {}  # the day of the last visit
         self._robot: Point = (world.start.x, world.start.y)
         self.begin(world.seed or 0)
         if self._walkers:
@@ -55,7 +59,8 @@ class People:
             self._show()
 
     def begin(self, seed: int) -> None:
-        """A run begins: what happens by chance follows from its seed."""
+        """A run begins: what happens by chance follows from its seed. Visits that are planned stay so."""
+        self._seed = seed
         self._random = Random(f"{seed} people")
         self._next = 0.0
 
@@ -184,23 +189,55 @@ class People:
     def _arrive(self, now: float, robot: Other) -> None:
         """Those whose time it is come, as soon as there is room, and those who have left are gone."""
         for name, walker in self._walkers.items():
-            if not walker.present and not walker.gone and walker.person.comes <= now:
+            if not walker.present and not walker.gone and self._comes(walker, now) <= now:
                 others = (robot, *(other.body for other in self._walkers.values() if other.present))
                 x, y = walker.point
                 if all(hypot(o.x - x, o.y - y) > o.radius + walker.radius for o in others):
                     self._enter(walker)
                     self._show()
-            elif walker.present and walker.person.leaves <= now and not walker.leaving:
+            elif walker.present and self._leaves(walker) <= now and not walker.leaving:
                 walker.leave()
             elif walker.present and walker.has_left:
                 walker.present, walker.gone = False, True
                 self._tell("leave", name, "")
+                if walker.person.visits is not None:
+                    self._visits.pop(name, None)
+                    self._been[name] = int((now + self._world.clock) // DAY)
+                    self._walkers[name] = Walker(walker.person, self._places)
                 self._show()
+            elif walker.present and walker.person.asks and not walker.leaving:
+                self._wonder(walker, robot)
+
+    def _comes(self, walker: Walker, now: float) -> float:
+        """When somebody comes, in seconds of the run."""
+        person = walker.person
+        if person.visits is None:
+            return person.comes
+        if person.name not in self._visits:
+            clock = self._world.clock
+            after = now + clock
+            if person.name in self._been:
+                after = max(after, (self._been[person.name] + 1) * DAY)
+            comes, leaves = person.visits.next(after, self._world.weekday, f"{self._seed} {person.name}")
+            self._visits[person.name] = comes - clock, leaves - clock
+        return self._visits[person.name][0]
+
+    def _leaves(self, walker: Walker) -> float:
+        """When somebody leaves, in seconds of the run; who was invited stays as long as the planned visit lasts."""
+        visits = walker.person.visits
+        return walker.person.leaves if visits is None else self._visits.get(walker.person.name, (0.0, NEVER))[1]
+
+    def _wonder(self, walker: Walker, robot: Other) -> None:
+        """Now and then asks the robot something."""
+        name = walker.person.name
+        near = hypot(robot.x - walker.x, robot.y - walker.y) < _ASKS_WITHIN
+        if near and self._random.random() < PERIOD / _ASKS_EVERY and self._understands(name, (robot.x, robot.y)):
+            self._tell("speak", name, self._random.choice(walker.person.asks))
 
     def _enter(self, walker: Walker) -> None:
         if not walker.present:
             walker.present, walker.gone = True, False
-            if walker.person.comes or walker.person.name not in self._world.names.people:
+            if walker.person.comes or walker.person.visits or walker.person.name not in self._world.names.people:
                 self._tell("come", walker.person.name, "")
 
     def _look(self, now: float, robot: Other) -> None:

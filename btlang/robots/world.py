@@ -8,6 +8,7 @@ from itertools import pairwise
 from btlang.record import Record
 from btlang.robots.geometry import Point, Pose, Segment, contains
 from btlang.robots.likeness import Parts, of_object, of_person, wears
+from btlang.robots.visits import Visits
 from btlang.text.time_of_day import USUAL_START
 
 TYPE_CHECKING = False
@@ -20,7 +21,9 @@ KEEP_OUT, SLOW = "keep out", "slow"
 PERSON_RADIUS = 0.25
 OBJECT_RADIUS = 0.05
 NEVER = float("inf")
-_UNDRAWN = ("comes", "leaves", "says", "answers", "answers_after", "follows", "again", "uses", "walks")
+_UNDRAWN = (
+    "comes", "leaves", "says", "answers", "answers_after", "follows", "again", "uses", "walks", "visits", "asks",
+)  # fmt: skip
 
 
 class Place(Record):
@@ -94,7 +97,8 @@ class Person(Thing):
 
     `walks` is the route, which is walked over and over where `again` is true; who `wanders` walks from place to place.
     `answers` go by a word of the question, "*" by any, and take `answers_after` seconds. `follows` is from 0 to 1, how
-    well somebody keeps up when guided: 1 always. What he or she `refuses` isn't taken from the robot.
+    well somebody keeps up when guided: 1 always. What he or she `refuses` isn't taken from the robot. `visits` say when
+    somebody comes in place of `comes` and `leaves`; what somebody `asks` is asked now and then near the robot.
     """
 
     comes: float = 0.0
@@ -110,6 +114,8 @@ class Person(Thing):
     answers_after: float = 1.5
     follows: float = 1.0
     refuses: tuple[str, ...] = ()
+    visits: Visits | None = None
+    asks: tuple[str, ...] = ()
 
     @property
     def parts(self) -> Parts:
@@ -123,7 +129,7 @@ class Person(Thing):
     @property
     def moves(self) -> bool:
         """Whether he or she is ever somewhere else by himself or herself."""
-        return bool(self.walks or self.wanders or self.comes or self.leaves < NEVER)
+        return bool(self.walks or self.wanders or self.visits or self.comes or self.leaves < NEVER)
 
 
 class Zone(Record):
@@ -228,7 +234,8 @@ class WorldNames(Record):
 class World(Record):
     """A world as its file describes it. `walls` are polylines; a dock is also the place "dock".
 
-    `clock` is the time of day at its start, in seconds since midnight; `seed` that of runs which are given none.
+    `clock` is the time of day at its start, in seconds since midnight, on a `weekday` (0: Monday); `seed` is that of
+    runs which are given none.
     """
 
     start: Pose
@@ -244,6 +251,7 @@ class World(Record):
     zones: tuple[Zone, ...] = ()
     doors: tuple[Door, ...] = ()
     seed: int | None = None
+    weekday: int = 0
 
     @property
     def names(self) -> WorldNames:

@@ -18,7 +18,7 @@ from btlang.robots.world import (
     WorldNames,
 )
 from btlang.robots.world_bounds import outside
-from btlang.robots.world_tables import is_point, read_door, read_object, read_person, read_zone
+from btlang.robots.world_tables import is_point, read_crowd, read_door, read_object, read_person, read_zone
 from btlang.text.source import Source
 from btlang.text.time_of_day import USUAL_START
 from btlang.text.toml_table import Problem, Problems, Table
@@ -80,16 +80,19 @@ def _world(top: Table, radius: float, bounded: bool = False) -> World:
     known = problems.part(lambda: top.flag("known", True), True)
     rows["objects"] = problems.rows(top, "objects", lambda table: read_object(table, known))
     rows["people"] = problems.rows(top, "people", lambda table: read_person(table, known, places))
+    crowds = problems.rows(top, "crowds", lambda table: read_crowd(table, known, places))
     rows["zones"], rows["doors"] = problems.rows(top, "zones", read_zone), problems.rows(top, "doors", read_door)
     names = tuple(place.name for place in places)
     faults = _made(problems.rows(top, "faults", lambda table: _fault(table, names)))
-    clock = problems.part(lambda: _clock(top) if top.has("clock") else USUAL_START, USUAL_START)
+    clock, weekday = problems.part(lambda: _clock(top) if top.has("clock") else (USUAL_START, 0), (USUAL_START, 0))
     seed = problems.part(lambda: int(top.number("seed", low=0.0)) if top.has("seed") else None, None)
     problems.part(lambda: top.finish(None), None)
     objects, people, zones, doors = (_made(rows[key]) for key in ("objects", "people", "zones", "doors"))
+    rows["crowds"] = [person for crowd in _made(crowds) for person in crowd]
+    people += tuple(rows["crowds"])
     world = World(
         start or Pose(0.0, 0.0), battery, _made(pieces), boxes, places, objects, people, faults, dock, clock, zones,
-        doors, seed,
+        doors, seed, weekday,
     )  # fmt: skip
     problems.found += _names_given_twice(rows)
     problems.found += _without_room(world, rows["places"], start, radius)
@@ -116,7 +119,7 @@ def _dock(top: Table) -> Place | None:
     return table.finish(Place("dock", table.number("x"), table.number("y"), table.number("facing", 0.0)))
 
 
-def _clock(top: Table) -> float:
+def _clock(top: Table) -> tuple[float, int]:
     from datetime import datetime  # most worlds begin at the usual time
 
     try:
@@ -124,7 +127,7 @@ def _clock(top: Table) -> float:
     except ValueError:
         message = '"clock" must be a date and a time in quotes; write clock = "2026-03-02 08:55"'
         raise Problem(message, "clock") from None
-    return began.hour * 3600.0 + began.minute * 60.0
+    return began.hour * 3600.0 + began.minute * 60.0, began.weekday()
 
 
 def _wall(points: Any, index: int) -> tuple[Point, ...]:

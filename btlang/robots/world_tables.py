@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from btlang.robots.geometry import Point
+from btlang.robots.visits import WEEKDAYS, Visits
 from btlang.robots.world import (
     KEEP_OUT,
     NEVER,
@@ -17,6 +18,7 @@ from btlang.robots.world import (
     WorldObject,
     Zone,
 )
+from btlang.text.time_of_day import seconds_of
 from btlang.text.toml_table import Problem, Table, is_coordinate
 
 TYPE_CHECKING = False
@@ -26,7 +28,8 @@ if TYPE_CHECKING:
 
 ANYWHERE = "anywhere"
 """The `walks` of who wanders."""
-_MOST_STOPS = 1_000
+_MOST_STOPS, _MOST_IN_CROWD = 1_000, 1_000
+_SHORTEST_VISIT = 60.0  # seconds
 
 
 def is_point(value: Any) -> bool:
@@ -64,9 +67,17 @@ def read_person(table: Table, known: bool, places: Sequence[Place]) -> Person:
     return table.finish(
         Person(
             name, x, y, radius, known, comes, leaves, speed, walks, again, wanders, wears, gesture, says, answers,
-            after, follows, table.texts("refuses"),
+            after, follows, table.texts("refuses"), _visits(table), table.texts("asks"),
         )
     )  # fmt: skip
+
+
+def read_crowd(table: Table, known: bool, places: Sequence[Place]) -> tuple[Person, ...]:
+    """An entry of `crowds`: people of the same kind, called "guest 1", "guest 2" and so on. Raises Problem."""
+    count = int(table.number("count", low=1.0, high=_MOST_IN_CROWD))
+    person = read_person(table, known, places)
+    each = person.replace(wanders=True) if not person.walks else person
+    return tuple(each.replace(name=f"{person.name} {at}") for at in range(1, count + 1))
 
 
 def read_zone(table: Table) -> Zone:
@@ -127,6 +138,31 @@ def _where(value: Any, places: Mapping[str, Place], path: tuple[str | int, ...])
         )
         raise Problem(message, *path)
     return place.x, place.y
+
+
+def _visits(table: Table) -> Visits | None:
+    if not table.has("visits"):
+        return None
+    for key in ("comes", "leaves"):
+        if table.has(key):
+            raise table.problem(key, f'somebody has "visits" or "{key}", not both')
+    visits = table.table("visits")
+    start, end = _time_of_day(visits, "from"), _time_of_day(visits, "until")
+    if end - start < _SHORTEST_VISIT:
+        raise visits.problem("until", '"until" must be later than "from" on the same day')
+    stays = visits.number("stays", low=_SHORTEST_VISIT, high=end - start)
+    days = visits.texts("days") or WEEKDAYS
+    for day in days:
+        if day not in WEEKDAYS:
+            raise visits.problem("days", f'"{day}" is no day; write days = ["Monday", "Sunday"]')
+    return visits.finish(Visits(start, end, stays, tuple(sorted({WEEKDAYS.index(day) for day in days}))))
+
+
+def _time_of_day(table: Table, key: str) -> float:
+    try:
+        return seconds_of(table.text(key))
+    except ValueError as problem:
+        raise table.problem(key, f'"{key}" {problem}; write {key} = "10:00"') from None
 
 
 def _utterance(table: Table) -> Utterance:

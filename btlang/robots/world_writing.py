@@ -6,9 +6,10 @@ import json
 from collections.abc import Mapping
 
 from btlang.record import Record
+from btlang.robots.visits import WEEKDAYS, Visits
 from btlang.robots.world import Door, Fault, Person, Stop, World, WorldObject
 from btlang.robots.world_tables import ANYWHERE
-from btlang.text.time_of_day import USUAL_START
+from btlang.text.time_of_day import USUAL_START, shown
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
 _KEYS: dict[type, dict[str, str]] = {Fault: {"start": "from", "end": "until"}, Door: {"start": "from", "end": "to"}}
 """Of fields that have another key in the file."""
+_MONDAY = 5  # of January 2026
 _LISTS = ("boxes", "places", "objects", "people", "zones", "doors", "faults")
 
 
@@ -24,8 +26,8 @@ def as_data(world: World) -> dict[str, Any]:
     start, dock = world.start, world.dock
     begin = {"x": start.x, "y": start.y, "facing": start.heading}
     data: dict[str, Any] = {"start": begin | ({} if world.battery == 100.0 else {"battery": world.battery})}
-    if world.clock != USUAL_START:
-        data["clock"] = f"2026-01-01 {int(world.clock // 3600):02}:{int(world.clock % 3600 // 60):02}"
+    if (world.clock, world.weekday) != (USUAL_START, 0):
+        data["clock"] = f"2026-01-{_MONDAY + world.weekday:02} {shown(world.clock)}"
     if world.seed is not None:
         data["seed"] = world.seed
     if dock is not None:
@@ -68,6 +70,10 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Stop):
         row = _row(value)
         return {"to": [row.pop("x"), row.pop("y")], **row}
+    if isinstance(value, Visits):
+        days = [] if len(value.days) == len(WEEKDAYS) else [WEEKDAYS[day] for day in value.days]
+        row = {"from": shown(value.start), "until": shown(value.end), "stays": value.stays}
+        return row | ({"days": days} if days else {})
     if isinstance(value, Record):
         return _row(value)
     if isinstance(value, tuple):

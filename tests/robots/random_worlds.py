@@ -7,6 +7,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from btlang.robots.geometry import Pose
+from btlang.robots.visits import Visits
 from btlang.robots.world import (
     KEEP_OUT,
     NEVER,
@@ -81,6 +82,11 @@ def _object(draw: st.DrawFn, name: str) -> WorldObject:
 
 def _person(draw: st.DrawFn, name: str) -> Person:
     comes = draw(st.just(0.0) | _seconds)
+    if draw(st.integers(0, 3)) == 0:
+        start, hours = draw(st.integers(0, 12)), draw(st.integers(1, 11))
+        days = tuple(sorted(draw(st.sets(st.integers(0, 6), min_size=1))))
+        visits = Visits(start * 3600.0, (start + hours) * 3600.0, draw(st.floats(60.0, hours * 3600.0)), days)
+        return Person(name, *draw(_points), draw(st.floats(0.01, 1.0)), visits=visits)
     wanders = draw(st.booleans())
     stops = st.builds(Stop, _numbers, _numbers, st.just(0.0) | _seconds, st.just(0.0) | _seconds)
     return Person(
@@ -90,6 +96,7 @@ def _person(draw: st.DrawFn, name: str) -> Person:
         tuple(draw(st.lists(_texts, max_size=2))), draw(st.just("") | _texts),
         tuple(draw(st.lists(st.builds(Utterance, _seconds, _texts), max_size=2))),
         draw(st.dictionaries(_texts.map(str.lower), _texts, max_size=2)), draw(_seconds), draw(st.floats(0.0, 1.0)),
+        asks=tuple(draw(st.lists(_texts, max_size=2))),
     )  # fmt: skip
 
 

@@ -15,10 +15,11 @@ from btlang.text.source import Source
 from tests.profiles import searches
 from tests.robots.random_worlds import worlds
 
-WORLDS = sorted((Path(__file__).parents[2] / "examples" / "worlds").glob("*.toml"))
+EXAMPLES = Path(__file__).parents[2] / "examples"
+WORLDS = [*sorted((EXAMPLES / "worlds").glob("*.toml")), *EXAMPLES.glob("*/world.toml")]
 
 
-@pytest.mark.parametrize("path", [None, *WORLDS], ids=lambda path: path.stem if path else "default")
+@pytest.mark.parametrize("path", [None, *WORLDS], ids=lambda path: "-".join(path.parts[-2:]) if path else "default")
 def test_shipped_worlds_come_back(path: Path | None) -> None:
     world = load_world(path)
     assert load_world(Source(to_toml(world), "world.toml")) == world
