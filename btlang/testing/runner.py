@@ -70,9 +70,8 @@ class _Connect(Record):
         bind, fakes = connection.bind, self.fakes
 
         def bound(entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
-            if not fakes.has(entry.id):
-                return bind(entry, vocabulary)  # type: ignore[no-any-return]
-            return faked(entry.id, vocabulary, fakes, connection.bus.clock)
+            own: LeafBinding | None = bind(entry, vocabulary)
+            return faked(own, entry, vocabulary, fakes, connection.bus.clock) if fakes.has(entry.id) else own
 
         connection.bind = bound
         return connection  # type: ignore[no-any-return]
