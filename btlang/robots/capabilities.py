@@ -350,6 +350,9 @@ class Voice(Machine, Protocol):
     def say(self, text: str, after: float = 0.0) -> None:
         """Starts to speak after so many seconds; `speaking` is False when it has finished. Raises RobotError."""
 
+    def utterance(self, text: str) -> Utterance:
+        """What it would say, with the times of the words. Raises RobotError."""
+
     @property
     def said(self) -> Utterance | None:
         """What it says, or said last, with the times of its words; None where it hasn't said anything."""

@@ -20,7 +20,6 @@ from btlang.robots.power import staging_pose
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, SensorSilent
 from btlang.robots.simulated_parts import simulated_parts
 from btlang.robots.surroundings import Surroundings
-from btlang.robots.voice import speak
 from btlang.robots.world import Place, World, said
 from btlang.robots.zones import Zones
 from btlang.run.robot_state import Whereabouts
@@ -496,9 +495,14 @@ class SimulatedRobot:
         """Starts to speak after so many seconds, for as long as the voice of the body takes. Raises RobotError."""
         self._need("voice")
         if not self._latch.refuses:
-            speak(self._voice, text, after)
+            self._voice.say(text, after)
             self._last_said = text
             self._emit("say", text=text)
+
+    def utterance(self, text: str) -> Utterance:
+        """What it would say. Raises RobotError."""
+        self._need("voice")
+        return self._voice.utterance(text)
 
     @property
     def said(self) -> Utterance | None:

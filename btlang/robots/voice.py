@@ -8,13 +8,12 @@ from contextlib import suppress
 from btlang.robots.body import Body
 from btlang.robots.robot import RobotError
 from btlang.robots.voice_file import engine_of
-from btlang.speech.engine import SpeechError
+from btlang.speech.engine import SpeechError, Utterance
 from btlang.speech.visemes import SHAPES, shape_at
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.robots.parts import VoicePart
-    from btlang.speech.engine import SpeechEngine, Utterance
+    from btlang.speech.engine import SpeechEngine
 
 
 class Voice:
@@ -37,13 +36,19 @@ class Voice:
         """True while it speaks, and before it begins."""
         return not self._ended
 
+    def utterance(self, text: str) -> Utterance:
+        """The text as it would be said. Raises RobotError where the engine can't."""
+        try:
+            return Utterance(text, 0.0) if self._engine is None else self._engine.speak(text)
+        except SpeechError as problem:
+            raise RobotError(str(problem)) from None
+
     def say(self, text: str, after: float = 0.0) -> None:
-        """Speaks after so many seconds, in place of what it is saying. Raises SpeechError."""
-        if self._engine is not None:
-            self.silence()
-            self.said = self._engine.speak(text)
-            self.position, self._ended = -after, False
-            self._step(0.0)
+        """Speaks after so many seconds, in place of what it is saying. Raises RobotError."""
+        self.silence()
+        self.said = self.utterance(text)
+        self.position, self._ended = -after, False
+        self._step(0.0)
 
     def silence(self) -> None:
         """Ends speech at once; from any thread. The mouth closes at the next step."""
@@ -88,11 +93,3 @@ def make_engine(body: Body) -> SpeechEngine:
         from btlang.robots.body_file import unusable_robot
 
         raise unusable_robot(problem) from None
-
-
-def speak(voice: VoicePart, text: str, after: float) -> None:
-    """Lets a part say a text. Raises RobotError where its engine can't."""
-    try:
-        voice.say(text, after)
-    except SpeechError as problem:
-        raise RobotError(str(problem)) from None

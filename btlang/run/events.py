@@ -45,6 +45,9 @@ if TYPE_CHECKING:
         def stop(self) -> object: ...
 
 
+_SEEN = 0.08  # seconds by which a stroke may miss its word
+
+
 class Event(Record):
     """The fields of all events: `t` in seconds of mission time, `run` the id of the run, `number` from 0 on without
     gaps in a run, and `wall` in seconds since 1970.
@@ -349,6 +352,21 @@ class Pictured(InTheWorld):
     name: str
 
 
+class Gestured(InTheWorld):
+    """A gesture begins whose stroke meets a word: seconds of both since the beginning of what is said."""
+
+    tag = "gesture"
+    name: str
+    stroke: float
+    word: float
+
+    @property
+    def words(self) -> str:
+        """In plain English, with how late it is where people would see that."""
+        late = self.stroke - self.word
+        return f"{self.name}, {late:.2f} s after its word" if late > _SEEN else self.name
+
+
 class PartChanged(Event):
     """A component has another state (see btlang.components.life_cycle), or a device "works" or is "silent".
 
@@ -461,7 +479,7 @@ ROBOT_EVENTS: dict[str, type[Event]] = {
     for event in (
         Said, Printed, Chosen, NavigationStarted, Arrived, Bumped, Stuck, Stopped, Grasped, Released, Dropped,
         JointsMoved, Docked, Undocked, BatteryEmpty, FaultInjected, Heard, Asked, Seen, Came, Gone, Called, DoorMoved,
-        Switched, Given, Pictured, PartChanged, Warned, Troubled,
+        Switched, Given, Pictured, Gestured, PartChanged, Warned, Troubled,
     )
 }  # fmt: skip
 """What robots report, by the kinds of btlang.robots.robot.Robot.on_event."""

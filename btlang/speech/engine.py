@@ -68,8 +68,8 @@ class Utterance(Record):
     rate: int = 0
 
     def time_of(self, index: int) -> float:
-        """When the first word begins that isn't over before an index of the text; after the last one the end."""
-        return next((word.time for word in self.words if word.end > index), self.seconds)
+        """When the first word begins that is at an index of the text or behind it; after the last one the end."""
+        return next((word.time for word in self.words if word.start >= index), self.seconds)
 
     def index_at(self, time: float) -> int:
         """The index of the word that is spoken at a time, or was last; 0 before the first."""
