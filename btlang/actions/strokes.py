@@ -82,7 +82,7 @@ class Strokes:
             self._going.append(robot.gesture(stroke.name, aim=stroke.aim, stroke_at=at))
             if robot.on_event is not None:
                 met = self._free_at - robot.said_at
-                robot.on_event("gesture", {"name": stroke.name, "stroke": round(met, 3), "word": round(word, 3)})
+                robot.on_event("stroke", {"name": stroke.name, "stroke": round(met, 3), "word": round(word, 3)})
 
     def halt(self) -> None:
         """They come to rest where they are."""

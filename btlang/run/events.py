@@ -45,9 +45,6 @@ if TYPE_CHECKING:
         def stop(self) -> object: ...
 
 
-_SEEN = 0.08  # seconds by which a stroke may miss its word
-
-
 class Event(Record):
     """The fields of all events: `t` in seconds of mission time, `run` the id of the run, `number` from 0 on without
     gaps in a run, and `wall` in seconds since 1970.
@@ -352,19 +349,15 @@ class Pictured(InTheWorld):
     name: str
 
 
-class Gestured(InTheWorld):
-    """A gesture begins whose stroke meets a word: seconds of both since the beginning of what is said."""
+class StrokePlanned(Event):
+    """The gesture `name` begins while the robot speaks. Its stroke is `stroke` seconds behind the beginning of what is
+    said, that of its word `word` seconds: the stroke is later where the body can't be so fast.
+    """
 
-    tag = "gesture"
+    tag = "stroke"
     name: str
     stroke: float
     word: float
-
-    @property
-    def words(self) -> str:
-        """In plain English, with how late it is where people would see that."""
-        late = self.stroke - self.word
-        return f"{self.name}, {late:.2f} s after its word" if late > _SEEN else self.name
 
 
 class PartChanged(Event):
@@ -479,7 +472,7 @@ ROBOT_EVENTS: dict[str, type[Event]] = {
     for event in (
         Said, Printed, Chosen, NavigationStarted, Arrived, Bumped, Stuck, Stopped, Grasped, Released, Dropped,
         JointsMoved, Docked, Undocked, BatteryEmpty, FaultInjected, Heard, Asked, Seen, Came, Gone, Called, DoorMoved,
-        Switched, Given, Pictured, Gestured, PartChanged, Warned, Troubled,
+        Switched, Given, Pictured, StrokePlanned, PartChanged, Warned, Troubled,
     )
 }  # fmt: skip
 """What robots report, by the kinds of btlang.robots.robot.Robot.on_event."""
