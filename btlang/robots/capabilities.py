@@ -56,7 +56,7 @@ class Machine(Protocol):
 
     `on_event(kind, data)` is called for each event. Kinds: say, print, choose, navigate, arrive, bump, stuck, stop,
     grasp, release, drop, joint, dock, undock, battery, fault, hear, ask, see, come, leave, call, door, switch,
-    give, picture.
+    give, picture, gesture.
     """
 
     on_event: OnEvent | None

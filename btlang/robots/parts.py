@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Protocol
+from collections.abc import Callable, Mapping, Sequence
+from typing import Protocol, runtime_checkable
 
 from btlang.record import Record
-from btlang.robots.body import Body
+from btlang.robots.body import Body, Vector
 from btlang.robots.capabilities import Hand, Operation
 from btlang.robots.geometry import Pose
+from btlang.robots.gesture import Gesture, Step
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -73,6 +74,16 @@ class JointsPart(Protocol):
     def at_target(self, names: tuple[str, ...]) -> bool: ...
     def freeze(self, names: tuple[str, ...] | None = None) -> None: ...
     def step(self, dt: float) -> None: ...
+
+
+@runtime_checkable
+class SmoothPart(Protocol):
+    """Joints with limits of acceleration, whose movements are planned; see btlang.robots.motion.smooth_joints."""
+
+    def play(
+        self, wanted: Gesture | Sequence[Step], bearing: float, aim: Vector | None, room: float | None
+    ) -> tuple[Operation, float]: ...
+    def lead(self, wanted: Gesture | Sequence[Step], bearing: float, aim: Vector | None) -> float: ...
 
 
 class HandsPart(Protocol):

@@ -12,6 +12,7 @@ from btlang.robots.choices import Choices
 from btlang.robots.ears import Ears
 from btlang.robots.faults import Faults, describe
 from btlang.robots.geometry import Point, Pose
+from btlang.robots.gesturing import Gestures
 from btlang.robots.latch import Latch
 from btlang.robots.navigation import NavigationGoal, Navigator
 from btlang.robots.obstacles import Obstacles
@@ -66,6 +67,7 @@ class SimulatedRobot:
         parts = (make_parts or simulated_parts)(world, self._obstacles, body)
         self._base, self.power, self._scan = parts.base, parts.power, parts.scan
         self._joints, self._hands, self._voice = parts.joints, parts.hands, parts.voice
+        self._gestures = Gestures(body, self._joints)
         self.faults = Faults(world.faults)
         self._surroundings = Surroundings(world, self._obstacles, body, self._joints.angle, self._emit)
         self._navigator = Navigator(world, self._base, self._obstacles, self.faults, self._surroundings)
@@ -97,6 +99,7 @@ class SimulatedRobot:
         self._navigator.protect()
         self._base.step(dt)
         self._joints.step(dt)
+        self._gestures.step(dt)
         if not self._latch.refuses:  # an emergency stop leaves the mouth as it is
             self._voice.step(dt)
         self._hands.step(dt)
@@ -132,7 +135,7 @@ class SimulatedRobot:
     def _rest(self) -> None:
         self._navigator.cancel("the robot was stopped")
         self._base.brake()
-        self._joints.freeze()
+        self._gestures.stop()
         self._hands.stop()
         self._voice.silence()
 
@@ -447,6 +450,19 @@ class SimulatedRobot:
     def freeze_joints(self, *names: str) -> None:
         """These joints stay where they are now."""
         self._joints.freeze(names)
+
+    def gesture(self, name: str, *, aim: Point | None = None, stroke_at: float | None = None) -> Operation:
+        """See btlang.robots.capabilities.Gesturing. Raises RobotError."""
+        if self._latch.refuses:
+            raise RobotError("the robot was stopped")
+        room = None if stroke_at is None else stroke_at - self.time
+        started, slower = self._gestures.start(name, self.pose, aim, room)
+        self._emit("gesture", name=name, slower=round(slower, 2))
+        return started
+
+    def lead(self, name: str, aim: Point | None = None) -> float:
+        """See btlang.robots.capabilities.Gesturing. Raises RobotError."""
+        return self._gestures.lead(name, self.pose, aim)
 
     def grasp(self, hand: Hand, name: str | None = None) -> Operation:
         """Closes a hand on the named or the nearest object. Raises RobotError."""
