@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
+    from btlang.speech.engine import Utterance
+
 Hand = Literal["left", "right"]
 OnEvent = Callable[[str, Mapping[str, Any]], None]
 
@@ -346,8 +348,19 @@ class Messenger(Machine, Protocol):
 class Voice(Machine, Protocol):
     """Speech, and the screen."""
 
-    def say(self, text: str) -> None:
-        """Starts to speak; `speaking` is False when it has finished."""
+    def say(self, text: str, after: float = 0.0) -> None:
+        """Starts to speak after so many seconds; `speaking` is False when it has finished. Raises RobotError."""
+
+    def utterance(self, text: str) -> Utterance:
+        """What it would say, with the times of the words. Raises RobotError."""
+
+    @property
+    def said(self) -> Utterance | None:
+        """What it says, or said last, with the times of its words; None where it hasn't said anything."""
+
+    @property
+    def said_at(self) -> float:
+        """The second of `time` at which that begins, as far as it's known yet."""
 
     @property
     def speaking(self) -> bool:

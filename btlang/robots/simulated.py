@@ -32,6 +32,7 @@ from btlang.vocabulary.capabilities import part_of
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.scan import Array
+    from btlang.speech.engine import Utterance
 
 _CONTROL_PERIOD = 0.05
 _HANDS: tuple[Hand, Hand] = ("left", "right")
@@ -100,7 +101,8 @@ class SimulatedRobot:
         self._base.step(dt)
         self._joints.step(dt)
         self._gestures.step(dt)
-        self._voice.step(dt)
+        if not self._latch.refuses:  # an emergency stop leaves the mouth as it is
+            self._voice.step(dt)
         self._hands.step(dt)
         self._drop()
         self._use_power(dt, self._base.travelled - travelled)
@@ -498,13 +500,28 @@ class SimulatedRobot:
         """The name of what the hand holds."""
         return self._hands.held.get(hand)
 
-    def say(self, text: str) -> None:
-        """Starts to speak, for as long as the body says."""
+    def say(self, text: str, after: float = 0.0) -> None:
+        """Starts to speak after so many seconds, for as long as the voice of the body takes. Raises RobotError."""
         self._need("voice")
         if not self._latch.refuses:
-            self._voice.say(text)
+            self._voice.say(text, after)
             self._last_said = text
             self._emit("say", text=text)
+
+    def utterance(self, text: str) -> Utterance:
+        """What it would say. Raises RobotError."""
+        self._need("voice")
+        return self._voice.utterance(text)
+
+    @property
+    def said(self) -> Utterance | None:
+        """What it says, or said last."""
+        return self._voice.said
+
+    @property
+    def said_at(self) -> float:
+        """The second of `time` at which that begins."""
+        return self.time - self._voice.position
 
     @property
     def speaking(self) -> bool:
