@@ -23,6 +23,7 @@ import pytest
 
 from btlang.cli import main
 from btlang.frontends.mission.reader import PARSERS
+from btlang.task.house import read_schedules
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
@@ -252,7 +253,9 @@ def test_files_of_the_pages_load(folder: Path, monkeypatch: pytest.MonkeyPatch) 
     """Keyword files, worlds and robots that are shown without a command."""
     monkeypatch.chdir(folder)
     for block in BLOCKS:
-        if block.language == "toml" and block.file:
+        if block.language == "toml" and block.file.endswith("schedules.toml"):
+            assert read_schedules(block.file)
+        elif block.language == "toml" and block.file:
             option = "--world" if block.file.endswith("world.toml") else "--keywords"
             command = f"btc check {option} {block.file} -c wave"
             if block.file.endswith("robot.toml"):

@@ -54,10 +54,7 @@ def enter_dock(robot: Homing, staging: Pose, stage: Callable[[str], object] = la
                 raise
         stage(RETRY)
         yield from drive_straight(robot, -max(0.0, staging.progress_of(robot.pose)), part.speed)
-        until = robot.time + _PAUSE
-        while robot.time < until:
-            watch.check_stop()
-            yield
+        yield from watch.pause(_PAUSE)
 
 
 def _is_in(pose: Pose, spot: Pose, within: float) -> bool:

@@ -7,7 +7,7 @@ from typing import Protocol
 
 from btlang.actions.company import Meeting, speaker
 from btlang.actions.joints import take
-from btlang.actions.manipulation import Fetching, pick_up, put_down
+from btlang.actions.manipulation import Fetching, hand_with, pick_up, put_down
 from btlang.actions.manner import paced
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, go_to, travel
@@ -88,12 +88,10 @@ def _bring(robot: Bringing, object: str, person: str | None) -> Steps:
 
 def _hold(robot: Fetching, object: str) -> Generator[None, None, Hand]:
     """The hand that holds the object, which is picked up first where none does."""
-    hands: tuple[Hand, Hand] = ("right", "left")
-    for hand in hands:
-        if robot.holding(hand) == object:
-            return hand
-    yield from pick_up(robot, object)
-    return "right"
+    hand = hand_with(robot, object)
+    if hand is None:
+        yield from pick_up(robot, object)
+    return hand or "right"
 
 
 def patrol(

@@ -48,7 +48,7 @@ def grasp(robot: Hands, object: str | None = None) -> Steps:
 
 def release(robot: Hands, object: str | None = None) -> Steps:
     """Opens the hand that holds the object, or any. Fails where none does."""
-    yield from accomplish(robot.release(_hand_with(robot, object)))
+    yield from accomplish(robot.release(_full_hand(robot, object)))
 
 
 def pick_up(robot: Fetching, object: str) -> Steps:
@@ -64,19 +64,27 @@ def pick_up(robot: Fetching, object: str) -> Steps:
 
 def put_down(robot: Reaching, object: str | None = None) -> Steps:
     """Lowers the arm that holds the object (or anything) and opens its hand. Fails where none does."""
-    hand = _hand_with(robot, object)
+    hand = _full_hand(robot, object)
     yield from take(robot, f"{hand} arm reaching")
     yield from accomplish(robot.release(hand))
     yield from take(robot, f"{hand} arm hanging")
 
 
-def _hand_with(robot: Hands, object: str | None) -> Hand:
+def hand_with(robot: Hands, object: str | None = None) -> Hand | None:
+    """The hand that holds the object (or anything), the right one first; None where none does."""
     hands: tuple[Hand, Hand] = ("right", "left")
     for hand in hands:
         held = robot.holding(hand)
         if held is not None and object in (None, held):
             return hand
-    raise ActionFailed(f"the robot isn't holding {said(object)}" if object else "the robot isn't holding anything")
+    return None
+
+
+def _full_hand(robot: Hands, object: str | None) -> Hand:
+    hand = hand_with(robot, object)
+    if hand is None:
+        raise ActionFailed(f"the robot isn't holding {said(object)}" if object else "the robot isn't holding anything")
+    return hand
 
 
 def raise_right_arm(robot: Joints) -> Steps:

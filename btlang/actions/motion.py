@@ -31,7 +31,7 @@ def move_forward(
     progress: Tell = unheard,
 ) -> Steps:
     """Drives straight ahead by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
-    yield from drive_straight(robot, distance, share_of(robot, manner) * (speed or robot.normal_speed), progress)
+    yield from drive_straight(robot, distance, _speed(robot, speed, manner), progress)
 
 
 def move_backward(
@@ -42,7 +42,11 @@ def move_backward(
     progress: Tell = unheard,
 ) -> Steps:
     """Drives straight back by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
-    yield from drive_straight(robot, -distance, share_of(robot, manner) * (speed or robot.normal_speed), progress)
+    yield from drive_straight(robot, -distance, _speed(robot, speed, manner), progress)
+
+
+def _speed(robot: Driving, speed: float | None, manner: str | None) -> float:
+    return share_of(robot, manner) * (speed or robot.normal_speed)
 
 
 def turn_left(robot: Driving, angle: float, progress: Tell = unheard) -> Steps:

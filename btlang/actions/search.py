@@ -10,6 +10,7 @@ from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, go_to, travel
 from btlang.actions.nouns import described
 from btlang.actions.points import spot
+from btlang.actions.sensing import holding
 from btlang.actions.watch import Driving, Watch
 from btlang.engine.leaves.leaf import ActionFailed, Failed
 from btlang.robots.capabilities import Hands, Navigation, Perception
@@ -39,7 +40,7 @@ def look_for_object(
     robot: Searching, object: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
     """Searches a place, or all of them, until an object is in view or in a hand. Fails where it is in none."""
-    if robot.body.has("holding") and object in (robot.holding("left"), robot.holding("right")):
+    if robot.body.has("holding") and holding(robot, object):
         return
     yield from _search(robot, object, lambda: robot.sees(object), place, x, y)
 

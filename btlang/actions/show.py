@@ -13,10 +13,7 @@ _BOWED = 1.0  # seconds
 def bow(robot: Joints) -> Steps:
     """Lowers the head for a second."""
     yield from take(robot, "look down")
-    watch, until = Watch(robot), robot.time + _BOWED
-    while robot.time < until:
-        yield
-        watch.check_stop()
+    yield from Watch(robot).pause(_BOWED)
     yield from take(robot, "look ahead")
 
 

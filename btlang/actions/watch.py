@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from typing import Protocol
 
 from btlang.engine.leaves.leaf import ActionFailed
@@ -23,6 +24,13 @@ class Watch:
         """Raises ActionFailed when somebody has stopped the robot."""
         if self._machine.stops != self._stops:
             raise ActionFailed("the robot was stopped")
+
+    def pause(self, seconds: float) -> Generator[None, None, None]:
+        """Waits. Raises as `check_stop`."""
+        until = self._machine.time + seconds
+        while self._machine.time < until:
+            yield
+            self.check_stop()
 
 
 class BaseWatch(Watch):

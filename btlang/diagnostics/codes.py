@@ -191,6 +191,7 @@ _ALL = (
     Code("BT189", "A task store in PostgreSQL needs the Python package psycopg, which isn't installed.",
          "Install it: pip install 'btlang[postgres]'"),
     Code("BT190", "A robot '{name}' is up already.", "End it with: btc robot down --name {name}"),
+    Code("BT191", "This file of schedules can't be used: {reason}."),
     Code("BT192", "The run can't be saved: {reason}."),
     Code("BT193", "The mission can't go on from what was saved: {reason}.", "Start it again from its beginning."),
     Code("BT194", "{what} {problem}.", "{advice}"),

@@ -7,7 +7,7 @@ from itertools import pairwise
 from math import hypot
 
 from btlang.pictures.canvas import Canvas
-from btlang.robots.geometry import Point
+from btlang.robots.geometry import Point, edges
 from btlang.robots.world import Door, Person, World, Zone
 
 _CLOSED_ZONE, _SLOW_ZONE = "#c0440c", "#9a6a00"
@@ -48,7 +48,7 @@ def hatching(corners: Sequence[Point], step: float) -> list[list[Point]]:
     along = (int(min(sums) // step) + 1) * step
     while along < max(sums):
         crossings = []
-        for (ax, ay), (bx, by) in pairwise((*corners, corners[0])):
+        for (ax, ay), (bx, by) in edges(corners):
             a, b = ax + ay - along, bx + by - along
             if (a > 0) != (b > 0):
                 share = a / (a - b)

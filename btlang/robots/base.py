@@ -102,8 +102,10 @@ class Base:
         linear, angular = self._speeds
         driving, turning = self._driving, self._turning
         brake, turn_brake = (driving.hard_brake, turning.hard_brake) if self._hard else (driving.brake, turning.brake)
-        wanted = max(-self.most, min(self.most, self.wanted[0]))
-        if abs(linear) > self.most:
+        wanted, most = self.wanted[0], self.most
+        if abs(wanted) > most:
+            wanted = copysign(most, wanted)
+        if abs(linear) > most:
             brake = driving.hard_brake
         linear = towards(linear, wanted, driving.acceleration * h, brake * h)
         angular = towards(angular, self.wanted[1], turning.acceleration * h, turn_brake * h)
@@ -152,7 +154,7 @@ class Base:
         else:
             now = self._free = obstacles.nearest_standing(pose.x, pose.y)[0] - self._radius
             self._layout = obstacles.layout
-        if min(now, walking) >= 0.0:
+        if now >= 0.0 and walking >= 0.0:
             return False
         now, before = self._gap(pose), self._gap(self.pose)
         if now > before:

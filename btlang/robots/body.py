@@ -208,7 +208,8 @@ class Body(Record):
 
     `over` is what it runs on where nothing else is said: a name of btlang.robots.registry.ROBOTS. Joints that a posture
     does not name stay where they are; its steps follow each other. `file` is where this comes from, `world` the path of
-    the world file of the place where it works; "" without one. `forbidden` are pairs of links that may not touch.
+    the world file of the place where it works; "" without one. `rules`, `missions` and `schedules` are the paths of
+    what it does where it is up: see btlang.task.house. `forbidden` are pairs of links that may not touch.
     """
 
     name: str
@@ -231,6 +232,9 @@ class Body(Record):
     ears: Ears | None = None
     capsules: tuple[Capsule, ...] = ()
     forbidden: tuple[tuple[str, str], ...] = ()
+    rules: str = ""
+    missions: str = ""
+    schedules: str = ""
     gestures: Mapping[str, Gesture] = {}
 
     @property

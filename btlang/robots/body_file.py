@@ -121,8 +121,11 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     components = _listed(top, "component", _component, problems)
     made = Body(
         name, radius, over, base, navigation, joints, postures, hands, sensors, battery, dock, voice, screen,
-        devices, components, file, problems.part(lambda: _world(top, file), ""),
+        devices, components, file, problems.part(lambda: _beside(top, "world", file), ""),
         problems.part(lambda: _ears(top), None), capsules, forbidden,
+        rules=problems.part(lambda: _beside(top, "rules", file), ""),
+        missions=problems.part(lambda: _beside(top, "missions", file, os.path.isdir), ""),
+        schedules=problems.part(lambda: _beside(top, "schedules", file), ""),
     )  # fmt: skip
     problems.part(lambda: top.finish(made), made)
     if not file:
@@ -133,13 +136,15 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     return made
 
 
-def _world(top: Table, file: str) -> str:
-    if not top.has("world"):
+def _beside(top: Table, key: str, file: str, exists: Callable[[str], bool] = os.path.isfile) -> str:
+    """The path of a file, or a folder, in the folder of the robot file; "" where there is no such key."""
+    if not top.has(key):
         return ""
     folder = os.path.dirname(file)
-    path = os.path.join(folder, top.text("world"))
-    if not (file and is_below(real_path(path), folder) and os.path.isfile(path)):
-        raise top.problem("world", '"world" must be a file in the folder of the robot file')
+    path = os.path.join(folder, top.text(key))
+    if not (file and is_below(real_path(path), folder) and exists(path)):
+        what = "file" if exists is os.path.isfile else "folder"
+        raise top.problem(key, f'"{key}" must be a {what} in the folder of the robot file')
     return path
 
 

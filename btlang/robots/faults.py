@@ -53,7 +53,7 @@ class Faults:
     @property
     def grips(self) -> tuple[float, float]:
         """How much of its motion the left and the right wheel bring to the floor, 0 to 1."""
-        return self._grip("left"), self._grip("right")
+        return (self._grip("left"), self._grip("right")) if self._active else (1.0, 1.0)
 
     def fails_to_dock(self) -> bool:
         """Whether connecting to the dock fails this time: each call counts as one of the `times` of a fault."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import atan2, cos, degrees, hypot, radians, sin
 
 from btlang.record import Record
@@ -53,11 +53,16 @@ def segment_distance(point: Point, segment: Segment) -> float:
     return hypot(x - ax - t * dx, y - ay - t * dy)
 
 
+def edges(polygon: Sequence[Point]) -> Iterator[tuple[Point, Point]]:
+    """The sides of a polygon, the one from its last point to its first included."""
+    return zip(polygon, (*polygon[1:], polygon[0]), strict=True)
+
+
 def contains(polygon: Sequence[Point], point: Point) -> bool:
     """Whether a point is in a polygon, by the even-odd rule."""
     x, y = point
     inside = False
-    for (ax, ay), (bx, by) in zip(polygon, (*polygon[1:], polygon[0]), strict=True):
+    for (ax, ay), (bx, by) in edges(polygon):
         if (ay > y) != (by > y) and x < ax + (y - ay) * (bx - ax) / (by - ay):
             inside = not inside
     return inside

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import ceil, hypot
+from math import ceil, hypot, sqrt
 
 import numpy as np
 import numpy.typing as npt
 
-from btlang.robots.geometry import Point
+from btlang.robots.geometry import Point, edges
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.robot import RobotError
 from btlang.robots.world import World
@@ -21,7 +21,8 @@ _MOST_AREA = 40_000  # square metres: the grid of a planner takes 250 MB
 
 
 class Grid:
-    """Square cells of `size` metres. `xs` and `ys` are their centres, a row of the arrays has one y.
+    """Square cells of `size` metres. `xs` and `ys` are their centres, a row of the arrays has one y. `steps` lead from
+    a cell to its neighbours: what to add to its number, and the length in cells.
 
     Raises RobotError where the world is too large.
     """
@@ -39,6 +40,8 @@ class Grid:
             raise RobotError(f"the world is too large to plan a way: {extent}, and {most}")
         self.size, self.origin = size, (low_x, low_y)
         self.columns, self.rows = ceil((high_x - low_x) / size), ceil((high_y - low_y) / size)
+        self.steps = [(row * self.columns + column, sqrt(abs(row) + abs(column)))
+                      for row in (-1, 0, 1) for column in (-1, 0, 1) if row or column]  # fmt: skip
         self.xs, self.ys = np.meshgrid(
             low_x + size * (np.arange(self.columns) + 0.5), low_y + size * (np.arange(self.rows) + 0.5)
         )
@@ -57,7 +60,7 @@ class Grid:
     def to_polygon(self, points: Sequence[Point]) -> Array:
         """Metres from each cell to a polygon, 0 inside."""
         nearest2 = np.full(self.xs.shape, np.inf)
-        for start, end in zip(points, (*points[1:], points[0]), strict=True):
+        for start, end in edges(points):
             nearest2 = np.minimum(nearest2, self._squared((*start, *end)))
         nearest2[self._inside(points)] = 0.0
         distances: Array = np.sqrt(nearest2)
@@ -98,7 +101,7 @@ class Grid:
 
     def _inside(self, points: Sequence[Point]) -> Bools:
         inside = np.zeros(self.xs.shape, dtype=bool)
-        for (ax, ay), (bx, by) in zip(points, (*points[1:], points[0]), strict=True):
+        for (ax, ay), (bx, by) in edges(points):
             if ay != by:
                 crosses = ((ay > self.ys) != (by > self.ys)) & (self.xs < ax + (self.ys - ay) * (bx - ax) / (by - ay))
                 inside ^= crosses

@@ -174,8 +174,8 @@ class Navigator:
             goal.end(f"there is no free way to {said(name)}")
         elif (target := self._target(goal)) is None:
             goal.end(f"I haven't seen {said(name)}")
-        elif (closed := self._zones.closed_at(target)) is not None and not goal.reach:
-            goal.end(f"{said(name)} is in the {closed.name}, where the robot may not go")
+        elif not goal.reach and (refusal := self._zones.refusal(name, target)) is not None:
+            goal.end(refusal)
         elif goal.planned != (self._obstacles.layout, self._zones.version) or self._has_moved(goal, target):
             self._plan(goal)
 
@@ -243,12 +243,7 @@ class Navigator:
         else:
             error = pose.bearing_to(goal.target)
         if abs(error) <= _FACING:
-            lost = goal.reach and not self._surroundings.sight.is_fresh(goal.name)
-            person = self._surroundings.is_person(goal.name)
-            gone = (
-                f"I've lost sight of {said(goal.name)}" if person else f"{said(goal.name)} is no longer where I saw it"
-            )
-            goal.end(gone if lost else None)
+            goal.end(self._surroundings.sight.lost(goal.name) if goal.reach else None)
         else:
             self._base.drive(0.0, turn_rate(error, self._body.turning))
 

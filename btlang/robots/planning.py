@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from heapq import heappop, heappush
 from itertools import pairwise
-from math import ceil, hypot, sqrt
+from math import ceil, hypot
 
 import numpy as np
 import numpy.typing as npt
@@ -89,10 +89,8 @@ class Planner:
 
     def _search(self, first: int, goal: Point, reach: float) -> list[int] | None:
         """A*: cells near obstacles cost up to four times as much, blocked ones have cost 0."""
-        costs, columns = self._costs, self._columns
+        costs, columns, steps = self._costs, self._columns, self._grid.steps
         goal_x, goal_y = (goal[0] - self._origin[0]) / CELL - 0.5, (goal[1] - self._origin[1]) / CELL - 0.5
-        steps = [(d_row * columns + d_column, sqrt(abs(d_row) + abs(d_column)))
-                 for d_row in (-1, 0, 1) for d_column in (-1, 0, 1) if d_row or d_column]  # fmt: skip
         near = reach / CELL
         best = {first: 0.0}
         came: dict[int, int] = {}

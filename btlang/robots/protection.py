@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import cos, hypot, inf, radians, sin, sqrt
 
 from btlang.robots.body import Body
-from btlang.robots.geometry import Point, Pose, segment_distance
+from btlang.robots.geometry import Point, Pose, Segment, edges, segment_distance
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.world import Zone
 from btlang.robots.zones import Zones
@@ -26,6 +25,9 @@ class Protection:
     def __init__(self, obstacles: Obstacles, zones: Zones, body: Body) -> None:
         self._obstacles, self._zones = obstacles, zones
         self._radius, self._brake = body.radius, body.driving.brake
+        self._slow: list[tuple[Zone, Segment]] = []
+        self._closed: list[tuple[Zone, Segment]] = []
+        self._version = -1
         self.person = ""
         """Who makes it stand, or nearly so; "" where nobody does."""
         self.zone: Zone | None = None
@@ -34,17 +36,30 @@ class Protection:
     def limit(self, pose: Pose, backward: bool = False) -> float:
         """Metres a second that are safe straight ahead, or backward; inf where nothing limits it."""
         self.person, self.zone = "", None
+        if self._version != self._zones.version:
+            self._measure()
+        most = inf
+        for zone, box in self._slow:
+            if zone.speed < most and _within(box, pose) and self._near(zone, (pose.x, pose.y)):
+                most = zone.speed
+        closed = [zone for zone, box in self._closed if _within(box, pose)]
+        if not closed and not self._obstacles.walking:
+            return most
         heading = radians(pose.heading + 180.0 * backward)
         direction = cos(heading), sin(heading)
-        most = self._for_people(pose, direction) if self._obstacles.walking else inf
-        if self._zones.slow:
-            most = min(most, *(zone.speed if self._near(zone, (pose.x, pose.y)) else inf for zone in self._zones.slow))
-        for zone in self._zones.closed:
+        most = min(most, self._for_people(pose, direction))
+        for zone in closed:
             free = self._before(zone, pose, direction)
             if free < most:
                 most, self.person = free, ""
                 self.zone = zone if free < _MARGIN else None
         return most
+
+    def _measure(self) -> None:
+        """Notes in which boxes the zones matter: most of the time the robot is in none."""
+        self._version = self._zones.version
+        self._slow = [(zone, _box(zone, self._radius)) for zone in self._zones.slow]
+        self._closed = [(zone, _box(zone, self._radius + _EDGE + _LOOK)) for zone in self._zones.closed]
 
     def _for_people(self, pose: Pose, direction: Point) -> float:
         most = inf
@@ -85,7 +100,16 @@ class Protection:
         return sqrt(2 * self._brake * max(0.0, gap) * _PROBE / max(nearer, 1e-9)) if gap > 0.0 else 0.0
 
 
+def _box(zone: Zone, margin: float) -> Segment:
+    """The least and the greatest x and y of a zone with so many metres around it."""
+    xs, ys = [x for x, _ in zone.points], [y for _, y in zone.points]
+    return min(xs) - margin, min(ys) - margin, max(xs) + margin, max(ys) + margin
+
+
+def _within(box: Segment, pose: Pose) -> bool:
+    return box[0] <= pose.x <= box[2] and box[1] <= pose.y <= box[3]
+
+
 def edge_distance(zone: Zone, point: Point) -> float:
     """Metres from a point to the border of a zone."""
-    edges: Sequence[Point] = zone.points
-    return min(segment_distance(point, (*a, *b)) for a, b in zip(edges, (*edges[1:], edges[0]), strict=True))
+    return min(segment_distance(point, (*a, *b)) for a, b in edges(zone.points))

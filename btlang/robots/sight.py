@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.obstacles import Obstacles
-from btlang.robots.world import World
+from btlang.robots.world import World, said
 
 _PERIOD = 0.1  # seconds between two looks
 _FRESH = 2.0  # seconds for which somebody seen counts as still there
@@ -75,6 +75,13 @@ class Sight:
     def is_fresh(self, name: str) -> bool:
         """Whether its place is known as of now, or nearly so."""
         return name not in self.watched or (name in self._last and self._now - self._last[name][1] <= _FRESH)
+
+    def lost(self, name: str) -> str | None:
+        """Why who arrives where it was seen last doesn't find it; None where its place is fresh."""
+        if self.is_fresh(name):
+            return None
+        is_person = self._kinds.get(name) == "person"
+        return f"I've lost sight of {said(name)}" if is_person else f"{said(name)} is no longer where I saw it"
 
     def is_seen(self, name: str) -> bool:
         """Whether a watched thing was in view at the last look."""

@@ -8,7 +8,7 @@ from typing import Any
 
 from btlang.robots.body import Body
 from btlang.robots.body_file import standard_body
-from btlang.robots.choices import PICKY, Choices
+from btlang.robots.choices import Choices
 from btlang.robots.ears import Ears
 from btlang.robots.faults import Faults, describe
 from btlang.robots.geometry import Point, Pose
@@ -258,18 +258,15 @@ class SimulatedRobot:
 
     def locate(self, name: str) -> Point:
         """Where a place, object or person is. Raises RobotError for an unknown name, and for what it hasn't seen."""
-        return self._surroundings.locate(name) or (self.pose.x, self.pose.y)
+        return self._surroundings.where(name) or (self.pose.x, self.pose.y)
 
     def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
         """A name that is the "nearest", "random" and so on. Raises RobotError where there is none."""
-        names = self.described(kind, parts) if parts or how in PICKY else self._surroundings.choices(kind)
-        if how == "seen":
-            names = [name for name in self.seen(kind) if name in names] or names
-        return self._choices.choose(kind, how, names, parts, self.on_event, self._distance, self._size)
+        return self._surroundings.choose(kind, how, parts, lambda: self.pose, self._choices, self.on_event)
 
     def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
         """The objects or people with these parts that the robot knows, nearest first."""
-        return sorted(self._surroundings.described(kind, parts), key=self._distance)
+        return self._surroundings.described(kind, parts, self.pose)
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """A run begins, whose random choices follow from the seed; so many have been made."""
@@ -377,15 +374,10 @@ class SimulatedRobot:
         """So long it waits for who is in its way, before it looks for another way."""
         self._navigator.patience = seconds
 
-    def _size(self, name: str) -> float:
-        return getattr(self._obstacles.things[name], "size", 0.0)
-
-    def _distance(self, name: str) -> float:
-        return self.pose.distance_to(self.locate(name))
-
     def name_places(self, places: Iterable[Place]) -> None:
         """The places of a mission beside those of the world, in place of those of the mission before."""
-        self.world = self._surroundings.name_places(places)
+        self._surroundings.name_places(places)
+        self.world = self._surroundings.world
         self._navigator.name_places(self.world.places)
 
     def move_thing(self, name: str, x: float, y: float) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from heapq import heappop, heappush
-from math import hypot, sqrt
+from math import hypot
 from random import Random
 
 import numpy as np
@@ -43,7 +43,7 @@ class Walkways:
             return []
         cells, at = [first], first
         while at != last:
-            at = min(self._around(at), key=distances.__getitem__)
+            at = min([at + offset for offset, _ in self._grid.steps], key=distances.__getitem__)
             cells.append(at)
         return smooth([start, *map(self._grid.centre, cells[1:-1]), goal], self.is_clear)
 
@@ -91,21 +91,13 @@ class Walkways:
         cell = self._grid.cell_of(point)
         return cell if self._free[cell] else self._grid.nearest_free(point, self._blocked, _SEARCH)
 
-    def _around(self, cell: int) -> list[int]:
-        columns = self._grid.columns
-        return [
-            cell + offset for offset in (-columns - 1, -columns, -columns + 1, -1, 1, columns - 1, columns, columns + 1)
-        ]
-
     def _to(self, goal: int) -> list[float]:
         """Dijkstra's distances of all cells from a goal, in cells."""
         if goal in self._distances:
             return self._distances[goal]
         if len(self._distances) >= _MOST_GOALS:
             self._distances.clear()
-        columns, free = self._grid.columns, self._free
-        steps = [(row * columns + column, sqrt(abs(row) + abs(column)))
-                 for row in (-1, 0, 1) for column in (-1, 0, 1) if row or column]  # fmt: skip
+        steps, free = self._grid.steps, self._free
         distances = [np.inf] * len(free)
         distances[goal] = 0.0
         cells = [(0.0, goal)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
-from btlang.robots.geometry import Point, contains, segment_distance
+from btlang.robots.geometry import Point, contains, edges, segment_distance
 from btlang.robots.world import World, Zone
 from btlang.text.toml_table import Problem
 
@@ -101,11 +101,10 @@ def _spots(world: World, rows: Mapping[str, Sequence[Any]]) -> Iterator[tuple[st
 
 
 def _is_on(wall: Polyline, point: Point) -> bool:
-    return any(segment_distance(point, (*a, *b)) <= _TOUCHING for a, b in pairwise((*wall, wall[0])))
+    return any(segment_distance(point, (*a, *b)) <= _TOUCHING for a, b in edges(wall))
 
 
 def _reaches_into(zone: Zone, wall: Polyline) -> bool:
-    sides = pairwise((*zone.points, zone.points[0]))
     steps = [step / _STEPS for step in range(_STEPS)]
-    points = ((ax + (bx - ax) * t, ay + (by - ay) * t) for (ax, ay), (bx, by) in sides for t in steps)
+    points = ((ax + (bx - ax) * t, ay + (by - ay) * t) for (ax, ay), (bx, by) in edges(zone.points) for t in steps)
     return any(contains(wall, point) for point in points) or any(zone.contains(corner) for corner in wall)

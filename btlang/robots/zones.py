@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Point
-from btlang.robots.world import Zone
+from btlang.robots.world import Zone, said
 
 
 class Zones:
@@ -39,9 +39,10 @@ class Zones:
         """Whether the robot keeps out of it. Raises ActionFailed for an unknown one."""
         return self._zone(name) in self.closed
 
-    def closed_at(self, point: Point) -> Zone | None:
-        """The zone to keep out of in which a point lies."""
-        return next((zone for zone in self.closed if zone.contains(point)), None)
+    def refusal(self, name: str, point: Point) -> str | None:
+        """Why the robot may not go to a point that is called so; None where it may."""
+        zone = next((zone for zone in self.closed if zone.contains(point)), None)
+        return None if zone is None else f"{said(name)} is in the {zone.name}, where the robot may not go"
 
     def contains(self, name: str, point: Point) -> bool:
         """Whether a point lies in a zone. Raises ActionFailed for an unknown one."""

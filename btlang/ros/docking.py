@@ -32,7 +32,6 @@ class RosDocking(ServerGoals):
         self, node: Node, executor: ExecutorThread, where: Callable[[], Pose | None], now: Callable[[], float]
     ) -> None:
         super().__init__(node, executor, where, now)
-        self._node = node
         self._dock = ActionClient(node, DockRobot, DOCK_ROBOT)
         self._undock = ActionClient(node, UndockRobot, UNDOCK_ROBOT)
 

@@ -24,7 +24,6 @@ class RosNavigation(ServerGoals):
         self, node: Node, executor: ExecutorThread, where: Callable[[], Pose | None], now: Callable[[], float]
     ) -> None:
         super().__init__(node, executor, where, now)
-        self._node = node
         self._client = ActionClient(node, NavigateToPose, ACTION)
         self._server = node.resolve_service_name(ACTION)
 

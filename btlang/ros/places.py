@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from math import dist, radians
 
 from btlang.robots.body import Body
-from btlang.robots.choices import PICKY, Choices
 from btlang.robots.geometry import Point, Pose
+from btlang.robots.knowledge import Knowledge
 from btlang.robots.navigation import stand_off
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.planning import Planner
-from btlang.robots.robot import Hand, OnEvent, RobotError
-from btlang.robots.sight import Sight
-from btlang.robots.world import OBJECT_RADIUS, PERSON_RADIUS, Door, Person, Place, Thing, World, WorldObject, said
-from btlang.robots.zones import Zones
+from btlang.robots.robot import Hand, RobotError
+from btlang.robots.world import OBJECT_RADIUS, PERSON_RADIUS, Person, Thing, World, WorldObject
 from btlang.run.robot_state import Whereabouts
 
 _MOVED = 0.05  # metres that something has to be elsewhere
 _MOST_THINGS = 10_000
 
 
-class Places:
+class Places(Knowledge):
     """Metres on the map, which is that of the world file. Objects move when the robot carries them.
 
     `notice` says what is in view: who walks, and what isn't known, is where it was seen. `tell` hears the name of what
@@ -30,34 +28,10 @@ class Places:
     """
 
     def __init__(self, world: World, body: Body, tell: Callable[[str], object] = lambda name: None) -> None:
+        super().__init__(world, Obstacles(world), lambda name, pose: self._in_view.get(name), tell)
         self._body = body
-        self.world = self._given_world = world
-        self.zones = Zones(world.zones)
-        self.obstacles = Obstacles(world)
         self._in_view: dict[str, Point] = {}
-        self.sight = Sight(world, self.obstacles, lambda name, pose: self._in_view.get(name), tell)
         self._planner: Planner | None = None
-        self._given_to: dict[str, str] = {}
-
-    def name_places(self, places: Iterable[Place]) -> None:
-        """The places of a mission beside those of the world, in place of those of the mission before."""
-        self.world = self._given_world.with_places(places)
-
-    def known(self, name: str) -> str:
-        """The name as the world spells it. Raises RobotError for an unknown one."""
-        names = self.world.names
-        for known in (*names.places, *names.objects, *names.people, *self.obstacles.things):
-            if known.lower() == name.lower():
-                return known
-        raise RobotError(f"I don't know where '{name}' is")
-
-    def free(self, kind: str) -> list[str]:
-        """The names of a type that the robot knows a place of, without objects that it carries or that are fixed."""
-        if kind not in ("object", "person"):
-            return list(self.world.names.of(kind))
-        things = self.obstacles.things
-        names = (name for name in self.sight.names(kind) if self.sight.where(name) is not None)
-        return [name for name in names if not getattr(things[name], "fixed", False)]
 
     def notice(self, seen: Mapping[str, tuple[str, Point]], now: float, pose: Pose) -> None:
         """This is in view, and nothing else: the kind of each, "person" or "object", and where it is."""
@@ -82,55 +56,7 @@ class Places:
 
     def whereabouts(self) -> tuple[Whereabouts, ...]:
         """Where those were seen who walk, and what isn't known, to the centimetre, and whether they are in view."""
-        found: list[Whereabouts] = []
-        for name in self.sight.watched:
-            point = self.sight.where(name)
-            x, y = (None, None) if point is None else (round(point[0], 2), round(point[1], 2))
-            found.append((name, x, y, name in self._in_view))
-        return tuple(found)
-
-    def described(self, kind: str, parts: Mapping[str, str], robot: Pose) -> list[str]:
-        """The names of objects or people with these parts that the robot knows a place of or carries, nearest first."""
-        things, where = self.obstacles.things, self.sight.where
-        known = (name for name in self.sight.names(kind) if where(name) or self.obstacles.is_carried(name))
-        names = (name for name in known if things[name].fits(parts))
-        return sorted(names, key=lambda name: robot.distance_to(self.locate(name, robot)))
-
-    def choose(
-        self,
-        kind: str,
-        how: str,
-        parts: Mapping[str, str],
-        where: Callable[[], Pose],
-        choices: Choices,
-        tell: OnEvent | None,
-    ) -> str:
-        """One of the names of a type. Raises RobotError where there is none with these parts."""
-        robot = where() if how in ("nearest", "seen") else Pose(0.0, 0.0, 0.0)
-        names = self.described(kind, parts, robot) if parts or how in PICKY else self.free(kind)
-        if how == "seen":
-            names = [name for name in self.sight.seen(kind, robot) if name in names] or names
-        things = self.obstacles.things
-        return choices.choose(
-            kind, how, names, parts, tell,
-            lambda name: robot.distance_to(self.locate(name, robot)), lambda name: getattr(things[name], "size", 0.0),
-        )  # fmt: skip
-
-    def locate(self, name: str, robot: Pose) -> Point:
-        """Where it is; what the robot carries is where the robot is.
-
-        Raises RobotError for an unknown name, and for what the robot hasn't seen.
-        """
-        known = self.known(name)
-        for place in self.world.places:
-            if place.name == known:
-                return place.x, place.y
-        if self.obstacles.is_carried(known):
-            return robot.x, robot.y
-        point = self.sight.where(known)
-        if point is None:
-            raise RobotError(f"I haven't seen {said(known)}")
-        return point
+        return self._watched(self.sight.where, self._in_view.__contains__)
 
     def located(self, name: str) -> tuple[float, float, float | None]:
         """Metres, and the direction to face in radians, None for any. Raises KeyError for an unknown name."""
@@ -158,13 +84,13 @@ class Places:
         Before an object or a person that is where the free way there ends, by the walls and boxes of the world file.
         """
         known = self.known(name)
-        self._check_free(known)
+        self.check_free(known)
         point = self.locate(known, robot)
         for place in self.world.places:
             if place.name == known:
                 facing = robot.heading + robot.bearing_to(point) if place.facing is None else place.facing
                 return Pose(place.x, place.y, facing)
-        reach = stand_off(self._body, self.obstacles.things[known], known in self.sight.names("person"))
+        reach = stand_off(self._body, self.obstacles.things[known], self.is_person(known))
         stand = self._stand(robot, point, reach)
         return Pose(*stand, stand_heading(stand, point))
 
@@ -181,40 +107,12 @@ class Places:
     def give(self, name: str, person: str) -> None:
         """A person has an object from now on."""
         self.obstacles.pick_up(name)
-        self._given_to[name] = person
-
-    def check_movable(self, name: str) -> None:
-        """Raises RobotError for an object that can't be picked up, or that the robot hasn't seen."""
-        known = self.known(name)
-        self._check_free(known)
-        self.locate(known, Pose(0.0, 0.0, 0.0))
-        if getattr(self.obstacles.things.get(known), "fixed", False):
-            raise RobotError(f"{said(known)} is fixed")
-
-    def nearby_people(self, within: float, robot: Pose) -> list[str]:
-        """Names, nearest first: those who walk as far as they are in view."""
-        found = []
-        for name in self.sight.names("person"):
-            point = self.sight.where(name)
-            if point is not None and self.sight.is_fresh(name) and robot.distance_to(point) <= within:
-                found.append((robot.distance_to(point), name))
-        return [name for _, name in sorted(found)]
-
-    def door(self, name: str) -> Door:
-        """A door as it is now. Raises RobotError for an unknown one."""
-        for door in self.obstacles.doors.values():
-            if door.name.lower() == name.lower():
-                return door
-        raise RobotError(f"there's no door called '{name}'")
+        super().give(name, person)
 
     def swing(self, name: str, is_open: bool) -> None:
         """A door is open or closed from now on."""
         if self.obstacles.doors[name].open != is_open:
             self.obstacles.swing(name, is_open)
-
-    def _check_free(self, name: str) -> None:
-        if name in self._given_to:
-            raise RobotError(f"{said(self._given_to[name])} has {said(name)}")
 
     def _stand(self, robot: Pose, point: Point, reach: float) -> Point:
         with suppress(RobotError):  # a world too large to plan in

@@ -42,8 +42,7 @@ class Pursuit:
         if self.done:
             return
         if self._goal.done:
-            lost = self._goal.failure is None and not self._sight.is_fresh(self._name)
-            self.end(f"{said(self._name)} is no longer where I saw it" if lost else self._goal.failure)
+            self.end(self._sight.lost(self._name) if self._goal.failure is None else self._goal.failure)
         elif now - self._since >= _AGAIN and dist(self._where(), self._target) > _MOVED:
             try:
                 self._goal = self._set_out()

@@ -17,7 +17,6 @@ from std_srvs.srv import Empty, Trigger
 from btlang.robots.body import Body
 from btlang.robots.body_file import standard_body
 from btlang.robots.choices import Choices
-from btlang.robots.doors import spots_beside
 from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.latch import Latch
@@ -447,7 +446,7 @@ class RosRobot:
 
     def beside_door(self, name: str) -> list[Pose]:
         """Where it can stand to move a door, the nearer one first. Raises RobotError for an unknown door."""
-        return spots_beside(self._places.door(name), self.pose)
+        return self._places.beside_door(name, self.pose)
 
     def move_door(self, name: str, is_open: bool) -> Operation:
         """Opens or closes a door, or fails with the reason. Raises RobotError where nothing serves it."""

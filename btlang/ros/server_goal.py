@@ -208,7 +208,7 @@ class ServerGoals:
     def __init__(
         self, node: Node, executor: ExecutorThread, where: Callable[[], Pose | None], now: Callable[[], float]
     ) -> None:
-        self._executor = executor
+        self._node, self._executor = node, executor
         self._where, self._now = where, now
         self._lease = Lease(node)
         self._goal: ServerGoal | None = None

@@ -69,9 +69,9 @@ class RosZones:
 
     def set_out(self, name: str, pose: Pose) -> None:
         """The robot is to go there. Raises RobotError for a goal in a closed zone."""
-        zone = self.zones.closed_at((pose.x, pose.y))
-        if zone is not None:
-            raise RobotError(f"{said(name)} is in the {zone.name}, where the robot may not go")
+        refusal = self.zones.refusal(name, (pose.x, pose.y))
+        if refusal is not None:
+            raise RobotError(refusal)
         self._announce()
         self._goal, self._plan = (name, (pose.x, pose.y)), []
 

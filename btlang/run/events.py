@@ -241,11 +241,10 @@ class InTheWorld(Event):
     @property
     def words(self) -> str:
         """In plain English."""
-        return str(self.name) if "name" in self.fields else f'"{self.text}"'
+        return self.name
 
     if TYPE_CHECKING:
         name: str
-        text: str
 
 
 class Heard(InTheWorld):
@@ -300,6 +299,11 @@ class Called(InTheWorld):
 
     tag = "call"
     text: str
+
+    @property
+    def words(self) -> str:
+        """In plain English."""
+        return f'"{self.text}"'
 
 
 class DoorMoved(InTheWorld):

@@ -9,8 +9,8 @@ from math import inf
 from btlang.task.messages import wrong
 
 _UP = (
-    "robot", "over", "simulate", "world", "keywords", "rules", "store", "durable", "keep", "record", "no_recordings",
-    "allow_keywords", "include_root", "speed", "serve", "host", "port", "join", "code", "answers",
+    "robot", "over", "simulate", "world", "keywords", "rules", "schedules", "store", "durable", "keep", "record",
+    "no_recordings", "allow_keywords", "include_root", "speed", "serve", "host", "port", "join", "code", "answers",
 )  # fmt: skip
 _ADD = ("code", "priority", "label", "restart", "set", "keywords", "json")
 _ROBOT: Mapping[str, Sequence[str]] = {

@@ -91,10 +91,14 @@ class Handler:
             messages.InviteVisitor: world.invite,
         }  # fmt: skip
 
+    def do(self, command: Command, person: str) -> Answer:
+        """Does a command, without a trail. Raises MissionError where it is refused."""
+        return self._does[type(command)](command, person)
+
     def handle(self, command: Command, person: str) -> Answer:
         """Does a command of a person, who is allowed to give it; a refusal is an answer, too."""
         try:
-            answer = self._does[type(command)](command, person)
+            answer = self.do(command, person)
         except MissionError as error:
             first = error.diagnostics[0]
             answer = Answer(False, str(error), {}, first.code)

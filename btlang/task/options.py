@@ -40,6 +40,7 @@ def add_robot_options(parser: argparse.ArgumentParser) -> None:
 def add_layer_options(parser: argparse.ArgumentParser) -> None:
     """Those of any verb that brings a robot up."""
     parser.add_argument("--rules", metavar="FILE", help="house rules, which hold during and between missions")
+    parser.add_argument("--schedules", metavar="FILE", help="what is due when, as a TOML file")
     parser.add_argument("--store", default="", metavar="PLACE", help="where tasks are kept: a file or postgresql://...")
     parser.add_argument("--durable", action="store_true", help="what was acknowledged survives a loss of power, too")
     parser.add_argument(

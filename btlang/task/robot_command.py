@@ -24,6 +24,7 @@ from btlang.task.backup import restore_backup
 from btlang.task.client import Client, emergency_stop
 from btlang.task.command import tell
 from btlang.task.companion import companions
+from btlang.task.house import furnished_layer
 from btlang.task.layer import KEPT, TaskLayer
 from btlang.task.library_handler import kept_text
 from btlang.task.manager import DAY
@@ -103,6 +104,7 @@ def layer_options(options: argparse.Namespace, name: str) -> dict[str, Any]:
     recordings = None if options.no_recordings else options.record or os.path.join(folder, "recordings")
     return {
         "folder": folder, "store": options.store or os.path.join(folder, "tasks.db"), "rules": options.rules,
+        "schedules": options.schedules,
         "durable": options.durable, "recordings": recordings,
         "keeps": KEPT if options.keep is None else options.keep * DAY,
         "answers": options.answers and read_answers(options.answers),
@@ -132,7 +134,7 @@ def _up(options: argparse.Namespace) -> int:
             allowed_keywords=options.allow_keywords,
         )
         trouble, down = (lambda text: show(one_line(text), sys.stderr)), ended.set
-        layer = TaskLayer(robot, reader, **kept, speed=options.speed, trouble=trouble, down=down)
+        layer = furnished_layer(robot, reader, **kept, speed=options.speed, trouble=trouble, down=down)
     except BaseException:
         door.close()
         raise
@@ -182,6 +184,7 @@ def _unit(options: argparse.Namespace) -> str:
         "over",
         "world",
         "rules",
+        "schedules",
         "store",
         "record",
         "include_root",

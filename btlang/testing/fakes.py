@@ -20,6 +20,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.vocabulary.entry import Entry
+
 FAKED = "the test lets it fail"
 
 
@@ -64,11 +66,12 @@ def _is_same(value: Any, text: str) -> bool:
     return str(value) == text
 
 
-def faked(node_id: str, vocabulary: Lexicon, fakes: Fakes, clock: Clock) -> LeafBinding:
-    """How a leaf is bound that fakes may stand in for. It takes the ports of the real one, which need not exist."""
-    entry = vocabulary.entries[node_id][0]
-    take = partial(fakes.take, node_id)
-    real = bind_leaf(node_id, vocabulary) if entry.call else None
+def faked(own: LeafBinding | None, entry: Entry, vocabulary: Lexicon, fakes: Fakes, clock: Clock) -> LeafBinding:
+    """How a leaf is bound that fakes may stand in for. It takes the ports of the real one, which need not exist: the
+    robot's `own`, or that of its `call`.
+    """
+    take = partial(fakes.take, entry.id)
+    real = own or (bind_leaf(entry.id, vocabulary) if entry.call else None)
     if real is None:
         return LeafBinding(_unreal(take, clock) if entry.sort == "action" else _unreal_condition(take))
     kind = LeafSignature(real).kind

@@ -8,7 +8,7 @@ from functools import partial
 from btlang.api import Mission
 from btlang.engine.blackboard import Blackboard
 from btlang.record import Record
-from btlang.robots.simulation import Simulation
+from btlang.robots.registry import Connector, body_of
 from btlang.robots.world import World
 from btlang.run.controls import Controls
 from btlang.run.runner import Outcome
@@ -25,7 +25,11 @@ from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from btlang.engine.leaves.leaf import LeafBinding
+    from btlang.robots.body import Body
+    from btlang.run.connection import Connection
     from btlang.run.events import Sink
     from btlang.vocabulary.entry import Entry
 
@@ -55,18 +59,26 @@ class Result(Record):
         return not self.problem
 
 
-class _TestSimulation(Simulation):
-    """A simulated robot, some of whose words fakes stand in for."""
+class _Connect(Record):
+    """Connects to the simulated robot of a test, some of whose words fakes stand in for."""
 
-    def __init__(self, world: World, fakes: Fakes) -> None:
-        super().__init__(world)
-        self._fakes = fakes
+    body: Body
+    fakes: Fakes
 
-    def bind(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
-        """Only what fakes stand in for."""
-        if not self._fakes.has(entry.id):
-            return None
-        return faked(entry.id, vocabulary, self._fakes, self.bus.clock)
+    def __call__(self, world: World) -> Connection:
+        connection: Any = Connector(self.body, "simulated")(world)
+        bind, fakes = connection.bind, self.fakes
+
+        def bound(entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
+            own: LeafBinding | None = bind(entry, vocabulary)
+            return faked(own, entry, vocabulary, fakes, connection.bus.clock) if fakes.has(entry.id) else own
+
+        connection.bind = bound
+        return connection  # type: ignore[no-any-return]
+
+
+def _connect(test: MissionTest, fakes: Fakes) -> _Connect:
+    return _Connect(body_of(test.robot or "simulated"), fakes)
 
 
 def run_test(
@@ -82,7 +94,7 @@ def run_test(
     mission, controls = mission or test.mission, controls or Controls()
     observed, values, fakes = Observations(_commands(test)), Blackboard(), Fakes(test.fakes)
     outcome: Outcome | None = None
-    with Session(lambda world: _TestSimulation(world, fakes), world=mission.world) as session:
+    with Session(_connect(test, fakes), world=mission.world) as session:
         run = session.prepare(
             mission, speed="max", time_limit=test.limit, seed=seed, controls=controls, values=values,
             sinks=[observed, *sinks],
@@ -113,7 +125,7 @@ def run_chaos(test: MissionTest, seed: int, sinks: Iterable[Sink] = ()) -> Resul
     What the test expects doesn't count, but its events at the start and its fakes do. Raises MissionError.
     """
     observed, controls, fakes = Observations({}), Controls(), Fakes(test.fakes)
-    with Session(lambda world: _TestSimulation(world, fakes), world=test.mission.world) as session:
+    with Session(_connect(test, fakes), world=test.mission.world) as session:
         run = session.prepare(
             test.mission, speed="max", time_limit=test.limit, seed=seed, controls=controls, sinks=[observed, *sinks]
         )

@@ -13,6 +13,7 @@ from btlang.vocabulary.lexicon import Lexicon
 
 OPENERS = {
     "in": 'in the world "museum.toml" with the battery at 25%',
+    "on": 'on the robot "guide.toml"',
     "with": "with the battery at 25%",
     "run": 'run "patrol.txt" for 2 minutes',
     "then": "then within 10 s the robot is charging",
@@ -27,14 +28,15 @@ OPENERS = {
 }
 """What a line may begin with, and an example of each."""
 _QUOTE = '"'
+_FILES = {("in", "world"), ("on", "robot")}
 
 
 class Statement(Record):
     """A line without the words that say what it is. Words are given by their numbers: `first` to `last` (exclusive).
 
     `seconds` are those of `within`, `for` and `after`, and the time of `run`, the longest one if `at_most`; `file` of
-    `world` and `run` is the path in quotes, `block` the mission below `run:`. The words from `head` on to the comma
-    before `first` are a condition.
+    `world`, `robot` and `run` is the path in quotes, `block` the mission below `run:`. The words from `head` on to the
+    comma before `first` are a condition.
     """
 
     kind: str
@@ -77,8 +79,9 @@ def _read(text: Words, first: int, last: int, vocabulary: Lexicon) -> Iterator[S
     while words[first] in ("then", "and", ",") and first + 1 < last:
         first += 1
     word, span = words[first], text.span(begin, last)
-    if word == "in" and words[first + 1] == "world" and words[first + 2][0] == _QUOTE:
-        yield Statement("world", span, first + 3, first + 3, file=text.span(first + 2, first + 3))
+    named = words[first + 1] if (word, words[first + 1]) in _FILES and words[first + 2][0] == _QUOTE else ""
+    if named:
+        yield Statement(named, span, first + 3, first + 3, file=text.span(first + 2, first + 3))
         at = first + 3 + (words[first + 3] == ",")
         if at < last:
             yield from _read(text, at, last, vocabulary)

@@ -38,7 +38,8 @@ class MissionTest(Record):
     """`setup` are the events before the first tick; `limit` is in seconds of mission time, and the test ends then.
 
     With `is_cut` that is too long: a test that gets there has failed. `vocabulary` has the words of its conditions.
-    `texts` are the commands in quotes that its conditions ask for, as they are written.
+    `texts` are the commands in quotes that its conditions ask for, as they are written. `robot` is the path of a robot
+    file; "" is the robot that ships.
     """
 
     name: str
@@ -51,6 +52,7 @@ class MissionTest(Record):
     texts: tuple[str, ...] = ()
     limit: float = USUAL_LIMIT
     is_cut: bool = True
+    robot: str = ""
 
     @property
     def is_inline(self) -> bool:

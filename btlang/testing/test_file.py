@@ -14,12 +14,14 @@ import os
 from collections.abc import Iterator
 
 from btlang.api import Mission, parse_tree, world_vocabulary
+from btlang.components.words import robot_words
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import OUTSIDE, included_path, is_below, read_source
 from btlang.frontends.mission.symbols.needs import WORDS as NEEDED_WORDS
 from btlang.printer.layout import laid_out
 from btlang.record import Record
+from btlang.robots.registry import body_of
 from btlang.testing.pieces import Pieces, moved
 from btlang.testing.statements import Statement, statements_of
 from btlang.testing.test import MissionTest
@@ -103,6 +105,8 @@ class _Reader:
         self._text, self._block, self._source, self._given = text, block, text.source, given
         self._problems: list[Diagnostic] = []
         self._statements = list(statements_of(text, block.lines, vocabulary, self._problems))
+        self._robot = ""
+        self._robot_words: list[str] = []
 
     def test(self) -> MissionTest:
         """Raises MissionError."""
@@ -117,10 +121,10 @@ class _Reader:
         except MissionError as error:  # the other lines need its words
             told = [moved(problem, self._source) for problem in error.diagnostics]
             raise MissionError([*self._problems, *told]) from None
-        keywords: list[str] = []
+        keywords = list(self._robot_words)
         if mission.syntax is not None:
             needed = [path for role, path in mission.syntax.needs if role == NEEDED_WORDS]
-            keywords = [included_path(path, mission.syntax.span.source)[0] for path in needed]
+            keywords += [included_path(path, mission.syntax.span.source)[0] for path in needed]
         vocabulary = world_vocabulary([*keywords, WORDS], mission.world)
         pieces = Pieces(self._text, vocabulary, mission)
         at_run = self._statements.index(runs[0])
@@ -133,19 +137,28 @@ class _Reader:
             raise MissionError(self._problems)
         return MissionTest(
             self._block.name, self._block.span, mission, vocabulary, tuple(pieces.setup), tuple(pieces.fakes),
-            tuple(pieces.steps), tuple(pieces.texts), *pieces.limit(runs[0]),
+            tuple(pieces.steps), tuple(pieces.texts), *pieces.limit(runs[0]), self._robot,
         )  # fmt: skip
 
     def _mission(self, run: Statement) -> Mission:
-        world = next((self._path(one.file) for one in self._statements if one.kind == "world"), None)
+        world = self._named_file("world") or None
+        self._robot = self._named_file("robot")
+        if self._robot:
+            self._robot_words = robot_words(self._robot)
+            world = world or body_of(self._robot).world or None
+        keywords = self._robot_words
         if run.file is not None:
             mission = self._given(_named(run.file), world)
             if mission is not None:
                 return mission
-            return parse_tree(read_source(self._path(run.file), _root(self._source)), world=world)
+            return parse_tree(read_source(self._path(run.file), _root(self._source)), keywords=keywords, world=world)
         if run.block is None:
             raise MissionError([_told("BT181", run.span, "it runs no mission", 'run "patrol.txt"')])
-        return parse_tree(_only(self._source, run.block), world=world)
+        return parse_tree(_only(self._source, run.block), keywords=keywords, world=world)
+
+    def _named_file(self, kind: str) -> str:
+        """The path that the first statement of a kind names; "" where none does."""
+        return next((self._path(one.file) for one in self._statements if one.kind == kind), "")
 
     def _path(self, named: Span | None) -> str:
         """Where a file lies that the test names. Raises MissionError where that is no folder of the user's."""

@@ -26,7 +26,7 @@ from tests.editing.renames import refusal
 from tests.recording.trials import try_sample
 from tests.ros.bound import bind_words
 from tests.task.schedules import read_schedules
-from tests.task.up import REFUSALS, read_rules, restored, robot_for
+from tests.task.up import REFUSALS, read_rules, read_week, restored, robot_for
 
 TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in Path(PAGES).iterdir()}
 _LABELLED = re.compile(r"^(Wrong|Right|The file)(?: ([\w. ]+))?(?:, saved as ([\w-]+))?:\n\n((?: {4}.*\n?)+)", re.M)
@@ -71,8 +71,9 @@ def said(example: Example, page: str, folder: Path, capsys: pytest.CaptureFixtur
         return 2 if problem else 0, problem
     else:
         (folder / "example.txt").write_text(example.text, encoding=example.encoding)
-        if example.of in ("house rules", "restored mission"):
-            problem = read_rules("example.txt") if example.of == "house rules" else restored(example.text)
+        readers = {"house rules": read_rules, "file of schedules": read_week}
+        if example.of in (*readers, "restored mission"):
+            problem = readers[example.of]("example.txt") if example.of in readers else restored(example.text)
             return 2 if problem else 0, problem
         if example.of == "ros keyword file":
             (folder / "example.txt").rename(folder / "example.toml")

@@ -67,6 +67,9 @@ def test_what_is_seen_is_known(places: Places, met: list[str]) -> None:
     assert places.nearby_people(10.0, HERE) == ["Ann"]
     assert places.locate("Bob", HERE) == (2.0, 1.0)
     assert ("Bob", 2.0, 1.0, False) in places.whereabouts()
+    assert places.sight.lost("Bob") == "I've lost sight of Bob"
+    assert places.sight.lost("key") == "the key is no longer where I saw it"
+    assert places.sight.lost("cup") is None
     places.sight.forget()
     with pytest.raises(RobotError, match=r"^I haven't seen Bob$"):
         places.locate("Bob", HERE)

@@ -80,4 +80,5 @@ def test_what_was_given_away_is_gone(places: Places) -> None:
         places.goal("mug", HERE)
     with pytest.raises(RobotError, match=r"^Ann has the mug$"):
         places.check_movable("mug")
+    assert places.locate("mug", HERE) == places.locate("Ann", HERE) == (4.0, 3.0)
     assert choose(places, "object", "nearest") == "tea cup"

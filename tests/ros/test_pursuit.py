@@ -31,7 +31,7 @@ class Chase:
         self.at: Point = (2.0, 2.0)
         self.fresh, self.refusal = True, ""
         self.goals: list[Goal] = []
-        sight: Any = Made(where=lambda name: self.at, is_fresh=lambda name: self.fresh)
+        sight: Any = Made(where=lambda name: self.at, lost=lambda _: None if self.fresh else "I've lost sight of Bob")
         self.pursuit = Pursuit("Bob", sight, self.set_out, 0.0)  # type: ignore[arg-type]
 
     def set_out(self) -> Goal:
@@ -60,7 +60,7 @@ def test_who_is_gone_at_the_end_is_lost(chase: Chase) -> None:
     chase.goals[0].end(None)
     chase.fresh = False
     chase.pursuit.step(1.0)
-    assert chase.pursuit.failure == "Bob is no longer where I saw it"
+    assert chase.pursuit.failure == "I've lost sight of Bob"
 
 
 def test_a_failure_is_that_of_the_goal(chase: Chase) -> None:

@@ -15,6 +15,7 @@ import pytest
 from btlang.api import parse_tree
 from btlang.diagnostics.errors import MissionError
 from btlang.session import Session
+from btlang.task.house import read_schedules
 from btlang.task.house_rules import read_house_rules
 from btlang.task.missions import MissionReader
 from btlang.task.paths import socket_path
@@ -99,6 +100,15 @@ def _mute(name: str) -> Iterator[None]:
         finally:
             listening.shutdown(socket.SHUT_RDWR)
             thread.join()
+
+
+def read_week(path: str) -> str:
+    """What is wrong with a file of schedules, "" for nothing."""
+    try:
+        read_schedules(path)
+    except MissionError as error:
+        return str(error)
+    return ""
 
 
 def read_rules(path: str) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from btlang.diagnostics.reading import read_included
 from btlang.record import Record
 from btlang.robots.registry import connector
+from btlang.task.house import furnished_layer
 from btlang.task.layer import TaskLayer
 from btlang.task.missions import MissionReader
 from btlang.task.task import MissionText
@@ -59,7 +60,7 @@ class Setup(Record):
         """The robot, with further arguments for its TaskLayer. Raises MissionError."""
         named = {"sim_time": self.sim_time, "namespace": self.namespace, "name": f"{self.name}_robot"}
         robot = connector(self.robot, self.over, **named)
-        return TaskLayer(robot, reader, speed=self.speed, **self.layer, **options)
+        return furnished_layer(robot, reader, speed=self.speed, **self.layer, **options)
 
 
 def robot_name(namespace: str, name: str) -> str:

@@ -9,7 +9,6 @@ from nav2_msgs.action import DockRobot, UndockRobot
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
-from rclpy.task import Future
 
 from btlang.actions.docking import APPROACH, CONNECTION, RETRY, STAGING, enter_dock
 from btlang.actions.motion import Steps
@@ -18,6 +17,7 @@ from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.simulated import SimulatedRobot
 from btlang.ros.lease import Leases
 from btlang.ros.poses import pose_of
+from btlang.ros.simulator.accepted_goal import AcceptedGoal
 from btlang.ros.simulator.call_queue import CallQueue
 from btlang.ros.simulator.navigation import refusal
 from btlang.ros.simulator.publishing import Moment
@@ -26,7 +26,6 @@ from btlang.ros.times import duration
 
 _DOCK = "dock"
 _NEAR = 0.5  # metres from the dock at which a goal means it
-_BRAKING = 1.0  # simulated seconds that a cancelled goal waits at most until the robot stands still
 _STATES = {
     STAGING: DockRobot.Feedback.NAV_TO_STAGING_POSE,
     APPROACH: DockRobot.Feedback.CONTROLLING,
@@ -41,27 +40,16 @@ _CODES = {
 }
 
 
-class DockingGoal:
-    """A goal that has been accepted; it sets out with the next step. `failure` is why it did not succeed, with a `code`
-    of Nav2.
-    """
+class DockingGoal(AcceptedGoal):
+    """A goal to dock or to leave the dock. `code` is that of Nav2 for its failure."""
 
-    def __init__(self, goal: ServerGoalHandle, docks: bool) -> None:
-        self.goal, self.docks = goal, docks
+    def __init__(self, node: Node, handle: ServerGoalHandle, docks: bool) -> None:
+        super().__init__(node, handle)
+        self.docks = docks
         self.steps: Steps | None = None
-        self.failure: str | None = None
         self.code = 0
         self.stage = ""
         self.retries = 0
-        self.began = 0.0
-        self.cancelled: float | None = None
-        self.abandoned = False
-        """Whether its client has died."""
-        self.ended = Future()
-
-    def abandon(self) -> None:
-        """Its client has died."""
-        self.abandoned = True
 
     def fail(self, failure: str, code: int) -> None:
         """It ends, where it hasn't ended before: the robot brakes."""
@@ -94,8 +82,7 @@ class Docking:
         goal = self._goal
         if goal is None or goal.steps is None:
             return
-        if goal.cancelled is None and (goal.goal.is_cancel_requested or goal.abandoned):
-            goal.cancelled = now.seconds
+        if goal.is_withdrawn(now.seconds):
             goal.fail("docking was cancelled" if goal.docks else "undocking was cancelled", DockRobot.Result.UNKNOWN)
         elif goal.cancelled is None and self._wheels.driven:
             goal.fail("another command took over the drive", DockRobot.Result.FAILED_TO_CONTROL)
@@ -107,39 +94,29 @@ class Docking:
                 pass
             except ActionFailed as problem:
                 goal.fail(str(problem), _CODES.get(goal.stage, DockRobot.Result.FAILED_TO_CONTROL))
-        braking = goal.cancelled is not None and now.seconds - goal.cancelled < _BRAKING
-        if not (braking and self._robot.velocity != (0.0, 0.0)):
+        if not goal.brakes(now.seconds, self._robot):
             self._goal = None
-            self._end(goal)
+            goal.end()
 
     def _execute(self, docks: bool) -> Callable[[ServerGoalHandle], Any]:
         async def execute(handle: ServerGoalHandle) -> Any:
             """Runs in the thread of the executor."""
-            goal = DockingGoal(handle, docks)
+            goal = DockingGoal(self._node, handle, docks)
             self._calls.post(lambda: self._begin(goal))
-            goal_id = bytes(handle.goal_id.uuid)
-            self._leases.watch(goal_id, goal.abandon)
-            await goal.ended
-            self._leases.forget(goal_id)
-            if goal.failure is None:
-                handle.succeed()
-            elif handle.is_cancel_requested:
-                handle.canceled()
-            else:
-                handle.abort()
+            await goal.finished(self._leases)
             return goal.result()
 
         return execute
 
     def _begin(self, goal: DockingGoal) -> None:
-        refused = self._refusal(goal.goal.request) if goal.docks and not self._robot.docked else None
+        refused = self._refusal(goal.handle.request) if goal.docks and not self._robot.docked else None
         if refused is not None:
             goal.fail(*refused)
-            self._end(goal)
+            goal.end()
             return
         if self._goal is not None:
             self._goal.fail("the robot docks instead" if goal.docks else "the robot undocks instead", 999)
-            self._end(self._goal)
+            self._goal.end()
         self._wheels.leave()
         self._goal, goal.began = goal, self._robot.time
         goal.steps = self._dock(goal) if goal.docks else undock(self._robot)
@@ -170,8 +147,4 @@ class Docking:
         goal.retries += stage == RETRY
         feedback = DockRobot.Feedback(state=_STATES[stage], num_retries=goal.retries)
         feedback.docking_time = duration(self._robot.time - goal.began)
-        goal.goal.publish_feedback(feedback)
-
-    def _end(self, goal: DockingGoal) -> None:
-        goal.ended.set_result(None)
-        self._node.executor.wake()
+        goal.handle.publish_feedback(feedback)

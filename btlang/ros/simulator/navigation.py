@@ -11,13 +11,13 @@ from nav_msgs.msg import Path
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
-from rclpy.task import Future
 
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.navigation import NavigationGoal
 from btlang.robots.simulated import SimulatedRobot
 from btlang.ros.lease import Leases
 from btlang.ros.poses import MAP, ODOM, pose_message, pose_of, stamped_pose
+from btlang.ros.simulator.accepted_goal import AcceptedGoal
 from btlang.ros.simulator.call_queue import CallQueue
 from btlang.ros.simulator.publishing import COMMANDS, Every, Moment
 from btlang.ros.simulator.wheels import Wheels
@@ -26,32 +26,23 @@ from btlang.ros.zones import SPEED_LIMIT
 
 FAILED = 9000
 """The error code of all that can go wrong, as of Nav2 for what it has no own code for; `error_msg` says what it is."""
-_BRAKING = 1.0  # simulated seconds that a cancelled goal waits at most until the robot stands still
 
 
-class Ride:
-    """A goal that has been accepted. It sets out with the next step, unless it is `refused`."""
+class Ride(AcceptedGoal):
+    """A goal to go to a pose; one that no robot can have has failed from the beginning."""
 
-    def __init__(self, goal: ServerGoalHandle) -> None:
-        self.goal = goal
-        self.pose = pose_of(goal.request.pose.pose)
-        self.refused = refusal(goal.request.pose.header.frame_id, self.pose)
+    def __init__(self, node: Node, handle: ServerGoalHandle) -> None:
+        super().__init__(node, handle)
+        self.pose = pose_of(handle.request.pose.pose)
+        self.failure = refusal(handle.request.pose.header.frame_id, self.pose)
         self.navigation: NavigationGoal | None = None
-        self.began = 0.0
-        self.cancelled: float | None = None
-        self.abandoned = False
-        """Whether its client has died."""
-        self.ended = Future()
         self.feedback = Every(5)
 
-    def abandon(self) -> None:
-        """Its client has died."""
-        self.abandoned = True
-
-    @property
-    def failure(self) -> str | None:
-        """Why it did not arrive."""
-        return self.refused if self.navigation is None else self.navigation.failure
+    def end(self) -> None:
+        """It is over, as its navigation is."""
+        if self.navigation is not None:
+            self.failure = self.navigation.failure
+        super().end()
 
 
 class Navigation:
@@ -83,12 +74,11 @@ class Navigation:
         ride = self._ride
         if ride is None or ride.navigation is None:
             return
-        if ride.cancelled is None and (ride.goal.is_cancel_requested or ride.abandoned):
-            ride.cancelled = now.seconds
+        if ride.is_withdrawn(now.seconds):
             ride.navigation.cancel()
-        if ride.navigation.done and not self._brakes(ride, now.seconds):
+        if ride.navigation.done and not ride.brakes(now.seconds, self._robot):
             self._ride = None
-            self._end(ride)
+            ride.end()
         elif ride.feedback.is_due(now.seconds):
             self._tell(ride, ride.navigation, now)
 
@@ -103,21 +93,13 @@ class Navigation:
         plan.poses = [stamped_pose(Pose(*point), now.stamp) for point in way]
         self._plan.publish(plan)
 
-    async def _execute(self, goal: ServerGoalHandle) -> NavigateToPose.Result:
+    async def _execute(self, handle: ServerGoalHandle) -> NavigateToPose.Result:
         """Runs in the thread of the executor."""
-        ride = Ride(goal)
+        ride = Ride(self._node, handle)
         self._calls.post(lambda: self._begin(ride))
-        goal_id = bytes(goal.goal_id.uuid)
-        self._leases.watch(goal_id, ride.abandon)
-        await ride.ended
-        self._leases.forget(goal_id)
+        await ride.finished(self._leases)
         if ride.failure is None:
-            goal.succeed()
             return NavigateToPose.Result()
-        if goal.is_cancel_requested:
-            goal.canceled()
-        else:
-            goal.abort()
         return NavigateToPose.Result(error_code=FAILED, error_msg=ride.failure)
 
     def _limit(self, limit: SpeedLimit) -> None:
@@ -126,22 +108,14 @@ class Navigation:
         self._robot.pace = min(1.0, share) if share > 0.0 else 1.0
 
     def _begin(self, ride: Ride) -> None:
-        if ride.refused is not None:
-            self._end(ride)
+        if ride.failure is not None:
+            ride.end()
             return
         ride.navigation, ride.began = self._robot.navigate_to_pose(ride.pose), self._robot.time
         self._wheels.leave()
         if self._ride is not None:
-            self._end(self._ride)  # the new goal has ended its own
+            self._ride.end()  # the new goal has ended its own
         self._ride = ride
-
-    def _brakes(self, ride: Ride, now: float) -> bool:
-        """Whether a cancelled goal has to wait for the robot to stand still."""
-        return ride.cancelled is not None and now - ride.cancelled < _BRAKING and self._robot.velocity != (0.0, 0.0)
-
-    def _end(self, ride: Ride) -> None:
-        ride.ended.set_result(None)
-        self._node.executor.wake()
 
     def _tell(self, ride: Ride, goal: NavigationGoal, now: Moment) -> None:
         left = goal.left
@@ -150,7 +124,7 @@ class Navigation:
         feedback.current_pose.pose = pose_message(self._robot.pose)
         feedback.navigation_time = duration(now.seconds - ride.began)
         feedback.estimated_time_remaining = duration(left / self._robot.normal_speed)
-        ride.goal.publish_feedback(feedback)
+        ride.handle.publish_feedback(feedback)
 
 
 def refusal(frame: str, pose: Pose) -> str | None:

@@ -40,6 +40,7 @@ class Scopes:
             for header in headers
             for key, words in header.parameters
         ]
+        self._parameters = {(first, known.key): at for at, (first, _, known) in enumerate(self.local)}
         for at, prefix in prefixes.items():
             kinds = types.get((at, prefix.key))
             if prefix.role == "each":
@@ -53,6 +54,12 @@ class Scopes:
         if others is not None:
             kinds = tuple(kind for kind in others.kinds if kind in kinds) or others.kinds
         self.everywhere[prefix.key] = Known(prefix.key, prefix.words, kinds)
+
+    def find(self, body: int, key: str, kinds: tuple[str, ...]) -> None:
+        """The parameter of a definition with this body is of one of these types."""
+        at = self._parameters[body, key]
+        first, last, known = self.local[at]
+        self.local[at] = first, last, known.replace(kinds=kinds)
 
     def at(self, word: int) -> dict[str, Known]:
         """What is known there, the innermost of each name, by key."""

@@ -34,6 +34,9 @@ class ValueTypes:
         self._context = ReadingContext(vocabulary.values)
         self._prefixes, self._shared = prefixes, shared
         self._headers = [header for header in definitions.headers.values() if header.parameters]
+        self._places: dict[str, list[int]] = {}
+        for at, word in enumerate(text.words):
+            self._places.setdefault(word, []).append(at)
         self.types: dict[tuple[int, str], tuple[str, ...]] = {}
         for header in self._headers:
             named = [key for key, _ in header.parameters if key in vocabulary.types]
@@ -59,6 +62,7 @@ class ValueTypes:
                         self.types[at, prefix.key] = kinds
                         if prefix.role != "each":
                             scopes.give(prefix, kinds)
+            scopes = self.scopes()
             for header in self._headers:  # after `for each`, of whose values they may be used with
                 self._from_body(header, scopes)
                 if all((header.body, key) in self.types for key, _ in header.parameters):
@@ -102,11 +106,12 @@ class ValueTypes:
                 named = self._context.named(self._text, prefix.value)
                 if named is not None and named[0] is not None and named[0].key in open_keys and prefix.key in known:
                     found.setdefault(named[0].key, known[prefix.key].kinds)
-        use = self._first_use(header) if any(len(kinds) > 1 for kinds in found.values()) else {}
+        use = self._first_use(header, scopes) if any(len(kinds) > 1 for kinds in found.values()) else {}
         for key, kinds in found.items():
             meant = [kind for kind in kinds if kind in use.get(key, ())] or kinds  # `go to {guest}`: who or where
             if kinds:
                 self.types[header.body, key] = (meant[0],)
+                scopes.find(header.body, key, (meant[0],))
 
     def _longest(self, at: int, known: Mapping[str, Known]) -> Match | None:
         self._context.set_known(known)
@@ -128,29 +133,32 @@ class ValueTypes:
 
     def _ask_uses(self) -> None:
         """Where the body of a definition does not tell, its first use does."""
+        scopes = self.scopes()
         for header in self._headers:
             open_keys = [key for key, _ in header.parameters if (header.body, key) not in self.types]
-            use = self._first_use(header) if open_keys else {}
-            self.types |= {(header.body, key): use[key] for key in open_keys if use.get(key)}
+            use = self._first_use(header, scopes) if open_keys else {}
+            for key in open_keys:
+                if use.get(key):
+                    self.types[header.body, key] = use[key]
+                    scopes.find(header.body, key, use[key])
 
-    def _first_use(self, header: Header) -> dict[str, tuple[str, ...]]:
+    def _first_use(self, header: Header, scopes: Scopes) -> dict[str, tuple[str, ...]]:
         """The types of the values with which a name is first used; none where it never is."""
-        form, own, scopes = name_form(header.name), header.span, self.scopes()
+        form, own = name_form(header.name), header.span
         first = form[0]
-        for at, word in enumerate(self._text.words):
-            if word == first or isinstance(first, Slot):
-                if own.start <= self._text.starts[at] < own.end:
-                    continue
-                self._context.set_known(scopes.at(at))
-                if (use := self._use(form, at)) is not None:
+        for at in range(len(self._text.words)) if isinstance(first, Slot) else self._places.get(first, ()):
+            if not own.start <= self._text.starts[at] < own.end:
+                if (use := self._use(form, at, scopes)) is not None:
                     return use
         return {}
 
-    def _use(self, form: Sequence[str | Slot], at: int) -> dict[str, tuple[str, ...]] | None:
+    def _use(self, form: Sequence[str | Slot], at: int, scopes: Scopes) -> dict[str, tuple[str, ...]] | None:
         """The types of the values with which a name is used at a word, None where it is not."""
         found: dict[str, tuple[str, ...]] = {}
+        start = at
         for part in form:
             if isinstance(part, Slot):
+                self._context.set_known(scopes.at(start))
                 value = self._context.any(self._text, at)
                 if value is None:
                     return None
