@@ -12,8 +12,8 @@ from btlang.devices.device_set import Reads, reader
 from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import JointState, JointTarget
 from btlang.devices.loop import DeviceLoop
-from btlang.robots.body import Body, Vector
-from btlang.robots.gesture import Gesture, Step
+from btlang.robots.body import Body
+from btlang.robots.gesture import Gesture
 from btlang.robots.joints import joint_of
 from btlang.robots.motion.course import PERIOD
 from btlang.robots.motion.smooth_joints import SmoothJoints
@@ -61,20 +61,17 @@ class ServoJoints:
         self._smooth.move(targets)
         self._go_on()
 
-    def play(
-        self, wanted: Gesture | Sequence[Step], bearing: float, aim: Vector | None, room: float | None
-    ) -> tuple[Operation, float]:
+    def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[Operation, float]:
         """See SmoothJoints."""
         steps = [frame.joints for frame in wanted.frames] if isinstance(wanted, Gesture) else wanted
-        aimed = [joint.name for joint in self._body.joints if isinstance(wanted, Gesture) and joint.part == wanted.aim]
-        self._begin({name for step in steps for name in step}.union(aimed))
-        made = self._smooth.play(wanted, bearing, aim, room)
+        self._begin({name for step in steps for name in step})
+        made = self._smooth.play(wanted, room)
         self._go_on()
         return made
 
-    def lead(self, wanted: Gesture | Sequence[Step], bearing: float, aim: Vector | None) -> float:
+    def lead(self, wanted: Gesture | Sequence[Mapping[str, float]]) -> float:
         """See SmoothJoints."""
-        return self._smooth.lead(wanted, bearing, aim)
+        return self._smooth.lead(wanted)
 
     def at_target(self, names: tuple[str, ...]) -> bool:
         """True when none of them is on its way. Raises DeviceSilent."""

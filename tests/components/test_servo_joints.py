@@ -15,10 +15,12 @@ from btlang.devices.driver import Device, DeviceError, DeviceSilent
 from btlang.devices.kinds import Command, JointState, JointTarget, Reading
 from btlang.devices.loop import DeviceLoop
 from btlang.robots.geometry import Pose
+from btlang.robots.gesture import angle_of
 from btlang.robots.platforms import ALL
 from btlang.robots.world import World
 from tests.robots.motion.bodies import BOW, guide
 
+WAVE = [{name: angle_of(value, 0.0) for name, value in step.items()} for step in guide().postures["wave"]]
 PATIENCE = 20.0  # seconds, on a busy machine
 
 
@@ -87,7 +89,7 @@ def test_simulated_servos_follow_what_is_planned() -> None:
 
 def test_a_loop_writes_to_real_servos_beside_the_tick() -> None:
     with servos() as (driver, joints):
-        bow, _ = joints.play(BOW, 0.0, None, None)
+        bow, _ = joints.play(BOW, None)
         until(lambda: bow.done)  # no step: the tick hangs
         tilts = [told["waist tilt"].position for told in driver.told if told["waist tilt"] != JointTarget()]  # type: ignore[attr-defined]
         assert max(tilts) == pytest.approx(30, abs=5)  # it may be told late where the machine is busy
@@ -97,7 +99,7 @@ def test_a_loop_writes_to_real_servos_beside_the_tick() -> None:
 
 def test_stopped_real_servos_brake_and_stay() -> None:
     with servos() as (driver, joints):
-        wave, _ = joints.play(guide().postures["wave"], 0.0, None, None)
+        wave, _ = joints.play(WAVE, None)
         until(lambda: driver.positions["right shoulder lift"] > 30)
         joints.freeze()
         until(lambda: not joints.moving)
@@ -109,7 +111,7 @@ def test_stopped_real_servos_brake_and_stay() -> None:
 
 def test_a_servo_that_falls_silent_ends_the_gesture() -> None:
     with servos() as (driver, joints):
-        wave, _ = joints.play(guide().postures["wave"], 0.0, None, None)
+        wave, _ = joints.play(WAVE, None)
         until(lambda: driver.positions["right shoulder lift"] > 5)
         driver.silent = "right elbow"
         until(lambda: bool(wave.done), lambda: joints.step(0.05))
@@ -120,7 +122,7 @@ def test_a_servo_that_falls_silent_ends_the_gesture() -> None:
 
 def test_servos_rest_where_the_loop_of_the_body_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
     with servos() as (driver, joints):
-        joints.play(guide().postures["wave"], 0.0, None, None)
+        joints.play(WAVE, None)
         until(lambda: driver.positions["right shoulder lift"] > 5)
         monkeypatch.setattr(joints._smooth, "step", lambda dt: time.sleep(1.0))
         until(lambda: driver.told[-1]["right shoulder lift"] == JointTarget())

@@ -60,7 +60,7 @@ def _something(joints: SmoothJoints, body: Body, random: Generator) -> None:
     some = [body.joints[k] for k in random.choice(len(body.joints), random.integers(1, 6), replace=False)]
     if what < 0.7:
         room = None if random.random() < 0.5 else float(random.uniform(0.0, 2.0))
-        joints.play(random_gesture(body, random), 0.0, None, room)
+        joints.play(random_gesture(body, random), room)
     elif what < 0.9:
         share = random.uniform(0.1, 1.0)
         joints.move({joint.name: share * random.uniform(joint.low, joint.high) for joint in some})
