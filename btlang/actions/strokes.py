@@ -109,8 +109,9 @@ class Strokes:
 
 def _strokes(robot: Presenting, marks: Sequence[Mark]) -> Iterator[Stroke]:
     """Those that the robot has. Raises RobotError where a target isn't known."""
+    moves = hasattr(robot, "gesture")  # robots of other people may only speak
     for mark in marks:
-        found = said_gesture(robot.body, mark.words)
+        found = said_gesture(robot.body, mark.words) if moves else None
         if found is not None:
             yield Stroke(found.name, robot.locate(found.target) if found.target else None, mark.index)
         elif robot.on_event is not None:  # values of the mission brought it
