@@ -113,9 +113,9 @@ class DevicePower:
         """Raises RobotError: nobody can."""
         raise RobotError("the battery of this robot can't be set")
 
-    def connect(self, pose: Pose, fails: Callable[[], bool]) -> None:
+    def connect(self, pose: Pose, fails: Callable[[str], bool]) -> None:
         """Raises RobotError where it doesn't charge, or `fails`."""
-        if fails():
+        if fails("dock"):
             raise RobotError(NO_CONTACT)
         if not (self.charging or self.level >= _FULL):
             raise RobotError("the battery doesn't charge")

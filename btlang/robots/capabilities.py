@@ -6,12 +6,13 @@ names in btlang.vocabulary.capabilities.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, Protocol
 
 from btlang.robots.body import Body
 from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose
+from btlang.robots.station import Station
 from btlang.robots.zones import Zones
 from btlang.run.standstill import Standstill
 
@@ -396,16 +397,16 @@ class Docking(Machine, Protocol):
         """True while connected to the dock."""
 
     @property
-    def staging(self) -> Pose | None:
-        """Where it has to stand before it drives straight into its dock; None where `dock` and `undock` drive by
-        themselves. Raises RobotError where there is no dock.
+    def stations(self) -> Sequence[Station] | None:
+        """The docks that it may drive into, the best one first; None where `dock` and `undock` drive by themselves.
+        Raises RobotError where there is no dock.
         """
 
     def dock(self) -> Operation:
         """Connects to the charger. Raises RobotError, or fails, if the robot isn't at the dock."""
 
     def undock(self) -> Operation:
-        """Disconnects, without moving unless `staging` is None."""
+        """Disconnects, without moving unless `stations` is None."""
 
 
 class Conversing(Listening, Voice, Base, Protocol):

@@ -17,9 +17,10 @@ from btlang.robots.latch import Latch
 from btlang.robots.navigation import NavigationGoal, Navigator
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.parts import Parts
-from btlang.robots.power import staging_pose
+from btlang.robots.power import stations
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, SensorSilent
 from btlang.robots.simulated_parts import simulated_parts
+from btlang.robots.station import Station
 from btlang.robots.surroundings import Surroundings
 from btlang.robots.world import Place, World, said
 from btlang.robots.zones import Zones
@@ -413,10 +414,10 @@ class SimulatedRobot:
         return self.power.charging
 
     @property
-    def staging(self) -> Pose:
-        """See btlang.robots.power.staging_pose."""
+    def stations(self) -> list[Station]:
+        """The docks, the nearest first. Raises RobotError where there is none."""
         self._need("docking")
-        return staging_pose(self.world, self.body)
+        return stations(self.world, self.body, self.pose)
 
     def dock(self) -> CompletedOperation:
         """Connects to the charger at once. Raises RobotError where the robot does not stand at the dock."""

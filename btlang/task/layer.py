@@ -10,10 +10,9 @@ from functools import partial
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.needs import check_body, needs_of_tree
+from btlang.robots.needs import needs_of_tree
+from btlang.robots.preflight import check_mission
 from btlang.robots.registry import runs_on
-from btlang.robots.said_gestures import check_marks
-from btlang.robots.zone_check import check_zones
 from btlang.run.world_input import WorldInput
 from btlang.session import Run, Session
 from btlang.task.component_handler import component_data
@@ -195,10 +194,7 @@ class TaskLayer:
         mission = self.reader.read(text)
         mission.check()
         body = getattr(self.session.robot, "body", None)
-        if body is not None:
-            check_body(body, mission.tree, mission.vocabulary)
-            check_marks(self.session.world, body, mission.tree, mission.vocabulary)
-        check_zones(self.session.world, mission.tree, mission.vocabulary)
+        check_mission(self.session.world, body, mission.tree, mission.vocabulary)
         state = self.executor.robot_state
         battery = None if state is None else state.battery
         if battery is not None and battery < _EMPTY and _WHEELS & {*needs_of_tree(mission.tree, mission.vocabulary)}:
