@@ -299,7 +299,7 @@ class DeviceVoice(Voice):
     """The voice as it is simulated, with a speaker that plays it, and displays that show what is printed."""
 
     def __init__(
-        self, body: Body, devices: Mapping[str, Reads], speaker: str, displays: Sequence[str], joints: DeviceJoints
+        self, body: Body, devices: Mapping[str, Reads], speaker: str, displays: Sequence[str], joints: JointsPart
     ) -> None:
         super().__init__(body, joints.move)
         self._devices, self._speaker, self._displays = devices, speaker, displays

@@ -6,6 +6,8 @@ import json
 import sys
 import tempfile
 import time
+import tomllib
+from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -15,6 +17,7 @@ from btlang.robots.registry import connector
 from btlang.robots.world_file import load_world
 from btlang.robots.world_writing import to_toml
 from btlang.run.events import Bumped, Called, Event, Heard, PeriodPassed, Said
+from btlang.speech.marks import read_marks
 from btlang.task.house import furnished_layer
 from btlang.task.missions import MissionReader
 from btlang.task.task import FINAL, State
@@ -37,7 +40,7 @@ class Observer:
         self.late: list[str] = []
         self.asked = self.answered = self.passed_on = 0
         self._zones = [zone for zone in world.zones if zone.is_closed]
-        self.now = lambda: 0.0
+        self.now: Callable[[], float] = float
 
     def __call__(self, event: Event) -> None:
         now = self.now()
@@ -69,10 +72,6 @@ class Observer:
 
 def main(seed: int, days: float = 7.0) -> dict[str, Any]:
     """What became of a week with this seed."""
-    from btlang.speech.marks import read_marks
-
-    import tomllib
-
     robot = str(GUIDE / "robot.toml")
     connect = connector(robot)
     world = load_world(str(GUIDE / "world.toml"), connect.body).replace(seed=seed)
