@@ -19,6 +19,7 @@ from btlang.robots.body_file import standard_body
 from btlang.robots.choices import Choices
 from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose
+from btlang.robots.gesturing import Gestures
 from btlang.robots.latch import Latch
 from btlang.robots.protection import Protection
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError
@@ -105,6 +106,7 @@ class RosRobot:
             node, subscriptions, body.radius, (body.driving.top_speed, body.turning.top_speed), self._latch
         )
         self._joints = RosJoints(node, subscriptions, body)
+        self._gestures = Gestures(body, self._joints)
         self._voice = RosSpeech(node, subscriptions, make_engine(body))
         self._services = Services(node, self._executor)
         self._services.add(_STOP, Trigger)
@@ -165,6 +167,7 @@ class RosRobot:
             self._pursuit.step(self.time)
         self.power.step()
         self._hands.step()
+        self._gestures.step(dt)
         self._doors.step()
         self._ears.step(self.time)
         self._services.step()  # last: what was answered is newer than what topics told before
@@ -227,6 +230,7 @@ class RosRobot:
         for servers in self._servers:
             servers.stop(_TOLD_TO_STOP)
         self._services.stop(_TOLD_TO_STOP)
+        self._gestures.stop()
         self._joints.freeze()
         self._voice.silence()
 
@@ -529,6 +533,18 @@ class RosRobot:
     def freeze_joints(self, *names: str) -> None:
         """These joints stay where they are now."""
         self._joints.freeze(names)
+
+    def gesture(self, name: str, *, aim: Point | None = None, stroke_at: float | None = None) -> Operation:
+        """See btlang.robots.capabilities.Gesturing: its key frames one after the other. Raises RobotError."""
+        self._check_stop()
+        room = None if stroke_at is None else stroke_at - self.time
+        started, _ = self._gestures.start(name, lambda: self.pose, aim, room)
+        self._emit("gesture", name=name)
+        return started
+
+    def lead(self, name: str, aim: Point | None = None) -> float:
+        """See btlang.robots.capabilities.Gesturing. Raises RobotError."""
+        return self._gestures.lead(name, lambda: self.pose, aim)
 
     def grasp(self, hand: Hand, name: str | None = None) -> Operation:
         """Closes a hand; where it closes on another object than the named one, it opens again and fails.
