@@ -8,6 +8,7 @@ from math import pi
 
 from btlang.record import Record
 from btlang.robots.gesture import BEARINGS, Gesture, Step, angle_of
+from btlang.speech.engine import Settings
 from btlang.vocabulary.capabilities import POSTURE
 
 TYPE_CHECKING = False
@@ -140,10 +141,19 @@ class Dock(Record):
 
 
 class Voice(Record):
-    """Seconds that speaking takes, for each text and for each character of it."""
+    """How it speaks, and by which engine: "espeak", the name of an installed one, `module:Class`; "" is one without
+    sound.
+    """
 
-    text: float
-    character: float
+    settings: Settings
+    engine: str = ""
+
+
+class Mouth(Record):
+    """What shows the shapes of the mouth: a `joint` that is open at its high end, a `display`, or both."""
+
+    joint: str = ""
+    display: str = ""
 
 
 class Ears(Record):
@@ -236,6 +246,7 @@ class Body(Record):
     missions: str = ""
     schedules: str = ""
     gestures: Mapping[str, Gesture] = {}
+    mouth: Mouth | None = None
 
     @property
     def folder(self) -> str:

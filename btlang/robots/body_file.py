@@ -22,11 +22,11 @@ from btlang.robots.body import (
     Navigation,
     RosNode,
     Sensor,
-    Voice,
 )
 from btlang.robots.data_file import DataFileError, as_mission_error, load_data
 from btlang.robots.gesture import Step
 from btlang.robots.platforms import ROBOTS
+from btlang.robots.voice_file import read_mouth, read_voice
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem, Problems, Table
 from btlang.vocabulary.shipped import BODIES, STANDARD_BODY
@@ -115,7 +115,7 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     ]
     battery = problems.part(lambda: _battery(top), None)
     dock = problems.part(lambda: _dock(top), None)
-    voice = problems.part(lambda: _voice(top), None)
+    voice = problems.part(lambda: read_voice(top, bool(file)), None)
     screen = problems.part(lambda: top.flag("screen"), False)
     devices = _listed(top, "device", _device, problems)
     components = _listed(top, "component", _component, problems)
@@ -127,13 +127,15 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
         missions=problems.part(lambda: _beside(top, "missions", file, os.path.isdir), ""),
         schedules=problems.part(lambda: _beside(top, "schedules", file), ""),
     )  # fmt: skip
+    mouth = problems.part(lambda: read_mouth(top, made), None)
     problems.part(lambda: top.finish(made), made)
     if not file:
         problems.found += [Problem(_FOREIGN, "component", index) for index in range(len(components))]
         real = (index for index, device in enumerate(devices) if device.driver != "simulated")
         problems.found += [Problem(_FOREIGN, "device", index, "driver") for index in real]
     problems.end()
-    return made
+    complete: Body = made.replace(mouth=mouth)
+    return complete
 
 
 def _beside(top: Table, key: str, file: str, exists: Callable[[str], bool] = os.path.isfile) -> str:
@@ -191,13 +193,6 @@ def _dock(top: Table) -> Dock | None:
     speed = table.number("speed", 0.15, low=_LEAST)
     retries = int(table.number("retries", 2, low=0, high=100))
     return table.finish(Dock(within, beyond, backs_off, staging, speed, retries))
-
-
-def _voice(top: Table) -> Voice | None:
-    if not top.has("voice"):
-        return None
-    table = top.table("voice")
-    return table.finish(Voice(table.number("text", low=0.0), table.number("character", low=0.0)))
 
 
 def _ears(top: Table) -> Ears | None:

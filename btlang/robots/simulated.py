@@ -17,9 +17,10 @@ from btlang.robots.latch import Latch
 from btlang.robots.navigation import NavigationGoal, Navigator
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.parts import Parts
-from btlang.robots.power import staging_pose
+from btlang.robots.power import stations
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, SensorSilent
 from btlang.robots.simulated_parts import simulated_parts
+from btlang.robots.station import Station
 from btlang.robots.surroundings import Surroundings
 from btlang.robots.world import Place, World, said
 from btlang.robots.zones import Zones
@@ -31,6 +32,7 @@ from btlang.vocabulary.capabilities import part_of
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.scan import Array
+    from btlang.speech.engine import Utterance
 
 _CONTROL_PERIOD = 0.05
 _HANDS: tuple[Hand, Hand] = ("left", "right")
@@ -99,7 +101,8 @@ class SimulatedRobot:
         self._base.step(dt)
         self._joints.step(dt)
         self._gestures.step(dt)
-        self._voice.step(dt)
+        if not self._latch.refuses:  # an emergency stop leaves the mouth as it is
+            self._voice.step(dt)
         self._hands.step(dt)
         self._drop()
         self._use_power(dt, self._base.travelled - travelled)
@@ -412,10 +415,10 @@ class SimulatedRobot:
         return self.power.charging
 
     @property
-    def staging(self) -> Pose:
-        """See btlang.robots.power.staging_pose."""
+    def stations(self) -> list[Station]:
+        """The docks, the nearest first. Raises RobotError where there is none."""
         self._need("docking")
-        return staging_pose(self.world, self.body)
+        return stations(self.world, self.body, self.pose)
 
     def dock(self) -> CompletedOperation:
         """Connects to the charger at once. Raises RobotError where the robot does not stand at the dock."""
@@ -498,13 +501,28 @@ class SimulatedRobot:
         """The name of what the hand holds."""
         return self._hands.held.get(hand)
 
-    def say(self, text: str) -> None:
-        """Starts to speak, for as long as the body says."""
+    def say(self, text: str, after: float = 0.0) -> None:
+        """Starts to speak after so many seconds, for as long as the voice of the body takes. Raises RobotError."""
         self._need("voice")
         if not self._latch.refuses:
-            self._voice.say(text)
+            self._voice.say(text, after)
             self._last_said = text
             self._emit("say", text=text)
+
+    def utterance(self, text: str) -> Utterance:
+        """What it would say. Raises RobotError."""
+        self._need("voice")
+        return self._voice.utterance(text)
+
+    @property
+    def said(self) -> Utterance | None:
+        """What it says, or said last."""
+        return self._voice.said
+
+    @property
+    def said_at(self) -> float:
+        """The second of `time` at which that begins."""
+        return self.time - self._voice.position
 
     @property
     def speaking(self) -> bool:

@@ -29,8 +29,10 @@ def simulated_parts(world: World, obstacles: Obstacles, body: Body) -> Parts:
             scanners.append(Scanner(obstacles, body.range))
         return scanners[0].read(pose)
 
-    base, power = Base(world.start, obstacles, body), Power(world.battery, world.dock, body)
-    return Parts(base, power, scan, joints_part(body), Hands(obstacles, world.names.objects, body), Voice(body))
+    base, power = Base(world.start, obstacles, body), Power(world.battery, world.all_docks, body)
+    joints = joints_part(body)
+    hands = Hands(obstacles, world.names.objects, body)
+    return Parts(base, power, scan, joints, hands, Voice(body, joints.move))
 
 
 def joints_part(body: Body) -> JointsPart:
