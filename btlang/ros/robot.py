@@ -24,6 +24,7 @@ from btlang.robots.latch import Latch
 from btlang.robots.protection import Protection
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError
 from btlang.robots.station import Station
+from btlang.robots.voice import make_engine
 from btlang.robots.world import Place, World, Zone, said
 from btlang.robots.zones import Zones
 from btlang.ros.available import optional_interface
@@ -51,6 +52,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.ros.navigation_goal import RosNavigation
     from btlang.ros.server_goal import ServerGoal, ServerGoals
+    from btlang.speech.engine import Utterance
 
 CALL, FOLLOW = "call", "follow"
 _STOP = "stop"
@@ -105,7 +107,7 @@ class RosRobot:
         )
         self._joints = RosJoints(node, subscriptions, body)
         self._gestures = Gestures(body, self._joints)
-        self._voice = RosSpeech(node, subscriptions)
+        self._voice = RosSpeech(node, subscriptions, make_engine(body))
         self._services = Services(node, self._executor)
         self._services.add(_STOP, Trigger)
         self._services.add(_LOCALIZE, Empty)
@@ -586,12 +588,26 @@ class RosRobot:
         self._calls.publish(String(data=text))
         self._emit("call", text=text)
 
-    def say(self, text: str) -> None:
-        """Starts to speak. Raises RobotError where nobody listens."""
+    def say(self, text: str, after: float = 0.0) -> None:
+        """Starts to speak after so many seconds. Raises RobotError where nobody listens."""
         if not self._latch.refuses:
-            self._voice.say(text)
+            self._voice.say(text, after)
             self._last_said = text
             self._emit("say", text=text)
+
+    def utterance(self, text: str) -> Utterance:
+        """What it would say. Raises RobotError."""
+        return self._voice.utterance(text)
+
+    @property
+    def said(self) -> Utterance | None:
+        """What it says, or said last."""
+        return self._voice.said
+
+    @property
+    def said_at(self) -> float:
+        """The second of `time` at which that begins, as far as it's known yet."""
+        return self.time - self._voice.position
 
     @property
     def speaking(self) -> bool:

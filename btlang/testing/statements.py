@@ -36,8 +36,8 @@ class Statement(Record):
     """A line without the words that say what it is. Words are given by their numbers: `first` to `last` (exclusive).
 
     `seconds` are those of `within`, `for` and `after`, and the time of `run`, the longest one if `at_most`; `file` of
-    `world`, `robot`, `rules` and `run` is the path in quotes, `block` the mission below `run:`. The words from `head` on
-    to the comma before `first` are a condition.
+    `world`, `robot`, `rules` and `run` is the path in quotes, `block` the mission below `run:`. The words from `head`
+    on to the comma before `first` are a condition.
     """
 
     kind: str
