@@ -95,4 +95,4 @@ def test_the_command_writes_and_reads(typed: Callable[..., tuple[int, str, str]]
     written.write_text("<robot>")
     code, _, problem = typed("robot", "import", str(written))
     assert code == 2
-    assert f"{written}:1:1: error BT071: this isn't XML: no element found" in problem
+    assert f"{written}:1:1: error BT071: This robot file can't be used: this isn't XML: no element found" in problem
