@@ -27,8 +27,6 @@ from btlang.vocabulary.shipped import shipped
 from tests.components.robots import robot_file
 
 SHIPPED = Path(shipped("examples"))
-MISSIONS = [example for example in examples() if not example.file.endswith(".md")]
-"""Folders have robots of their own."""
 
 
 def run(text: str | Path, robot: Any, world: str | None = None, **options: Any) -> tuple[btlang.Outcome, list[Event]]:
@@ -41,7 +39,7 @@ def run(text: str | Path, robot: Any, world: str | None = None, **options: Any) 
     return outcome, events
 
 
-@pytest.mark.parametrize("example", MISSIONS, ids=lambda example: example.name)
+@pytest.mark.parametrize("example", examples(), ids=lambda example: example.name)
 def test_examples_run_unchanged_over_devices(example: Any) -> None:
     world = str(SHIPPED / "worlds" / Path(example.world).name) if example.world else None
     path = SHIPPED / f"{example.name}.txt"

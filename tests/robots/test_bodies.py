@@ -101,11 +101,9 @@ LACKS = {
 """What the small robot lacks for examples; it runs the others."""
 ENDS = {"roaming": btlang.Status.IDLE, "waiting": btlang.Status.FAILURE}
 """What examples come to that do not succeed: one goes on for ever, one waits for somebody who does not come."""
-MISSIONS = [example for example in examples() if not example.file.endswith(".md")]
-"""Folders have robots of their own."""
 
 
-@pytest.mark.parametrize("example", MISSIONS, ids=lambda example: example.name)
+@pytest.mark.parametrize("example", examples(), ids=lambda example: example.name)
 def test_examples_on_the_small_robot(example: Example) -> None:
     source = read_source(shipped("examples", f"{example.name}.txt"))
     mission = btlang.parse_tree(source, world=shipped("examples", example.world) if example.world else None)
