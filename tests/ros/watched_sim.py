@@ -18,21 +18,23 @@ def watch() -> None:
         step(simulator, seconds)
         robot = simulator.robot
         joints = {joint.name: round(robot.joint(joint.name), 4) for joint in robot.body.joints}
-        said = [round(robot.said_at, 4), robot.said.text] if robot.said is not None else None
+        said = [round(robot.said_at, 4), robot.said.text] if robot.said is not None else [0.0, ""]
         look = json.dumps([joints, said, robot.speaking, robot.moving])
         if look != before[0]:
             before[0] = look
             print(json.dumps(["look", robot.time, joints, said, robot.speaking, robot.moving]), flush=True)
 
-    Simulator.step = watched  # type: ignore[method-assign]
+    setattr(Simulator, "step", watched)  # noqa: B010
 
 
 class Look:
     """The simulated robot at a second."""
 
     def __init__(self, line: str) -> None:
-        _, self.time, self.joints, said, self.speaking, self.moving = json.loads(line)
-        self.said_at, self.text = said or (0.0, "")
+        found = json.loads(line)
+        self.time, self.joints = float(found[1]), dict[str, float](found[2])
+        self.said_at, self.text = float(found[3][0]), str(found[3][1])
+        self.speaking, self.moving = bool(found[4]), bool(found[5])
 
 
 class WatchedSim(Command):
