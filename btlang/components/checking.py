@@ -18,7 +18,7 @@ from btlang.devices.simulated import SimulatedDevice
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.robots.body import Body, ComponentPart, Device
 from btlang.robots.body_file import BodyError, load_body
-from btlang.robots.data_file import as_mission_error, placed
+from btlang.robots.data_file import DataFileError, as_mission_error, placed
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem
 from btlang.vocabulary.capabilities import CAPABILITIES
@@ -31,10 +31,10 @@ _DESCRIBE = 30.0  # seconds that a class gets to be loaded and to say what it is
 
 
 def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:
-    """The body of a robot file, None where it can't be read, and what is wrong with the file (BT071)."""
+    """The body of a robot file, None where it can't be read, and what is wrong with the file (BT071, BT076)."""
     try:
         body = load_body(source)
-    except BodyError as error:
+    except DataFileError as error:
         return None, list(as_mission_error(error).diagnostics)
     found: list[Diagnostic] = []
     described: dict[str, Mapping[str, Any]] = {}

@@ -59,8 +59,8 @@ class Gestures:
 
         Gives how many times as long it takes as it should, too: limits of the joints may slow it.
         """
-        wanted = self._known(name)
         bearing, point = _seen_from(pose, aim)
+        wanted = self._known(name, bearing)
         if isinstance(self._joints, SmoothPart):
             return self._joints.play(wanted, bearing, point, room)
         steps = self._steps(wanted, bearing)
@@ -70,8 +70,8 @@ class Gestures:
 
     def lead(self, name: str, pose: Pose, aim: Point | None) -> float:
         """See btlang.robots.capabilities.Gesturing."""
-        wanted = self._known(name)
         bearing, point = _seen_from(pose, aim)
+        wanted = self._known(name, bearing)
         if isinstance(self._joints, SmoothPart):
             return self._joints.lead(wanted, bearing, point)
         return self._lead(wanted, bearing)
@@ -89,8 +89,9 @@ class Gestures:
             stepped.step(dt)
         self._stepped = [stepped for stepped in self._stepped if not stepped.done]
 
-    def _known(self, name: str) -> Gesture | Sequence[Step]:
-        found = self._body.gestures.get(name) or self._body.postures.get(name)
+    def _known(self, name: str, bearing: float) -> Gesture | Sequence[Step]:
+        gesture = self._body.gestures.get(name)
+        found = gesture.towards(bearing) if gesture is not None else self._body.postures.get(name)
         if not found:
             raise RobotError(f'the robot has no gesture "{name}"')
         return found
