@@ -16,9 +16,11 @@ from btlang.devices.drivers import SIMULATED, driver_class, make_driver
 from btlang.devices.kinds import KINDS
 from btlang.devices.simulated import SimulatedDevice
 from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.robots.body import Body, ComponentPart, Device
 from btlang.robots.body_file import BodyError, load_body
 from btlang.robots.data_file import DataFileError, as_mission_error, placed
+from btlang.robots.gesture_words import gesture_words
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem
 from btlang.vocabulary.capabilities import CAPABILITIES
@@ -45,6 +47,10 @@ def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:
     methods = {located(place): known["methods"] for place, known in described.items()} if all_loaded else {}
     for path in _words(body):
         found += check_words(path, methods)
+    try:
+        gesture_words(body)
+    except MissionError as error:
+        found += error.diagnostics
     return body, found
 
 

@@ -39,7 +39,8 @@ def load_gestures(file: str | Source, joints: Sequence[Joint]) -> tuple[Gesture,
     """
     path = file if isinstance(file, str) else file.name
     stem = os.path.splitext(os.path.basename(path))[0].replace("_", " ").strip() or "gesture"
-    return load_data(file, "a gesture", lambda top: _gestures(top, stem, joints), GestureError)
+    made = load_data(file, "a gesture", lambda top: _gestures(top, stem, joints), GestureError)
+    return tuple(gesture.replace(file=path) for gesture in made)
 
 
 def read_gestures(top: Table, joints: Sequence[Joint], file: str) -> dict[str, Gesture]:

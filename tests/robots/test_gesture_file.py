@@ -28,7 +28,7 @@ def test_a_file_has_key_frames_and_what_they_are_called() -> None:
     (nod,) = read('phrase = ["nod", "nod [your] head"]\nhelp = "Nods."\nleast = 0.5\nmost = 2\n' + NOD)
     assert nod == Gesture(
         "a nod", (KeyFrame(0.4, {"head tilt": -15}), KeyFrame(0.8, {"head tilt": 0}, 0.2)), 0.4,
-        ("nod", "nod [your] head"), "Nods.", "", 0.5, 2.0,
+        ("nod", "nod [your] head"), "Nods.", "", 0.5, 2.0, None, "a_nod.toml",
     )  # fmt: skip
     assert nod.seconds == 1.0
 
@@ -89,7 +89,7 @@ FRAME = '[[frame]]\nat = 0.5\n"head tilt" = 0\n'
         ("repeat = { from = 0, to = 0.5, times = 99 }\n" + FRAME, 1, '"times" must be from 1 to 50'),
         ("repeat = { from = 0, to = 0.5, times = 1.5 }\n" + FRAME, 1, '"times" must be a whole number'),
         ("repeat = { from = 0, to = 0.2, times = 2 }\n" + FRAME, 1, "there is no key frame between these times"),
-        ("repeat = { from = 0, to = 0.5, times = 2 }\n" + FRAME + "hold = 1\n", 1, "is held until 1.5; repeat up to then"),
+        ("repeat = { from = 0, to = 0.5, times = 2 }\n" + FRAME + "hold = 1\n", 1, "is held until 1.5; repeat up"),
         ("repeat = { from = 0, to = 20, times = 9 }\n" + FRAME + "hold = 19.5\n", None, "takes at most 60 seconds"),
         ("mirror = true\n" + FRAME, 1, 'mirror = true needs "left" or "right" in the name, not "a nod"'),
         ('mirror = "nearer"\n' + FRAME, 1, 'mirror = "nearer" is for an "aim" that is left or right'),
@@ -107,12 +107,9 @@ def robot_file(folder: Path, gestures: str, **files: str) -> str:
     (folder / "gestures").mkdir()
     for name, text in files.items():
         (folder / "gestures" / f"{name}.toml").write_text(text)
+    kept = [line for line in GUIDE.read_text().splitlines() if not line.startswith(("gestures =", "world ="))]
     path = folder / "robot.toml"
-    path.write_text(
-        GUIDE.read_text().replace("[base]", f"{gestures}\n\n[base]", 1).replace('world = "world.toml"\n', "")
-    )
-    lines = path.read_text().splitlines()
-    path.write_text("\n".join(line for line in lines if line == gestures or not line.startswith("gestures")))
+    path.write_text("\n".join((gestures, *kept)))
     return str(path)
 
 
@@ -136,8 +133,8 @@ def test_a_text_from_outside_names_no_files(tmp_path: Path) -> None:
 
 def test_gestures_that_clash(tmp_path: Path) -> None:
     path = robot_file(
-        tmp_path, 'gestures = ["gestures"]', bow='phrase = "nod [your] head"\n' + NOD, clap='phrase = "nod the head"\n' + NOD,
-        take='name = "bow"\nphrase = "c d"\n' + NOD,
+        tmp_path, 'gestures = ["gestures"]', bow='phrase = "nod [your] head"\n' + NOD,
+        clap='phrase = "nod the head"\n' + NOD, take='name = "bow"\nphrase = "c d"\n' + NOD,
     )  # fmt: skip
     with pytest.raises(
         GestureError, match='"nod head" is said for the gesture "bow" too; change one of them'
