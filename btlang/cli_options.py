@@ -161,7 +161,7 @@ def _main_option(parser: argparse.ArgumentParser) -> None:
 
 def _robot_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--robot", type=robot_on(tuple(ROBOTS)), default="simulated", metavar="ROBOT",
+        "--robot", type=robot_on(tuple(ROBOTS)), default=argparse.SUPPRESS, metavar="ROBOT",
         help="robot file, for the words of its components and gestures, and for its world",
     )  # fmt: skip
 
