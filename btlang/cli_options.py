@@ -10,12 +10,11 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from itertools import takewhile
 
-from btlang.arguments import between, duration, picture, robot_on, speed
+from btlang.arguments import between, duration, picture, speed
 from btlang.diagnostics.report import FORMATS
 from btlang.frontends.mission.reader import DEFAULT_PARSER, PARSERS
 from btlang.option_parser import OptionParser
-from btlang.robots.options import add_world
-from btlang.robots.platforms import ROBOTS
+from btlang.robots.options import add_robot_words, add_world
 from btlang.run.limits import RATES
 from btlang.text.spelling import respellings
 from btlang.vocabulary.shipped import ENGLISH
@@ -72,6 +71,8 @@ def _verb_parser(verb: str) -> OptionParser:
     parser = OptionParser(f"btc {verb}")
     parser.set_defaults(**_DEFAULTS, verb=verb)
     _OPTIONS[verb][1](parser)
+    if verb in _READING:
+        add_robot_words(parser)
     return parser
 
 
@@ -130,6 +131,10 @@ _DEFAULTS: dict[str, Any] = {
 }  # fmt: skip
 
 
+_READING = ("check", "compile", "diff", "explain", "format", "grammar", "tree", "words")
+"""Verbs that run nothing, but may read missions in the words of a robot."""
+
+
 def _words_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--keywords",
@@ -159,23 +164,10 @@ def _main_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--main", default="", metavar="ID", help="which tree to use if the file holds several")
 
 
-def _robot_option(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--robot", type=robot_on(tuple(ROBOTS)), default=argparse.SUPPRESS, metavar="ROBOT",
-        help="robot file, for the words of its components and gestures, and for its world",
-    )  # fmt: skip
-
-
-def _mission_options(parser: argparse.ArgumentParser, robot: bool = True) -> None:
+def _mission_options(parser: argparse.ArgumentParser) -> None:
     _reading_options(parser)
-    if robot:
-        _robot_option(parser)
-    parser.add_argument(
-        "--format",
-        choices=FORMATS,
-        default="text",
-        help="format of messages: text, or json for programs (default: text)",
-    )
+    about = "format of messages: text, or json for programs (default: text)"
+    parser.add_argument("--format", choices=FORMATS, default="text", help=about)
     _main_option(parser)
     text = parser.add_mutually_exclusive_group(required=True)
     text.add_argument("file", nargs="?", metavar="FILE", help="mission, or - for standard input")
@@ -204,7 +196,7 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
     from btlang.recording.options import add_recording_options
     from btlang.ros.command import add_robot_options
 
-    _mission_options(parser, robot=False)
+    _mission_options(parser)
     _speed_option(parser)
     parser.add_argument(
         "--rate", type=between(*RATES), default=20.0, metavar="HZ", help="ticks per second (default: 20)"
@@ -273,7 +265,6 @@ def _compile_options(parser: argparse.ArgumentParser) -> None:
 
 def _listing_options(parser: argparse.ArgumentParser) -> None:
     _words_options(parser)
-    _robot_option(parser)
     parser.add_argument("--all", action="store_true", help="list everything, with what it does and an example")
     parser.add_argument("search", nargs="*", metavar="SEARCH", help="a topic, or words to search for")
 

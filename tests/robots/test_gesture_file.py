@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -107,7 +108,9 @@ def robot_file(folder: Path, gestures: str, **files: str) -> str:
     (folder / "gestures").mkdir()
     for name, text in files.items():
         (folder / "gestures" / f"{name}.toml").write_text(text)
-    kept = [line for line in GUIDE.read_text().splitlines() if not line.startswith(("gestures =", "world ="))]
+    files = ("gestures =", "world =", "rules =", "missions =", "schedules =")
+    text = re.sub(r"\[\[component\]\]\n(.+\n)*", "", GUIDE.read_text())
+    kept = [line for line in text.splitlines() if not line.startswith(files)]
     path = folder / "robot.toml"
     path.write_text("\n".join((gestures, *kept)))
     return str(path)
