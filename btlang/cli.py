@@ -76,6 +76,7 @@ def _run(options: argparse.Namespace) -> int:
     from btlang.pictures.command import pictures_of
     from btlang.recording.options import recording
     from btlang.robots.answers_file import read_answers
+    from btlang.robots.voice_track import voice_track
     from btlang.robots.world_problem import read_world
     from btlang.ros.command import chosen_robot, print_preflight
     from btlang.run.command import run_mission
@@ -89,6 +90,7 @@ def _run(options: argparse.Namespace) -> int:
     with (
         pictures_of(mission, options.picture, options.tree_picture, options.quiet) as sinks,
         recording(mission, options) as recorders,
+        voice_track(options.voice, robot.body) as voices,
     ):
         return run_mission(
             mission,
@@ -101,7 +103,7 @@ def _run(options: argparse.Namespace) -> int:
             log=options.log,
             quiet=options.quiet,
             lines=options.lines,
-            sinks=[*sinks, *recorders],
+            sinks=[*sinks, *recorders, *voices],
             scans=options.record_scans if recorders else None,
             open_monitor=_groot(options.groot),
         )

@@ -213,6 +213,7 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--tree-picture", type=picture(".svg", ".png"), metavar="FILE", help="draw the tree with every final status"
     )
+    parser.add_argument("--voice", metavar="FILE", help="write what the robot says as sound: a WAV file")
     parser.add_argument("--lines", action="store_true", help="print plain lines, even on a terminal")
     parser.add_argument("--quiet", action="store_true", help="print only errors")
     add_recording_options(parser)

@@ -12,9 +12,10 @@ from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import go_to, travel
 from btlang.actions.points import where
 from btlang.actions.speech import say
+from btlang.actions.strokes import Presenting
 from btlang.actions.watch import Driving, Watch
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Leading, Listening, Navigation, Perception, Voice
+from btlang.robots.capabilities import Leading, Listening, Navigation, Perception
 from btlang.robots.geometry import Point
 from btlang.robots.robot import Operation
 from btlang.robots.world import said
@@ -43,11 +44,11 @@ class Following(Meeting, Driving, Protocol):
     """It goes where somebody goes."""
 
 
-class Guiding(Leading, Following, Voice, Protocol):
+class Guiding(Leading, Following, Presenting, Protocol):
     """It asks people to follow."""
 
 
-class Greeting(Navigation, Voice, Aiming, Protocol):
+class Greeting(Navigation, Presenting, Aiming, Protocol):
     """It goes to people, waves and speaks."""
 
 

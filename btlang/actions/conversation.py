@@ -6,24 +6,35 @@ import tomllib
 from collections.abc import Callable
 from functools import cache
 from importlib.resources import files
+from typing import Protocol
 
 from btlang.actions.motion import Steps
 from btlang.actions.speech import say
+from btlang.actions.strokes import Presenting
 from btlang.actions.watch import Watch
 from btlang.engine.leaves.leaf import ActionFailed, Failed
 from btlang.robots.capabilities import Conversing, Listening
 from btlang.robots.world import said
+from btlang.speech.marks import without_marks
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 WAITS = 60.0
 """Seconds of the mission in which somebody has to answer."""
 
 
-def ask(robot: Conversing, question: str, person: str | None = None) -> Steps:
+class Questioning(Conversing, Presenting, Protocol):
+    """It asks, with gestures."""
+
+
+def ask(robot: Questioning, question: str, person: str | None = None, kept: dict[str, Any] | None = None) -> Steps:
     """Asks a person, or anybody, and waits for the answer. Fails after a minute without one."""
     if person is not None:
         robot.locate(person)  # nobody is asked whom the robot hasn't seen
-    yield from say(robot, question)
-    yield from _listened(robot, question, person, lambda text: True)
+    yield from say(robot, question, kept)
+    yield from _listened(robot, without_marks(question), person, lambda text: True)
 
 
 def listen_for_yes_or_no(robot: Listening) -> Steps:

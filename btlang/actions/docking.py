@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import closing, suppress
 from math import sqrt
 from typing import Protocol
@@ -14,10 +14,10 @@ from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.capabilities import Docking, Navigation
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.robot import RobotError
+from btlang.robots.station import Station
 
 STAGING, APPROACH, CONNECTION, RETRY = "staging", "approach", "connection", "retry"
 """The stages of docking."""
-_DOCK = "dock"
 _STRAIGHT = 5.0  # degrees
 _PAUSE = 2.0  # seconds before another attempt: who stands in the way may walk on
 _MARGIN = 0.02  # metres by which the scanner may be wrong
@@ -27,7 +27,20 @@ class Homing(Navigation, Docking, Driving, Protocol):
     """It finds its dock and drives into it."""
 
 
-def enter_dock(robot: Homing, staging: Pose, stage: Callable[[str], object] = lambda stage: None) -> Steps:
+def enter_a_dock(robot: Homing, stations: Sequence[Station]) -> Steps:
+    """Enters the first dock that it gets into. Fails with the reason of the last one."""
+    watch = Watch(robot)
+    for station in stations:
+        try:
+            yield from enter_dock(robot, station)
+            return
+        except ActionFailed:
+            watch.check_stop()
+            if station is stations[-1]:
+                raise
+
+
+def enter_dock(robot: Homing, station: Station, stage: Callable[[str], object] = lambda stage: None) -> Steps:
     """Drives to the staging pose, then straight into the dock, and connects; where it stands there, it only connects.
 
     Where that fails it backs off and tries again, as often as the body says. Fails with the reason of the last attempt.
@@ -35,11 +48,11 @@ def enter_dock(robot: Homing, staging: Pose, stage: Callable[[str], object] = la
     """
     part, watch = robot.body.dock, Watch(robot)
     assert part is not None
-    spot = Pose(*robot.locate(_DOCK), staging.heading)
+    spot, staging = station.spot, station.staging
     way = staging.distance_to((spot.x, spot.y))
     if not _is_in(robot.pose, spot, part.within):
         stage(STAGING)
-        yield from accomplish(robot.navigate_to_pose(staging, _DOCK))
+        yield from accomplish(robot.navigate_to_pose(staging, station.name))
     for retries_left in reversed(range(part.retries + 1 if way else 1)):
         try:
             if way:

@@ -110,8 +110,8 @@ def look_at_place(robot: Aiming, place: str | None = None, x: float | None = Non
 def _towards(robot: Aiming, posture: str, name: str, point: Point | None = None) -> Steps:
     """To the point, by default that of the name. Raises ActionFailed where the joint doesn't turn so far."""
     bearing = robot.pose.bearing_to(robot.locate(name) if point is None else point)
-    joint = robot.body.bearing_joint(posture)
-    if joint is not None and not joint.low <= bearing <= joint.high:
+    joint = robot.body.falls_short(posture, bearing)
+    if joint is not None:
         where = "behind the robot" if abs(bearing) > 90.0 else "too far to the side"
         raise ActionFailed(f"{said(name)} is {where}; the {joint.part} can't turn that far")
     yield from take(robot, posture, bearing=bearing)

@@ -8,7 +8,7 @@ from btlang.actions.motion import Steps
 from btlang.actions.watch import Watch
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.capabilities import Joints
-from btlang.robots.gesture import BEARING
+from btlang.robots.gesture import angle_of
 
 
 def bring(robot: Joints, targets: Mapping[str, float]) -> Steps:
@@ -37,4 +37,4 @@ def take(robot: Joints, *postures: str, bearing: float = 0.0) -> Steps:
         for name in postures:
             for angles in known[name][at : at + 1]:
                 step.update(angles)
-        yield from bring(robot, {joint: bearing if angle == BEARING else float(angle) for joint, angle in step.items()})
+        yield from bring(robot, {joint: angle_of(angle, bearing) for joint, angle in step.items()})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from btlang.actions.docking import Homing, enter_dock
+from btlang.actions.docking import Homing, enter_a_dock
 from btlang.actions.motion import Steps, drive_straight
 from btlang.actions.navigation import accomplish
 from btlang.actions.watch import Driving, Watch
@@ -21,16 +21,16 @@ class Charging(Homing, Power, Protocol):
 
 
 def dock(robot: Homing) -> Steps:
-    """Drives to the dock and connects; does nothing when docked."""
+    """Drives to the nearest dock and connects, or to the next one where that fails; does nothing when docked."""
     if not robot.docked:
-        staging = robot.staging
-        yield from accomplish(robot.dock()) if staging is None else enter_dock(robot, staging)
+        stations = robot.stations
+        yield from accomplish(robot.dock()) if stations is None else enter_a_dock(robot, stations)
 
 
 def undock(robot: Undocking) -> Steps:
     """Disconnects and backs off; does nothing when not docked."""
     if robot.docked:
-        backs_off = robot.staging is not None
+        backs_off = robot.stations is not None
         yield from accomplish(robot.undock())
         if backs_off and robot.body.dock is not None:
             yield from drive_straight(robot, -robot.body.dock.backs_off)

@@ -3,20 +3,49 @@
 from __future__ import annotations
 
 from btlang.actions.motion import Steps
+from btlang.actions.strokes import Presenting, Strokes
 from btlang.actions.watch import Watch
 from btlang.robots.capabilities import Voice
+from btlang.speech.marks import Mark, read_marks, sentence_start
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 
-def say(robot: Voice, text: str) -> Steps:
-    """Speaks the text to its end; halted, falls silent."""
-    watch = Watch(robot)
-    robot.say(text)
+def say(robot: Presenting, text: str, kept: dict[str, Any] | None = None) -> Steps:
+    """Speaks the text to its end, with the gestures of its marks; halted, falls silent and lets its joints rest.
+
+    Suspended, it begins again with the sentence in which it was.
+    """
+    watch, kept = Watch(robot), {} if kept is None else kept
+    whole, marks = read_marks(text)
+    begin = kept["begin"] if kept.get("text") == whole else 0
+    if 0 < begin == len(whole):
+        return
+    kept.update(text=whole, begin=begin)
+    plain = whole[begin:]
+    strokes = Strokes(robot, [Mark(mark.words, mark.index - begin) for mark in marks if mark.index >= begin])
+    robot.say(plain, strokes.delay(plain))
     try:
-        while robot.speaking:
+        while True:
+            strokes.step()
+            if not (robot.speaking or strokes.busy):
+                return
+            kept["begin"] = begin + _begun(robot, plain)
             yield
             watch.check_stop()
     finally:
+        strokes.halt()
         robot.silence()
+
+
+def _begun(robot: Voice, text: str) -> int:
+    """Where the sentence of a text begins that it is in; behind the last one when all is said."""
+    if robot.said is None or robot.said.text != text:
+        return 0
+    spoken = robot.time - robot.said_at
+    return sentence_start(text, robot.said.index_at(spoken)) if robot.speaking else len(text)
 
 
 def print_text(robot: Voice, text: str) -> None:

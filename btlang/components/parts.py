@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from math import inf
 
 from btlang.components.base import DeviceBase
 from btlang.components.safety import Guard, Safety
 from btlang.devices.device_set import DeviceSet, Reads, reader
 from btlang.devices.driver import DeviceError
-from btlang.devices.kinds import Charge, Grip, GripTarget, JointState, JointTarget, Scan, Shown
+from btlang.devices.kinds import Charge, Grip, GripTarget, JointState, JointTarget, Play, Scan, Shown
 from btlang.robots.body import Body
 from btlang.robots.geometry import Pose
 from btlang.robots.hands import Hands
@@ -58,14 +58,16 @@ def device_parts(
         safety=safety, locate=locate, advance=advance,
     )  # fmt: skip
     lidar = devices.first("lidar")
-    displays = {name: readers[name] for name, device in devices.devices.items() if device.kind == "display"}
+    face = body.mouth.display if body.mouth is not None else ""
+    displays = [name for name, device in devices.devices.items() if device.kind == "display" and name != face]
+    joints = DeviceJoints(body, readers)
     return Parts(
         base,
         DevicePower(devices.first("battery"), readers),
         lambda pose: _scan(lidar, readers),
-        DeviceJoints(body, readers),
+        joints,
         DeviceHands(body, readers, Hands(obstacles, world.names.objects, body)),
-        DeviceVoice(body, displays),
+        DeviceVoice(body, readers, devices.first("speaker"), displays, joints),
     )
 
 
@@ -111,9 +113,9 @@ class DevicePower:
         """Raises RobotError: nobody can."""
         raise RobotError("the battery of this robot can't be set")
 
-    def connect(self, pose: Pose, fails: Callable[[], bool]) -> None:
+    def connect(self, pose: Pose, fails: Callable[[str], bool]) -> None:
         """Raises RobotError where it doesn't charge, or `fails`."""
-        if fails():
+        if fails("dock"):
             raise RobotError(NO_CONTACT)
         if not (self.charging or self.level >= _FULL):
             raise RobotError("the battery doesn't charge")
@@ -285,13 +287,43 @@ class DeviceHands:
 
 
 class DeviceVoice(Voice):
-    """The voice as it is simulated, and displays that show what is printed."""
+    """The voice as it is simulated, with a speaker that plays it, and displays that show what is printed."""
 
-    def __init__(self, body: Body, displays: Mapping[str, Reads]) -> None:
-        super().__init__(body)
-        self._displays = displays
+    def __init__(
+        self, body: Body, devices: Mapping[str, Reads], speaker: str, displays: Sequence[str], joints: DeviceJoints
+    ) -> None:
+        super().__init__(body, joints.move)
+        self._devices, self._speaker, self._displays = devices, speaker, displays
+        self._face = body.mouth.display if body.mouth is not None else ""
+        self._playing: Play | None = None
+
+    def silence(self) -> None:
+        """The speaker, too, is silent at once; from any thread."""
+        super().silence()
+        self._play(None)
+
+    def step(self, dt: float) -> None:
+        """The speaker is told again, as its loop needs it."""
+        super().step(dt)
+        self._play_on()
+
+    def _play_on(self) -> None:
+        if not self.speaking:
+            self._play(None)
+        elif self.said is not None and self.said.samples and self.position >= 0.0:
+            self._play(self._playing or Play(self.said.samples, self.said.rate))
+
+    def _play(self, sound: Play | None) -> None:
+        if self._speaker and (sound or self._playing):
+            self._devices[self._speaker].write(self._speaker, sound or Play())
+        self._playing = sound
+
+    def show(self, shape: str) -> None:
+        """On the display that is its face."""
+        if self._face:
+            self._devices[self._face].write(self._face, Shown(shape))
 
     def print(self, text: str) -> None:
         """All displays show it."""
-        for name, display in self._displays.items():
-            display.write(name, Shown(text))
+        for name in self._displays:
+            self._devices[name].write(name, Shown(text))

@@ -89,7 +89,7 @@ class WorldMap:
             placer.taken.append(Area(x - width / 2, y - SMALL / 2, width, SMALL))
         for place in self._world.places:
             x, y = self.at(place.x, place.y)
-            if self._world.dock is not None and place.name == self._world.dock.name:
+            if place in self._world.all_docks:
                 canvas.box(x - 5, y - 5, 10, 10, round=2.5, fill="#ffe08a", edge="#8a6d00", line=0.9, z=3)
                 canvas.text(x, y, "⚡", size=8, colour="#5c4900", align="center", z=3)
                 placer.taken.append(Area(x - 5, y - 5, 10, 10))

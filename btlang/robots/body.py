@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from math import pi
 
 from btlang.record import Record
-from btlang.robots.gesture import BEARING, Gesture, Step
+from btlang.robots.gesture import BEARINGS, Gesture, Step, angle_of
+from btlang.speech.engine import Settings
 from btlang.vocabulary.capabilities import POSTURE
 
 TYPE_CHECKING = False
@@ -140,10 +141,19 @@ class Dock(Record):
 
 
 class Voice(Record):
-    """Seconds that speaking takes, for each text and for each character of it."""
+    """How it speaks, and by which engine: "espeak", the name of an installed one, `module:Class`; "" is one without
+    sound.
+    """
 
-    text: float
-    character: float
+    settings: Settings
+    engine: str = ""
+
+
+class Mouth(Record):
+    """What shows the shapes of the mouth: a `joint` that is open at its high end, a `display`, or both."""
+
+    joint: str = ""
+    display: str = ""
 
 
 class Ears(Record):
@@ -236,6 +246,7 @@ class Body(Record):
     missions: str = ""
     schedules: str = ""
     gestures: Mapping[str, Gesture] = {}
+    mouth: Mouth | None = None
 
     @property
     def folder(self) -> str:
@@ -273,7 +284,21 @@ class Body(Record):
     def bearing_joint(self, posture: str) -> Joint | None:
         """The joint that turns towards something in a posture."""
         steps = self.postures.get(posture, ())
-        return next((self.joint(name) for step in steps for name, at in step.items() if at == BEARING), None)
+        return next((self.joint(name) for step in steps for name, at in step.items() if at in BEARINGS), None)
+
+    @property
+    def is_smooth(self) -> bool:
+        """Whether its joints have limits of acceleration, so that their movements are planned."""
+        return any(joint.acceleration for joint in self.joints)
+
+    def falls_short(self, posture: str, bearing: float) -> Joint | None:
+        """The joint that can't turn to what is `bearing` degrees to the left in a posture; None where all can."""
+        for step in self.postures.get(posture, ()):
+            for name, at in step.items():
+                joint = self.joint(name)
+                if at in BEARINGS and joint is not None and not joint.low <= angle_of(at, bearing) <= joint.high:
+                    return joint
+        return None
 
     def has(self, need: str) -> bool:
         """Whether it has what a word needs: see btlang.vocabulary.capabilities."""

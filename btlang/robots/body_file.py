@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection
 from functools import cache
 
 from btlang.diagnostics.reading import is_below, real_path
+from btlang.robots import joint_tables
 from btlang.robots.body import (
     Base,
     Battery,
@@ -17,19 +18,17 @@ from btlang.robots.body import (
     Dock,
     Ears,
     HandPart,
-    Joint,
     Limits,
     Navigation,
     RosNode,
     Sensor,
-    Voice,
 )
 from btlang.robots.data_file import DataFileError, as_mission_error, load_data
-from btlang.robots.gesture import BEARING, Step
+from btlang.robots.gesture import Step
 from btlang.robots.platforms import ROBOTS
+from btlang.robots.voice_file import read_mouth, read_voice
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem, Problems, Table
-from btlang.vocabulary.capabilities import CAPABILITIES
 from btlang.vocabulary.shipped import BODIES, STANDARD_BODY
 
 TYPE_CHECKING = False
@@ -101,8 +100,12 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     radius = problems.part(lambda: top.number("radius", low=0.01, high=10.0), 1.0)
     base = problems.part(lambda: _base(top.table("base")) if top.has("base") else None, None)
     navigation = problems.part(lambda: _navigation(top, radius), None)
-    joints = _listed(top, "joints", _joint, problems)
-    postures = problems.part(lambda: _postures(top, joints), dict[str, tuple[Step, ...]]())
+    joints = _listed(top, "joints", joint_tables.joint, problems)
+    postures = problems.part(lambda: joint_tables.postures(top, joints), dict[str, tuple[Step, ...]]())
+    capsules = tuple(each for each in problems.rows(top, "capsules", joint_tables.capsule) if each is not None)
+    forbidden = problems.part(lambda: joint_tables.forbidden_pairs(top), tuple[tuple[str, str], ...]())
+    if not problems.found:
+        problems.found += joint_tables.link_problems(joints, capsules, forbidden)
     hands = _listed(top, "hands", _hand, problems)
     sensors = _listed(top, "sensors", _sensor, problems, key="kind")
     problems.found += [
@@ -112,25 +115,27 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     ]
     battery = problems.part(lambda: _battery(top), None)
     dock = problems.part(lambda: _dock(top), None)
-    voice = problems.part(lambda: _voice(top), None)
+    voice = problems.part(lambda: read_voice(top, bool(file)), None)
     screen = problems.part(lambda: top.flag("screen"), False)
     devices = _listed(top, "device", _device, problems)
     components = _listed(top, "component", _component, problems)
     made = Body(
         name, radius, over, base, navigation, joints, postures, hands, sensors, battery, dock, voice, screen,
         devices, components, file, problems.part(lambda: _beside(top, "world", file), ""),
-        problems.part(lambda: _ears(top), None),
+        problems.part(lambda: _ears(top), None), capsules, forbidden,
         rules=problems.part(lambda: _beside(top, "rules", file), ""),
         missions=problems.part(lambda: _beside(top, "missions", file, os.path.isdir), ""),
         schedules=problems.part(lambda: _beside(top, "schedules", file), ""),
     )  # fmt: skip
+    mouth = problems.part(lambda: read_mouth(top, made), None)
     problems.part(lambda: top.finish(made), made)
     if not file:
         problems.found += [Problem(_FOREIGN, "component", index) for index in range(len(components))]
         real = (index for index, device in enumerate(devices) if device.driver != "simulated")
         problems.found += [Problem(_FOREIGN, "device", index, "driver") for index in real]
     problems.end()
-    return made
+    complete: Body = made.replace(mouth=mouth)
+    return complete
 
 
 def _beside(top: Table, key: str, file: str, exists: Callable[[str], bool] = os.path.isfile) -> str:
@@ -190,13 +195,6 @@ def _dock(top: Table) -> Dock | None:
     return table.finish(Dock(within, beyond, backs_off, staging, speed, retries))
 
 
-def _voice(top: Table) -> Voice | None:
-    if not top.has("voice"):
-        return None
-    table = top.table("voice")
-    return table.finish(Voice(table.number("text", low=0.0), table.number("character", low=0.0)))
-
-
 def _ears(top: Table) -> Ears | None:
     if not top.has("ears"):
         return None
@@ -213,42 +211,6 @@ def _limits(table: Table) -> Limits:
     speed = table.number("speed", low=_LEAST)
     rates = (table.number(key, low=_LEAST) for key in ("acceleration", "slowing", "brake", "hard_brake"))
     return table.finish(Limits(speed, table.number("top_speed", low=speed), *rates))
-
-
-def _joint(table: Table) -> Joint:
-    name, part = table.text("name"), table.text("part")
-    if part in CAPABILITIES:
-        raise table.problem("part", f'"{part}" has another meaning; call the part "{name}", or similar')
-    low = table.number("low")
-    high = table.number("high", low=low)
-    speed = table.number("speed", low=_LEAST)
-    rest = table.number("rest", 0.0, low=low, high=high)
-    return table.finish(Joint(name, part, low, high, speed, rest, table.flag("slides")))
-
-
-def _postures(top: Table, joints: tuple[Joint, ...]) -> dict[str, tuple[Step, ...]]:
-    postures: dict[str, tuple[Step, ...]] = {}
-    if not top.has("postures"):
-        return postures
-    table = top.table("postures")
-    known = {joint.name: joint for joint in joints}
-    for name in table.keys():  # noqa: SIM118
-        steps = table.tables(name) if table.is_list(name) else [table.table(name)]
-        postures[name] = tuple(_step(step, known) for step in steps)
-    return postures
-
-
-def _step(table: Table, known: Mapping[str, Joint]) -> Step:
-    step: dict[str, float | str] = {}
-    for name in table.keys():  # noqa: SIM118
-        if name not in known:
-            listed = ", ".join(known) or "none"
-            raise table.problem(name, f'the robot has no joint "{name}"; its joints are {listed}')
-        if table.is_text(name):
-            step[name] = table.choice(name, (BEARING,))
-        else:
-            step[name] = table.number(name, low=known[name].low, high=known[name].high)
-    return step
 
 
 def _hand(table: Table) -> HandPart:

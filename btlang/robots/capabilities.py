@@ -6,12 +6,13 @@ names in btlang.vocabulary.capabilities.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, Protocol
 
 from btlang.robots.body import Body
 from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose
+from btlang.robots.station import Station
 from btlang.robots.zones import Zones
 from btlang.run.standstill import Standstill
 
@@ -19,6 +20,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
+
+    from btlang.speech.engine import Utterance
 
 Hand = Literal["left", "right"]
 OnEvent = Callable[[str, Mapping[str, Any]], None]
@@ -54,7 +57,7 @@ class Machine(Protocol):
 
     `on_event(kind, data)` is called for each event. Kinds: say, print, choose, navigate, arrive, bump, stuck, stop,
     grasp, release, drop, joint, dock, undock, battery, fault, hear, ask, see, come, leave, call, door, switch,
-    give, picture.
+    give, picture, gesture.
     """
 
     on_event: OnEvent | None
@@ -345,8 +348,19 @@ class Messenger(Machine, Protocol):
 class Voice(Machine, Protocol):
     """Speech, and the screen."""
 
-    def say(self, text: str) -> None:
-        """Starts to speak; `speaking` is False when it has finished."""
+    def say(self, text: str, after: float = 0.0) -> None:
+        """Starts to speak after so many seconds; `speaking` is False when it has finished. Raises RobotError."""
+
+    def utterance(self, text: str) -> Utterance:
+        """What it would say, with the times of the words. Raises RobotError."""
+
+    @property
+    def said(self) -> Utterance | None:
+        """What it says, or said last, with the times of its words; None where it hasn't said anything."""
+
+    @property
+    def said_at(self) -> float:
+        """The second of `time` at which that begins, as far as it's known yet."""
 
     @property
     def speaking(self) -> bool:
@@ -383,16 +397,16 @@ class Docking(Machine, Protocol):
         """True while connected to the dock."""
 
     @property
-    def staging(self) -> Pose | None:
-        """Where it has to stand before it drives straight into its dock; None where `dock` and `undock` drive by
-        themselves. Raises RobotError where there is no dock.
+    def stations(self) -> Sequence[Station] | None:
+        """The docks that it may drive into, the best one first; None where `dock` and `undock` drive by themselves.
+        Raises RobotError where there is no dock.
         """
 
     def dock(self) -> Operation:
         """Connects to the charger. Raises RobotError, or fails, if the robot isn't at the dock."""
 
     def undock(self) -> Operation:
-        """Disconnects, without moving unless `staging` is None."""
+        """Disconnects, without moving unless `stations` is None."""
 
 
 class Conversing(Listening, Voice, Base, Protocol):

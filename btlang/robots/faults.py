@@ -17,7 +17,8 @@ def describe(fault: Fault) -> str:
     if fault.kind == "weak hand":
         return f"the {fault.hand} hand drops things after {fault.seconds:g} s"
     if fault.kind == "dock":
-        return "the dock doesn't connect" if fault.times == NEVER else f"the dock doesn't connect {fault.times:g} times"
+        times = "" if fault.times == NEVER else f" {fault.times:g} times"
+        return f"{said(fault.place or 'dock')} doesn't connect{times}"
     return "the laser scanner is silent"
 
 
@@ -55,9 +56,13 @@ class Faults:
         """How much of its motion the left and the right wheel bring to the floor, 0 to 1."""
         return (self._grip("left"), self._grip("right")) if self._active else (1.0, 1.0)
 
-    def fails_to_dock(self) -> bool:
-        """Whether connecting to the dock fails this time: each call counts as one of the `times` of a fault."""
-        failing = (each for each in self._active if each.kind == "dock" and self._failed.count(each) < each.times)
+    def fails_to_dock(self, name: str) -> bool:
+        """Whether connecting to a dock fails this time: each call counts as one of the `times` of a fault."""
+        failing = (
+            each
+            for each in self._active
+            if each.kind == "dock" and each.place in ("", name) and self._failed.count(each) < each.times
+        )
         self._failed += (found := [*failing][:1])
         return bool(found)
 

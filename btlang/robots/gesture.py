@@ -8,9 +8,17 @@ from btlang.record import Record
 
 BEARING = "bearing"
 """In a posture the angle towards what the robot points or looks at."""
+OPPOSITE = "-bearing"
+"""As BEARING, for a joint that turns to the right where its angle grows."""
+BEARINGS = (BEARING, OPPOSITE)
 
 Step = Mapping[str, float | str]
-"""Joint -> degrees (metres where it slides) or BEARING."""
+"""Joint -> degrees (metres where it slides) or one of BEARINGS."""
+
+
+def angle_of(value: float | str, bearing: float) -> float:
+    """The angle of a joint in a step, where what the robot turns to is `bearing` degrees to the left."""
+    return -bearing if value == OPPOSITE else bearing if value == BEARING else float(value)
 
 
 class KeyFrame(Record):

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Protocol
+from collections.abc import Callable, Mapping, Sequence
+from typing import Protocol, runtime_checkable
 
 from btlang.record import Record
-from btlang.robots.body import Body
+from btlang.robots.body import Body, Vector
 from btlang.robots.capabilities import Hand, Operation
 from btlang.robots.geometry import Pose
+from btlang.robots.gesture import Gesture, Step
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.scan import Array
+    from btlang.speech.engine import Utterance
 
 
 class BasePart(Protocol):
@@ -58,7 +60,7 @@ class PowerPart(Protocol):
     @property
     def charging(self) -> bool: ...
     def set_level(self, percent: float) -> None: ...
-    def connect(self, pose: Pose, fails: Callable[[], bool]) -> None: ...
+    def connect(self, pose: Pose, fails: Callable[[str], bool]) -> None: ...
     def step(self, dt: float, metres: float, pose: Pose) -> bool: ...
 
 
@@ -72,6 +74,16 @@ class JointsPart(Protocol):
     def at_target(self, names: tuple[str, ...]) -> bool: ...
     def freeze(self, names: tuple[str, ...] | None = None) -> None: ...
     def step(self, dt: float) -> None: ...
+
+
+@runtime_checkable
+class SmoothPart(Protocol):
+    """Joints with limits of acceleration, whose movements are planned; see btlang.robots.motion.smooth_joints."""
+
+    def play(
+        self, wanted: Gesture | Sequence[Step], bearing: float, aim: Vector | None, room: float | None
+    ) -> tuple[Operation, float]: ...
+    def lead(self, wanted: Gesture | Sequence[Step], bearing: float, aim: Vector | None) -> float: ...
 
 
 class HandsPart(Protocol):
@@ -91,9 +103,13 @@ class HandsPart(Protocol):
 class VoicePart(Protocol):
     """The voice and the screen; see btlang.robots.voice.Voice."""
 
+    said: Utterance | None
+    position: float
+
     @property
     def speaking(self) -> bool: ...
-    def say(self, text: str) -> None: ...
+    def utterance(self, text: str) -> Utterance: ...
+    def say(self, text: str, after: float = 0.0) -> None: ...
     def silence(self) -> None: ...
     def print(self, text: str) -> None: ...
     def step(self, dt: float) -> None: ...

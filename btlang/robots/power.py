@@ -7,6 +7,7 @@ from collections.abc import Callable
 from btlang.robots.body import Battery, Body, Dock
 from btlang.robots.geometry import Pose, segment_distance
 from btlang.robots.robot import RobotError
+from btlang.robots.station import Station
 from btlang.robots.world import NEVER, Place, World
 
 _ENDLESS = Battery(0.0, 0.0, 0.0)  # of a robot whose file knows of no battery
@@ -19,11 +20,11 @@ _NOWHERE = "there is no dock in this world"
 class Power:
     """Percent left: drains with time and with metres, and gains when docked, as the body says."""
 
-    def __init__(self, level: float, dock: Place | None, body: Body) -> None:
+    def __init__(self, level: float, docks: tuple[Place, ...], body: Body) -> None:
         self._battery, self._docking = body.battery or _ENDLESS, body.dock or _NO_DOCK
         self.level = level
         self.docked = False
-        self._dock = dock
+        self._docks = docks
 
     @property
     def empty(self) -> bool:
@@ -39,24 +40,28 @@ class Power:
         """The battery is that full from now on, 0 to 100."""
         self.level = min(100.0, max(0.0, percent))
 
-    def connect(self, pose: Pose, fails: Callable[[], bool]) -> None:
-        """Raises RobotError where there is no dock at the pose, or it `fails` to connect."""
-        if self._dock is None:
+    def connect(self, pose: Pose, fails: Callable[[str], bool]) -> None:
+        """Raises RobotError where there is no dock at the pose, or the one of this name `fails` to connect."""
+        if not self._docks:
             raise RobotError(_NOWHERE)
-        if not self.is_near_dock(pose):
-            raise RobotError(f"the dock is {pose.distance_to((self._dock.x, self._dock.y)):.1f} m away")
-        if fails():
+        away, name = self._nearest(pose)
+        if away > self._docking.within:
+            raise RobotError(f"the {name} is {away:.1f} m away")
+        if fails(name):
             raise RobotError(NO_CONTACT)
         self.docked = True
 
     def is_near_dock(self, pose: Pose) -> bool:
         """Whether it can connect there."""
-        return self._dock is not None and pose.distance_to((self._dock.x, self._dock.y)) <= self._docking.within
+        return self._nearest(pose)[0] <= self._docking.within
+
+    def _nearest(self, pose: Pose) -> tuple[float, str]:
+        """Metres to the nearest dock, and its name."""
+        return min(((pose.distance_to((dock.x, dock.y)), dock.name) for dock in self._docks), default=(NEVER, ""))
 
     def step(self, dt: float, metres: float, pose: Pose) -> bool:
         """Moves on by `dt` seconds; returns True when the robot has just driven off its dock."""
-        dock = self._dock
-        if self.docked and dock is not None and pose.distance_to((dock.x, dock.y)) > self._docking.beyond:
+        if self.docked and self._nearest(pose)[0] > self._docking.beyond:
             self.docked = False
             self._drain(dt, metres)
             return True
@@ -70,16 +75,20 @@ class Power:
         self.level = max(0.0, self.level - self._battery.idle * dt - self._battery.driving * metres)
 
 
-def staging_pose(world: World, body: Body) -> Pose:
-    """Where the robot stands before it drives straight into the dock: so far in front of it as the body says, or nearer
-    where walls leave less room. Raises RobotError where the world has no dock.
-    """
-    if world.dock is None:
+def stations(world: World, body: Body, pose: Pose) -> list[Station]:
+    """The docks of a world, the nearest first. Raises RobotError where it has none."""
+    if not world.all_docks:
         raise RobotError(_NOWHERE)
-    dock = Pose(world.dock.x, world.dock.y, world.dock.facing or 0.0)
+    docks = sorted(world.all_docks, key=lambda dock: pose.distance_to((dock.x, dock.y)))
+    return [_station(dock, world, body) for dock in docks]
+
+
+def _station(dock: Place, world: World, body: Body) -> Station:
+    """It is left from so far in front of it as the body says, or nearer where walls leave less room."""
+    spot = Pose(dock.x, dock.y, dock.facing or 0.0)
     wanted = (body.dock or _NO_DOCK).staging
-    spots = (Pose(*dock.ahead(-share * wanted), dock.heading) for share in _SHARES)
-    return next((spot for spot in spots if _is_free(spot, world, body.radius)), dock)
+    stagings = (Pose(*spot.ahead(-share * wanted), spot.heading) for share in _SHARES)
+    return Station(dock.name, spot, next((each for each in stagings if _is_free(each, world, body.radius)), spot))
 
 
 def _is_free(spot: Pose, world: World, radius: float) -> bool:

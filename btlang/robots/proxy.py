@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 _UNDO: dict[str, Callable[..., object]] = {
     "drive": lambda robot, *velocity: robot.drive(0.0, 0.0) if any(velocity) else None,
     "move_joints": lambda robot, targets: robot.freeze_joints(*targets),
-    "say": lambda robot, text: robot.silence(),
+    "say": lambda robot, *said: robot.silence(),
 }
 """How what a command has set about is ended; a deed that it returned is cancelled."""
 

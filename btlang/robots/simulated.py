@@ -12,13 +12,15 @@ from btlang.robots.choices import Choices
 from btlang.robots.ears import Ears
 from btlang.robots.faults import Faults, describe
 from btlang.robots.geometry import Point, Pose
+from btlang.robots.gesturing import Gestures
 from btlang.robots.latch import Latch
 from btlang.robots.navigation import NavigationGoal, Navigator
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.parts import Parts
-from btlang.robots.power import staging_pose
+from btlang.robots.power import stations
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, SensorSilent
 from btlang.robots.simulated_parts import simulated_parts
+from btlang.robots.station import Station
 from btlang.robots.surroundings import Surroundings
 from btlang.robots.world import Place, World, said
 from btlang.robots.zones import Zones
@@ -30,6 +32,7 @@ from btlang.vocabulary.capabilities import part_of
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.scan import Array
+    from btlang.speech.engine import Utterance
 
 _CONTROL_PERIOD = 0.05
 _HANDS: tuple[Hand, Hand] = ("left", "right")
@@ -65,6 +68,7 @@ class SimulatedRobot:
         parts = (make_parts or simulated_parts)(world, self._obstacles, body)
         self._base, self.power, self._scan = parts.base, parts.power, parts.scan
         self._joints, self._hands, self._voice = parts.joints, parts.hands, parts.voice
+        self._gestures = Gestures(body, self._joints)
         self.faults = Faults(world.faults)
         self._surroundings = Surroundings(world, self._obstacles, body, self._joints.angle, self._emit)
         self._navigator = Navigator(world, self._base, self._obstacles, self.faults, self._surroundings)
@@ -96,7 +100,9 @@ class SimulatedRobot:
         self._navigator.protect()
         self._base.step(dt)
         self._joints.step(dt)
-        self._voice.step(dt)
+        self._gestures.step(dt)
+        if not self._latch.refuses:  # an emergency stop leaves the mouth as it is
+            self._voice.step(dt)
         self._hands.step(dt)
         self._drop()
         self._use_power(dt, self._base.travelled - travelled)
@@ -130,7 +136,7 @@ class SimulatedRobot:
     def _rest(self) -> None:
         self._navigator.cancel("the robot was stopped")
         self._base.brake()
-        self._joints.freeze()
+        self._gestures.stop()
         self._hands.stop()
         self._voice.silence()
 
@@ -408,10 +414,10 @@ class SimulatedRobot:
         return self.power.charging
 
     @property
-    def staging(self) -> Pose:
-        """See btlang.robots.power.staging_pose."""
+    def stations(self) -> list[Station]:
+        """The docks, the nearest first. Raises RobotError where there is none."""
         self._need("docking")
-        return staging_pose(self.world, self.body)
+        return stations(self.world, self.body, self.pose)
 
     def dock(self) -> CompletedOperation:
         """Connects to the charger at once. Raises RobotError where the robot does not stand at the dock."""
@@ -445,6 +451,19 @@ class SimulatedRobot:
     def freeze_joints(self, *names: str) -> None:
         """These joints stay where they are now."""
         self._joints.freeze(names)
+
+    def gesture(self, name: str, *, aim: Point | None = None, stroke_at: float | None = None) -> Operation:
+        """See btlang.robots.capabilities.Gesturing. Raises RobotError."""
+        if self._latch.refuses:
+            raise RobotError("the robot was stopped")
+        room = None if stroke_at is None else stroke_at - self.time
+        started, slower = self._gestures.start(name, self.pose, aim, room)
+        self._emit("gesture", name=name, slower=round(slower, 2))
+        return started
+
+    def lead(self, name: str, aim: Point | None = None) -> float:
+        """See btlang.robots.capabilities.Gesturing. Raises RobotError."""
+        return self._gestures.lead(name, self.pose, aim)
 
     def grasp(self, hand: Hand, name: str | None = None) -> Operation:
         """Closes a hand on the named or the nearest object. Raises RobotError."""
@@ -481,13 +500,28 @@ class SimulatedRobot:
         """The name of what the hand holds."""
         return self._hands.held.get(hand)
 
-    def say(self, text: str) -> None:
-        """Starts to speak, for as long as the body says."""
+    def say(self, text: str, after: float = 0.0) -> None:
+        """Starts to speak after so many seconds, for as long as the voice of the body takes. Raises RobotError."""
         self._need("voice")
         if not self._latch.refuses:
-            self._voice.say(text)
+            self._voice.say(text, after)
             self._last_said = text
             self._emit("say", text=text)
+
+    def utterance(self, text: str) -> Utterance:
+        """What it would say. Raises RobotError."""
+        self._need("voice")
+        return self._voice.utterance(text)
+
+    @property
+    def said(self) -> Utterance | None:
+        """What it says, or said last."""
+        return self._voice.said
+
+    @property
+    def said_at(self) -> float:
+        """The second of `time` at which that begins."""
+        return self.time - self._voice.position
 
     @property
     def speaking(self) -> bool:

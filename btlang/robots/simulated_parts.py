@@ -8,7 +8,7 @@ from btlang.robots.geometry import Pose
 from btlang.robots.hands import Hands
 from btlang.robots.joints import Joints
 from btlang.robots.obstacles import Obstacles
-from btlang.robots.parts import Parts
+from btlang.robots.parts import JointsPart, Parts
 from btlang.robots.power import Power
 from btlang.robots.voice import Voice
 from btlang.robots.world import World
@@ -29,5 +29,16 @@ def simulated_parts(world: World, obstacles: Obstacles, body: Body) -> Parts:
             scanners.append(Scanner(obstacles, body.range))
         return scanners[0].read(pose)
 
-    base, power = Base(world.start, obstacles, body), Power(world.battery, world.dock, body)
-    return Parts(base, power, scan, Joints(body), Hands(obstacles, world.names.objects, body), Voice(body))
+    base, power = Base(world.start, obstacles, body), Power(world.battery, world.all_docks, body)
+    joints = joints_part(body)
+    hands = Hands(obstacles, world.names.objects, body)
+    return Parts(base, power, scan, joints, hands, Voice(body, joints.move))
+
+
+def joints_part(body: Body) -> JointsPart:
+    """Joints as the body has them: smooth ones plan their movements."""
+    if not body.is_smooth:
+        return Joints(body)
+    from btlang.robots.motion.smooth_joints import SmoothJoints  # brings numpy and ruckig
+
+    return SmoothJoints(body)

@@ -2,33 +2,94 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+
 from btlang.robots.body import Body
+from btlang.robots.robot import RobotError
+from btlang.robots.voice_file import engine_of
+from btlang.speech.engine import SpeechError, Utterance
+from btlang.speech.visemes import SHAPES, shape_at
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.speech.engine import SpeechEngine
 
 
 class Voice:
-    """Speaks one text at a time, for as long as the body says."""
+    """Speaks one text at a time, for as long as the engine of its body says. `move_joints` moves its mouth."""
 
-    def __init__(self, body: Body) -> None:
-        self._voice = body.voice
-        self._left = 0.0
+    def __init__(self, body: Body, move_joints: Callable[[Mapping[str, float]], object] = lambda angles: None) -> None:
+        self._engine = make_engine(body) if body.voice is not None else None
+        self._mouth = body.mouth
+        joint = body.joint(body.mouth.joint) if body.mouth is not None else None
+        self._joint, self._move_joints = joint, move_joints
+        self._shape = "rest"
+        self._ended = True
+        self.said: Utterance | None = None
+        """What it says, or said last."""
+        self.position = 0.0
+        """Seconds since that began, negative before."""
 
     @property
     def speaking(self) -> bool:
-        """True while it speaks."""
-        return self._left > 1e-9
+        """True while it speaks, and before it begins."""
+        return not self._ended
 
-    def say(self, text: str) -> None:
-        """Starts to speak, in place of what it is saying."""
-        if self._voice is not None:
-            self._left = self._voice.text + self._voice.character * len(text)
+    def utterance(self, text: str) -> Utterance:
+        """The text as it would be said. Raises RobotError where the engine can't."""
+        try:
+            return Utterance(text, 0.0) if self._engine is None else self._engine.speak(text)
+        except SpeechError as problem:
+            raise RobotError(str(problem)) from None
+
+    def say(self, text: str, after: float = 0.0) -> None:
+        """Speaks after so many seconds, in place of what it is saying. Raises RobotError."""
+        self.silence()
+        self.said = self.utterance(text)
+        self.position, self._ended = -after, False
+        self._step(0.0)
 
     def silence(self) -> None:
-        """Ends speech at once."""
-        self._left = 0.0
+        """Ends speech at once; from any thread. The mouth closes at the next step."""
+        self._ended = True
 
     def print(self, text: str) -> None:
         """The screen shows it at once."""
 
     def step(self, dt: float) -> None:
         """Moves on by `dt` seconds."""
-        self._left = max(0.0, self._left - dt)
+        if not self._ended:
+            self._step(dt)
+        elif self._shape != "rest":
+            self._show("rest")
+
+    def show(self, shape: str) -> None:
+        """The mouth has another shape, a name in SHAPES."""
+
+    def _step(self, dt: float) -> None:
+        assert self.said is not None
+        self.position += dt
+        self._ended = self.position >= self.said.seconds - 1e-9
+        if self._mouth is not None:
+            self._show("rest" if self._ended else shape_at(self.said, self.position))
+
+    def _show(self, shape: str) -> None:
+        if shape == self._shape:
+            return
+        self._shape = shape
+        if self._joint is not None:
+            width = self._joint.high - self._joint.low
+            with suppress(RobotError):  # speech goes on where the jaw is silent
+                self._move_joints({self._joint.name: self._joint.low + SHAPES[shape] * width})
+        self.show(shape)
+
+
+def make_engine(body: Body) -> SpeechEngine:
+    """That of a body. Raises MissionError (BT071) where it can't be used."""
+    try:
+        return engine_of(body)
+    except SpeechError as problem:
+        from btlang.robots.body_file import unusable_robot
+
+        raise unusable_robot(problem) from None

@@ -189,7 +189,7 @@ class Fault(Record):
 
     kind "blocked": no way leads to `place`. "slip": of the motion of `wheel` ("left", "right", "both") the share `grip`
     (0 to 1) reaches the floor. "silent scanner": no scans. "weak hand": `hand` drops what it has held for `seconds`.
-    "dock": connecting to the dock fails, so many `times`.
+    "dock": connecting to the dock at `place`, "" for any, fails, so many `times`.
     """
 
     kind: str
@@ -232,7 +232,8 @@ class WorldNames(Record):
 
 
 class World(Record):
-    """A world as its file describes it. `walls` are polylines; a dock is also the place "dock".
+    """A world as its file describes it. `walls` are polylines; a dock is also the place "dock", and each of further
+    `docks` the place of its name.
 
     `clock` is the time of day at its start, in seconds since midnight, on a `weekday` (0: Monday); `seed` is that of
     runs which are given none.
@@ -252,6 +253,12 @@ class World(Record):
     doors: tuple[Door, ...] = ()
     seed: int | None = None
     weekday: int = 0
+    docks: tuple[Place, ...] = ()
+
+    @property
+    def all_docks(self) -> tuple[Place, ...]:
+        """Every place where a robot can charge."""
+        return self.docks if self.dock is None else (self.dock, *self.docks)
 
     @property
     def names(self) -> WorldNames:
@@ -285,4 +292,5 @@ class World(Record):
         }
         for person, shown in zip(self.people, found["people"], strict=True):
             shown["walks"] = [(stop.x, stop.y) for stop in person.walks]
-        return {"walls": self.walls, "dock": None if self.dock is None else self.dock.as_dict(), **found}
+        docks = [dock.as_dict() for dock in self.all_docks]
+        return {"walls": self.walls, "dock": docks[0] if docks else None, "docks": docks, **found}

@@ -89,6 +89,8 @@ def _spots(world: World, rows: Mapping[str, Sequence[Any]]) -> Iterator[tuple[st
         yield "the start", ("start", "x"), (start.x, start.y)
     for index, place in _listed(rows, "places"):
         path: tuple[str | int, ...] = ("dock", "x") if place is world.dock else ("places", index, "x")
+        if place in world.docks:
+            path = ("docks", world.docks.index(place), "x")
         yield f'the place "{place.name}"', path, (place.x, place.y)
     for index, thing in _listed(rows, "objects"):
         yield f'the object "{thing.name}"', ("objects", index, "x"), (thing.x, thing.y)

@@ -76,14 +76,16 @@ def _world(top: Table, radius: float, bounded: bool = False) -> World:
     rows: dict[str, list[Any]] = {"places": problems.rows(top, "places", _place)}
     dock = problems.part(lambda: _dock(top), None)
     rows["places"] += [] if dock is None else [dock]
-    places = _made(rows["places"])
+    rows["docks"] = problems.rows(top, "docks", _further_dock)
+    places = _made((*rows["places"], *rows["docks"]))
     known = problems.part(lambda: top.flag("known", True), True)
     rows["objects"] = problems.rows(top, "objects", lambda table: read_object(table, known))
     rows["people"] = problems.rows(top, "people", lambda table: read_person(table, known, places))
     crowds = problems.rows(top, "crowds", lambda table: read_crowd(table, known, places))
     rows["zones"], rows["doors"] = problems.rows(top, "zones", read_zone), problems.rows(top, "doors", read_door)
     names = tuple(place.name for place in places)
-    faults = _made(problems.rows(top, "faults", lambda table: _fault(table, names)))
+    docks = tuple(place.name for place in _made((dock, *rows["docks"])))
+    faults = _made(problems.rows(top, "faults", lambda table: _fault(table, names, docks)))
     clock, weekday = problems.part(lambda: _clock(top) if top.has("clock") else (USUAL_START, 0), (USUAL_START, 0))
     seed = problems.part(lambda: int(top.number("seed", low=0.0)) if top.has("seed") else None, None)
     problems.part(lambda: top.finish(None), None)
@@ -92,10 +94,10 @@ def _world(top: Table, radius: float, bounded: bool = False) -> World:
     people += tuple(rows["crowds"])
     world = World(
         start or Pose(0.0, 0.0), battery, _made(pieces), boxes, places, objects, people, faults, dock, clock, zones,
-        doors, seed, weekday,
+        doors, seed, weekday, _made(rows["docks"]),
     )  # fmt: skip
     problems.found += _names_given_twice(rows)
-    problems.found += _without_room(world, rows["places"], start, radius)
+    problems.found += _without_room(world, [*rows["places"], *rows["docks"]], start, radius)
     if bounded:
         problems.found += outside(world, {"start": [start], **rows})
     problems.end()
@@ -117,6 +119,10 @@ def _dock(top: Table) -> Place | None:
         return None
     table = top.table("dock")
     return table.finish(Place("dock", table.number("x"), table.number("y"), table.number("facing", 0.0)))
+
+
+def _further_dock(table: Table) -> Place:
+    return table.finish(Place(table.text("name"), table.number("x"), table.number("y"), table.number("facing", 0.0)))
 
 
 def _clock(top: Table) -> tuple[float, int]:
@@ -147,7 +153,7 @@ def _place(table: Table) -> Place:
     return table.finish(Place(table.text("name"), table.number("x"), table.number("y"), facing))
 
 
-def _fault(table: Table, places: tuple[str, ...]) -> Fault:
+def _fault(table: Table, places: tuple[str, ...], docks: tuple[str, ...]) -> Fault:
     kind = table.choice("kind", _FAULTS)
     start, end = table.number("from", 0.0, low=0.0), table.number("until", NEVER, low=0.0)
     more: Mapping[str, Any] = {}
@@ -160,7 +166,7 @@ def _fault(table: Table, places: tuple[str, ...]) -> Fault:
         hand = table.choice("hand", ("left", "right"), "right")
         more = {"hand": hand, "seconds": table.number("seconds", low=0.0)}
     elif kind == "dock":
-        more = {"times": table.number("times", NEVER, low=1.0)}
+        more = {"times": table.number("times", NEVER, low=1.0), "place": table.choice("place", docks, "")}
     return table.finish(Fault(kind, start, end, **more))
 
 
@@ -185,6 +191,8 @@ def _without_room(world: World, places: list[Place | None], start: Pose | None, 
     for index, place in enumerate(places):
         if place is not None:
             path: tuple[str | int, ...] = ("dock",) if place is world.dock else ("places", index)
+            if place in world.docks:
+                path = ("docks", world.docks.index(place))
             spots.append((f'the place "{place.name}"', path, (place.x, place.y)))
     segments = world.segments()
     if len(spots) * len(segments) > _MOST_CHECKS:

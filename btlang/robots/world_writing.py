@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _KEYS: dict[type, dict[str, str]] = {Fault: {"start": "from", "end": "until"}, Door: {"start": "from", "end": "to"}}
 """Of fields that have another key in the file."""
 _MONDAY = 5  # of January 2026
-_LISTS = ("boxes", "places", "objects", "people", "zones", "doors", "faults")
+_LISTS = ("boxes", "docks", "places", "objects", "people", "zones", "doors", "faults")
 
 
 def as_data(world: World) -> dict[str, Any]:
@@ -35,7 +35,8 @@ def as_data(world: World) -> dict[str, Any]:
     if world.walls:
         data["walls"] = [[list(point) for point in wall] for wall in world.walls]
     for key in _LISTS:
-        rows = [_row(record) for record in getattr(world, key) if record is not dock]
+        docks = () if key == "docks" else world.all_docks
+        rows = [_row(record) for record in getattr(world, key) if record not in docks]
         if rows:
             data[key] = rows
     return data

@@ -12,6 +12,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.body import Body
 from btlang.robots.needs import check_body, lacking
+from btlang.robots.said_gestures import check_marks
 from btlang.robots.world import World
 from btlang.robots.zone_check import check_zones
 from btlang.ros.available import require_interfaces, require_ros
@@ -192,6 +193,7 @@ class RosConnection:
         """
         check_body(self.robot.body, tree, vocabulary, but=self._bound(tree, vocabulary)[0])
         check_zones(self.robot.world, tree, vocabulary)
+        check_marks(self.robot.world, self.robot.body, tree, vocabulary)
         lacking = [(i, node, reason) for i, (node, reason) in self.survey(tree, vocabulary).items() if reason]
         if lacking:
             raise MissionError([_lack(*lack) for lack in lacking])

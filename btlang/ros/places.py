@@ -13,11 +13,13 @@ from btlang.robots.navigation import stand_off
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.planning import Planner
 from btlang.robots.robot import Hand, RobotError
+from btlang.robots.station import Station
 from btlang.robots.world import OBJECT_RADIUS, PERSON_RADIUS, Person, Thing, World, WorldObject
 from btlang.run.robot_state import Whereabouts
 
 _MOVED = 0.05  # metres that something has to be elsewhere
 _MOST_THINGS = 10_000
+_DOCK = "dock"
 
 
 class Places(Knowledge):
@@ -67,15 +69,18 @@ class Places(Knowledge):
         facing = next((place.facing for place in self.world.places if place.name == name), None)
         return *point, None if facing is None else radians(facing)
 
-    @property
-    def dock(self) -> Pose | None:
-        """That of the world, which faces as the robot does in it."""
-        dock = self.world.dock
-        return Pose(dock.x, dock.y, dock.facing or 0.0) if dock is not None else None
+    def dock(self, robot: Pose) -> Pose | None:
+        """The nearest of the world, which faces as the robot does in it."""
+        docks = [Pose(dock.x, dock.y, dock.facing or 0.0) for dock in self.world.all_docks]
+        return min(docks, key=lambda dock: robot.distance_to((dock.x, dock.y)), default=None)
 
-    def staging(self, robot: Pose) -> Pose:
-        """Where the robot has to stand to be connected: the place "dock"; where it is, if there is none."""
-        return self.goal("dock", robot) if "dock" in map(str.lower, self.world.names.places) else robot
+    def stations(self, robot: Pose) -> list[Station]:
+        """The docks, the nearest first: where the robot has to stand to be connected; where it is, if there is none."""
+        docks = sorted(self.world.all_docks, key=lambda dock: robot.distance_to((dock.x, dock.y)))
+        names = [dock.name for dock in docks] or [_DOCK]
+        known = {name.lower() for name in self.world.names.places}
+        spots = {name: self.goal(name, robot) for name in names if name.lower() in known}
+        return [Station(name, spots.get(name, robot), spots.get(name, robot)) for name in names]
 
     def goal(self, name: str, robot: Pose) -> Pose:
         """Where the robot has to stand for it, and which way to face. Raises RobotError for an unknown name, and for

@@ -22,6 +22,7 @@ from btlang.robots.geometry import Point, Pose
 from btlang.robots.latch import Latch
 from btlang.robots.protection import Protection
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError
+from btlang.robots.station import Station
 from btlang.robots.world import Place, World, Zone, said
 from btlang.robots.zones import Zones
 from btlang.ros.available import optional_interface
@@ -492,14 +493,14 @@ class RosRobot:
         return self.power.charging
 
     @property
-    def staging(self) -> Pose | None:
-        """The dock, where the robot has a service; None where it has a docking server."""
-        return None if self.power.docks_by_itself else self._places.staging(self.pose)
+    def stations(self) -> list[Station] | None:
+        """The docks, where the robot has a service; None where it has a docking server."""
+        return None if self.power.docks_by_itself else self._places.stations(self.pose)
 
     def dock(self) -> Operation:
         """Connects to the charger, or fails with the robot's reason. Raises RobotError where nothing serves it."""
         self._check_stop()
-        return self.power.dock(self._places.dock)
+        return self.power.dock(self._places.dock(self.pose))
 
     def undock(self) -> Operation:
         """Disconnects, or fails with the robot's reason. Raises RobotError where nothing serves it."""

@@ -353,6 +353,34 @@ class Pictured(InTheWorld):
     name: str
 
 
+class StrokePlanned(Event):
+    """The gesture `name` begins while the robot speaks. Its stroke is `stroke` seconds behind the beginning of what is
+    said, that of its word `word` seconds: the stroke is later where the body can't be so fast.
+    """
+
+    tag = "stroke"
+    name: str
+    stroke: float
+    word: float
+
+
+class GestureStarted(InTheWorld):
+    """The robot begins a gesture. It takes `slower` times as long as it should, for the limits of the joints."""
+
+    tag = "gesture"
+    name: str
+    slower: float = 1.0
+
+    @property
+    def words(self) -> str:
+        """In plain English."""
+        return (
+            f"{self.name} ({self.slower:g} times as long, for the limits of the joints)"
+            if self.slower > 1.0
+            else self.name
+        )
+
+
 class PartChanged(Event):
     """A component has another state (see btlang.components.life_cycle), or a device "works" or is "silent".
 
@@ -465,7 +493,7 @@ ROBOT_EVENTS: dict[str, type[Event]] = {
     for event in (
         Said, Printed, Chosen, NavigationStarted, Arrived, Bumped, Stuck, Stopped, Grasped, Released, Dropped,
         JointsMoved, Docked, Undocked, BatteryEmpty, FaultInjected, Heard, Asked, Seen, Came, Gone, Called, DoorMoved,
-        Switched, Given, Pictured, PartChanged, Warned, Troubled,
+        Switched, Given, Pictured, StrokePlanned, GestureStarted, PartChanged, Warned, Troubled,
     )
 }  # fmt: skip
 """What robots report, by the kinds of btlang.robots.robot.Robot.on_event."""

@@ -13,6 +13,7 @@ from btlang.api import Mission
 from btlang.diagnostics.crash import crashed
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.speech.marks import without_marks
 from btlang.task import messages
 from btlang.task.answers import task_data, task_line
 from btlang.task.checks import (
@@ -298,7 +299,7 @@ class Handler:
         if say is None:
             raise refused("The robot", "has no voice")
         run = self._executor.run
-        call = partial(say, command.text)
+        call = partial(say, without_marks(command.text))
         if run is not None:
             run.call(call)
         else:

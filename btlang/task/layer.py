@@ -12,6 +12,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.needs import check_body, needs_of_tree
 from btlang.robots.registry import runs_on
+from btlang.robots.said_gestures import check_marks
 from btlang.robots.zone_check import check_zones
 from btlang.run.world_input import WorldInput
 from btlang.session import Run, Session
@@ -196,6 +197,7 @@ class TaskLayer:
         body = getattr(self.session.robot, "body", None)
         if body is not None:
             check_body(body, mission.tree, mission.vocabulary)
+            check_marks(self.session.world, body, mission.tree, mission.vocabulary)
         check_zones(self.session.world, mission.tree, mission.vocabulary)
         state = self.executor.robot_state
         battery = None if state is None else state.battery

@@ -28,7 +28,7 @@ def test_entries(entry):
     module, _, name = entry.call.partition(":")
     call = getattr(import_module(module), name)
     parameters = signature(call).parameters
-    ports = set(parameters) - {"robot", "clock", "blackboard", "progress"}
+    ports = set(parameters) - {"robot", "clock", "blackboard", "progress", "kept"}
     slots = [slot for slot in entry.slots if not entry.measures or slot.name not in COMPARISONS]
     assert ports == {slot.name for slot in slots}
     said_always = [slot for slot in slots if all(f"{{{slot.name}}}" in phrase for phrase in entry.phrases)]

@@ -334,11 +334,27 @@ def test_a_stop_ends_docking_and_halting_brakes(bench):
     assert b.robot.velocity == (0.0, 0.0)
 
 
+def test_it_takes_the_nearest_dock_and_the_next_where_that_fails(bench):
+    near, far = Place("dock", 0.4, 0.6, 180.0), Place("night dock", 5.6, 0.6, 0.0)
+    for faults, x in (((), 0.4), ((Fault("dock", place="dock"),), 5.6), ((Fault("dock", place="night dock"),), 0.4)):
+        b = bench(HALL, start=Pose(2.5, 0.6, 0.0), places=(near, far), dock=near, docks=(far,), faults=faults)
+        assert [station.name for station in b.robot.stations] == ["dock", "night dock"]
+        b.run(power.dock)
+        assert b.robot.docked
+        assert b.robot.pose.x == pytest.approx(x, abs=0.1)
+        b.run(power.undock)
+        assert not b.robot.docked
+    b = bench(HALL, start=Pose(2.5, 0.6, 0.0), places=(near, far), dock=near, docks=(far,), faults=(Fault("dock"),))
+    with pytest.raises(ActionFailed, match=r"^the dock doesn't connect$"):
+        b.run(power.dock)
+
+
 @pytest.mark.parametrize(("facing", "x"), [(180.0, 0.8), (0.0, 0.2)])
 def test_the_staging_pose_is_where_walls_leave_room(bench, facing, x):
     dock = Place("dock", 0.4, 0.6, facing)
     b = bench(HALL, places=(dock,), dock=dock)
-    assert b.robot.staging == Pose(pytest.approx(x), pytest.approx(0.6), facing)
+    [station] = b.robot.stations
+    assert station.staging == Pose(pytest.approx(x), pytest.approx(0.6), facing)
     b.run(power.dock)
     assert b.robot.docked
 

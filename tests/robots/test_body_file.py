@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.robots.body import RosNode
+from btlang.robots.body import Capsule, RosNode
 from btlang.robots.body_file import BodyError, load_body, shipped_bodies, standard_body
 from btlang.vocabulary.shipped import BODIES
 
@@ -108,3 +108,47 @@ def test_what_may_be_wrong(tmp_path: Path, text: str, line: int | None, message:
 def test_unreadable_files(tmp_path: Path) -> None:
     with pytest.raises(BodyError, match="cannot read the robot file: No such file"):
         load_body(str(tmp_path / "none.toml"))
+
+
+LINK = 'link = "{}"\nparent = "{}"\nat = [0, 0, 1]\naxis = [0, 0, 2]\n'
+TORSO = JOINT + LINK.format("torso", "base")
+CAPSULE = '[[capsules]]\nlink = "torso"\nstart = [0, 0, 0]\nend = [0, 0, 1]\nradius = 0.1\n'
+
+
+def test_links_capsules_and_what_may_not_touch(tmp_path: Path) -> None:
+    rates = "acceleration = 20\njerk = 200\n"
+    pairs = 'forbidden = [["torso", "base"]]\n'
+    shapes = CAPSULE + CAPSULE.replace('"torso"', '"base"')
+    body = load_body(written(tmp_path, HEAD + pairs + TORSO + rates + shapes))
+    joint = body.joints[0]
+    assert (joint.link, joint.parent, joint.at, joint.axis) == ("torso", "", (0, 0, 1), (0, 0, 1))
+    assert (joint.acceleration, joint.jerk) == (20, 200)
+    assert body.capsules == (Capsule("torso", (0, 0, 0), (0, 0, 1), 0.1), Capsule("", (0, 0, 0), (0, 0, 1), 0.1))
+    assert body.forbidden == (("torso", ""),)
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "says"),
+    [
+        (JOINT + "jerk = 5\n", 9, 'a joint with "jerk" needs "acceleration" too'),
+        (JOINT + "acceleration = 5\n", 9, 'a joint with "acceleration" needs "jerk" too'),
+        (JOINT + LINK.format("torso", "hips"), 10, 'there is no link "hips"; the links are "base", "torso"'),
+        (JOINT + LINK.format("torso", "torso"), 10, "its parents form a circle"),
+        (JOINT + LINK.format("base", "base"), 9, '"base" is the link that no joint moves'),
+        (TORSO + TORSO.replace("neck", "hip"), 19, 'two joints move the link "torso"'),
+        (TORSO.replace("[0, 0, 2]", "[0, 0, 0]"), 12, '"axis" must point somewhere'),
+        (TORSO.replace("[0, 0, 2]", "[0, 0]"), 12, "metres ahead, left and up"),
+        (TORSO.replace("[0, 0, 2]", "[nan, 0, 1]"), 12, "metres ahead, left and up"),
+        (TORSO + CAPSULE.replace("torso", "tail"), 14, 'there is no link "tail"'),
+        (TORSO + CAPSULE.replace("0.1", "0"), 17, '"radius" must be at least 0.001'),
+        ('forbidden = [["torso", "base"]]\n' + TORSO + CAPSULE, 3, 'no capsule has the link "base"'),
+        ('forbidden = [["torso", "torso"]]\n' + TORSO + CAPSULE, 3, "a link can't touch itself"),
+        ('forbidden = ["torso"]\n' + TORSO + CAPSULE, 3, "must be a list of pairs of links"),
+        (JOINT + JOINT.replace("neck", "a") + "acceleration = 2\njerk = 2\n", 10, "either all joints have"),
+    ],
+)
+def test_links_that_do_not_fit_together_have_a_line(tmp_path: Path, text: str, line: int, says: str) -> None:
+    with pytest.raises(BodyError) as caught:
+        load_body(written(tmp_path, HEAD + text))
+    assert says in str(caught.value)
+    assert caught.value.line == line

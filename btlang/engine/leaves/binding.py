@@ -7,7 +7,7 @@ from functools import partial
 from weakref import WeakKeyDictionary
 
 from btlang.engine.instance import NodeInstance, blackboard_key
-from btlang.engine.leaves.callables import GeneratorLeaf, class_leaf, function_leaf
+from btlang.engine.leaves.callables import KEPT, GeneratorLeaf, class_leaf, function_leaf, keeping_leaf
 from btlang.engine.leaves.leaf import LeafBinding, described
 from btlang.engine.leaves.signature import LeafSignature
 
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from btlang.engine.leaves.callables import Stored
 
 
+_OWN: dict[str, set[str]] = {"thread": {"halted"}, "generator": {KEPT}}
+"""What only leaves of a kind get, each its own."""
 # A signature costs more than the rest of a leaf. Weak, since a comparison is a function made for one run.
 _signatures: WeakKeyDictionary[Callable[..., Any], tuple[Parameter, ...]] = WeakKeyDictionary()
 
@@ -42,6 +44,8 @@ def bound_leaf(instance: NodeInstance, signature: LeafSignature) -> Compiled:
         signature.calls[key] = _call(instance, signature)
     call, stored, given = signature.calls[key]
     if kind == "generator":
+        if KEPT in given:
+            return keeping_leaf(instance, call, stored)
         generator = GeneratorLeaf(instance, call, stored)
         return generator.tick, generator.halt
     if kind == "function":
@@ -63,14 +67,12 @@ def _call(instance: NodeInstance, signature: LeafSignature) -> tuple[Callable[..
     names = tuple(ports)
     given = signature.given.get(names)
     if given is None:
-        services = instance.state.service_names
-        given = signature.given[names] = _fill(
-            instance, binding.call, names, services | {"halted"} if binding.thread else services
-        )
+        services = instance.state.service_names | _OWN.get(signature.kind, set())
+        given = signature.given[names] = _fill(instance, binding.call, names, services)
     constants, stored = _arguments(instance, ports, binding) if ports else ({}, None)
     beside = instance.state.proxies if signature.kind in ("async", "thread") else ()
     for name in given:
-        if name not in beside and (name != "halted" or not binding.thread):
+        if name not in beside and name not in _OWN.get(signature.kind, ()):
             constants[name] = instance.service(name)
     return partial(binding.call, **constants) if constants else binding.call, stored, given
 

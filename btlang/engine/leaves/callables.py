@@ -8,6 +8,7 @@ engine's `take_halt_failures`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 from btlang.engine.instance import Fault, NodeInstance, halt_nothing
 from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown, described
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     Stored: TypeAlias = Callable[[], Mapping[str, Any]] | None  # reads ports from the blackboard
 
 
+KEPT = "kept"
+"""The parameter of a generator for what it keeps while it is suspended."""
 _TRUTHS = ("bool", "bool_")  # what numpy's comparisons give goes by these names
 
 
@@ -109,6 +112,39 @@ class GeneratorLeaf:
         if self.generator is not None:
             running, self.generator = self.generator, None
             _stop(self.instance, running.close)
+
+
+class Kept(dict[str, "Any"]):
+    """What a generator keeps while it is suspended."""
+
+    def saved(self) -> dict[str, Any]:
+        """As JSON."""
+        return dict(self)
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """What `saved` gave."""
+        self.clear()
+        self.update(saved)
+
+
+def keeping_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stored) -> Compiled:
+    """As GeneratorLeaf, for a function that takes what it kept when it was suspended."""
+    kept = Kept()
+    leaf = GeneratorLeaf(instance, partial(call, **{KEPT: kept}), stored)
+
+    def tick() -> int:
+        status = leaf.tick()
+        if status != RUNNING:
+            kept.clear()
+        return status
+
+    def halt(keep: bool) -> None:
+        leaf.halt(keep)
+        if not keep:
+            kept.clear()
+
+    instance.memory = (tick,)
+    return tick, halt
 
 
 def class_leaf(instance: NodeInstance, leaf: Any, start: Callable[..., Any], stored: Stored) -> Compiled:

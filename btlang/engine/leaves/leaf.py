@@ -18,6 +18,8 @@ at once, from any thread. `wake_at(time)`, called during a tick, asks for the ne
 that is sooner than usual. A thread also gets `halted`, a threading.Event. `progress(share, state)` reports from any
 thread how much is done, from 0 to 1, and in words what the leaf is doing; in most runs nobody listens. `beside` is a
 set of whatever works in real time elsewhere, as in another process: a run at full speed waits for it.
+A generator function with a parameter `kept` gets a dictionary of plain values there, in which it writes how far it is:
+empty at a start, and as it left it where it starts again after it was suspended. A saved run has it too.
 
 Background leaves run concurrently with ticks. Safe for them are `wake`, `progress`, `halted`, reading `clock.now`, and
 reading and setting single blackboard entries. Other services may be proxies (see Engine): they run calls on the thread

@@ -15,6 +15,7 @@ from btlang.actions.motion import Steps
 from btlang.actions.power import undock
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.station import Station
 from btlang.ros.lease import Leases
 from btlang.ros.poses import pose_of
 from btlang.ros.simulator.accepted_goal import AcceptedGoal
@@ -24,7 +25,6 @@ from btlang.ros.simulator.publishing import Moment
 from btlang.ros.simulator.wheels import Wheels
 from btlang.ros.times import duration
 
-_DOCK = "dock"
 _NEAR = 0.5  # metres from the dock at which a goal means it
 _STATES = {
     STAGING: DockRobot.Feedback.NAV_TO_STAGING_POSE,
@@ -38,6 +38,14 @@ _CODES = {
     CONNECTION: DockRobot.Result.FAILED_TO_CHARGE,
     RETRY: DockRobot.Result.FAILED_TO_CONTROL,
 }
+
+
+def _wanted(request: Any, stations: list[Station]) -> Station:
+    """The one that a request means: by its name, else the nearest to a pose."""
+    if request.use_dock_id:
+        return next(station for station in stations if station.name == request.dock_id)
+    pose = pose_of(request.dock_pose.pose)
+    return min(stations, key=lambda station: pose.distance_to((station.spot.x, station.spot.y)))
 
 
 class DockingGoal(AcceptedGoal):
@@ -123,22 +131,24 @@ class Docking:
 
     def _dock(self, goal: DockingGoal) -> Steps:
         if not self._robot.docked:
-            yield from enter_dock(self._robot, self._robot.staging, lambda stage: self._tell(goal, stage))
+            station = _wanted(goal.handle.request, self._robot.stations)
+            yield from enter_dock(self._robot, station, lambda stage: self._tell(goal, stage))
 
     def _refusal(self, request: Any) -> tuple[str, int] | None:
         """Why it can't dock as it is asked to, with a code."""
-        dock = self._robot.world.dock
-        if dock is None:
+        names = [dock.name for dock in self._robot.world.all_docks]
+        if not names:
             return "there is no dock in this world", DockRobot.Result.DOCK_NOT_IN_DB
-        if request.use_dock_id and request.dock_id != _DOCK:
-            return f'there is no dock "{request.dock_id}", only "{_DOCK}"', DockRobot.Result.DOCK_NOT_IN_DB
+        if request.use_dock_id and request.dock_id not in names:
+            only = " and ".join(f'"{name}"' for name in names)
+            return f'there is no dock "{request.dock_id}", only {only}', DockRobot.Result.DOCK_NOT_IN_DB
         pose = pose_of(request.dock_pose.pose)
         if not request.use_dock_id and (wrong := refusal(request.dock_pose.header.frame_id, pose)):
             return wrong, DockRobot.Result.DOCK_NOT_VALID
-        if not request.use_dock_id and pose.distance_to((dock.x, dock.y)) > _NEAR:
+        station, at = _wanted(request, self._robot.stations), self._robot.pose
+        if not request.use_dock_id and pose.distance_to((station.spot.x, station.spot.y)) > _NEAR:
             return f"there is no dock at ({pose.x:.2f}, {pose.y:.2f})", DockRobot.Result.FAILED_TO_DETECT_DOCK
-        staging, at = self._robot.staging, self._robot.pose
-        if not request.navigate_to_staging_pose and staging.distance_to((at.x, at.y)) > _NEAR:
+        if not request.navigate_to_staging_pose and station.staging.distance_to((at.x, at.y)) > _NEAR:
             return "the robot isn't in front of the dock", DockRobot.Result.FAILED_TO_STAGE
         return None
 

@@ -1,0 +1,100 @@
+"""Gestures in step with what is said: the stroke of each meets its word."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Protocol
+
+from btlang.engine.leaves.leaf import ActionFailed
+from btlang.record import Record
+from btlang.robots.capabilities import Gesturing, Operation, Voice
+from btlang.robots.geometry import Point
+from btlang.robots.said_gestures import said_gesture
+from btlang.speech.marks import Mark
+
+_LOOKS_AHEAD = 4.0  # seconds before a word in which the way to a stroke is planned
+_PERIOD = 0.2  # seconds to the next tick, as long as none has shown how long that takes
+_LATEST = 1.0  # seconds that speech may begin later, for its first stroke
+
+
+class Presenting(Voice, Gesturing, Protocol):
+    """It speaks, and moves in step with that."""
+
+
+class Stroke(Record):
+    """A gesture, what it is aimed at, and the index of the text from which its word is looked for."""
+
+    name: str
+    aim: Point | None
+    index: int
+
+
+class Strokes:
+    """The gestures of one text, one after the other. `step` at each tick, `halt` at the end.
+
+    Raises RobotError where the target of one isn't known.
+    """
+
+    def __init__(self, robot: Presenting, marks: Sequence[Mark]) -> None:
+        self._robot = robot
+        self._left = [*_strokes(robot, marks)]
+        self._going: list[Operation] = []
+        self._free_at = 0.0  # when the gesture before has had its stroke
+        self._last: float | None = None
+        self._period = _PERIOD
+
+    def delay(self, text: str) -> float:
+        """Seconds by which speech has to begin later, so that the first stroke can meet its word."""
+        if not self._left:
+            return 0.0
+        first = self._left[0]
+        needed = self._robot.lead(first.name, first.aim) - self._robot.utterance(text).time_of(first.index)
+        return min(_LATEST, max(0.0, needed))
+
+    @property
+    def busy(self) -> bool:
+        """True while a gesture is to come, or isn't over. Raises ActionFailed where one has failed."""
+        for operation in self._going:
+            if operation.done and operation.failure is not None:
+                raise ActionFailed(operation.failure)
+        self._going = [operation for operation in self._going if not operation.done]
+        return bool(self._left or self._going)
+
+    def step(self) -> None:
+        """Starts what has to start before the next tick."""
+        robot, now = self._robot, self._robot.time
+        if self._last is not None and now > self._last:
+            self._period = now - self._last
+        self._last = now
+        while self._left and robot.said is not None and now > self._free_at - 1e-9:
+            stroke = self._left[0]
+            word = robot.said.time_of(stroke.index)
+            at = robot.said_at + word
+            if at - now > _LOOKS_AHEAD:
+                return
+            needed = robot.lead(stroke.name, stroke.aim)
+            gesture = robot.body.gestures.get(stroke.name)
+            usual = needed if gesture is None else max(needed, gesture.stroke)
+            if at - now > usual + self._period:
+                return
+            self._left.pop(0)
+            self._free_at = max(at, now + needed)
+            self._going.append(robot.gesture(stroke.name, aim=stroke.aim, stroke_at=at))
+            if robot.on_event is not None:
+                met = self._free_at - robot.said_at
+                robot.on_event("stroke", {"name": stroke.name, "stroke": round(met, 3), "word": round(word, 3)})
+
+    def halt(self) -> None:
+        """They come to rest where they are."""
+        for operation in self._going:
+            operation.cancel()
+
+
+def _strokes(robot: Presenting, marks: Sequence[Mark]) -> Iterator[Stroke]:
+    """Those that the robot has. Raises RobotError where a target isn't known."""
+    for mark in marks:
+        found = said_gesture(robot.body, mark.words)
+        if found is not None:
+            yield Stroke(found.name, robot.locate(found.target) if found.target else None, mark.index)
+        elif robot.on_event is not None:  # values of the mission brought it
+            robot.on_event("warning", {"text": f'the robot has no gesture "{mark.words}"'})

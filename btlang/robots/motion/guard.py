@@ -1,0 +1,74 @@
+"""Whether a body may go its way: within all limits, without touching itself, and so that it can always be halted."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from btlang.robots.body import Body
+from btlang.robots.joint_tables import BASE
+from btlang.robots.motion.braking import brake
+from btlang.robots.motion.collisions import Collisions
+from btlang.robots.motion.course import PERIOD, Limits, State
+from btlang.robots.motion.kinematics import Array, Kinematics
+
+_MARGIN = 0.01  # metres that are kept between links: more than they can get nearer between two looks
+_EACH = 2  # samples between two looks at the way
+_BRAKING = 0.04  # seconds between two looks at the way to rest
+_ROUNDING = 1e-6
+_JERK = 1.02  # of the limit, for differences of sampled accelerations
+
+
+class Guard:
+    """Of a body."""
+
+    def __init__(self, body: Body, kinematics: Kinematics) -> None:
+        self._body = body
+        self._limits = Limits.of(body.joints)
+        self._collisions = Collisions(body, kinematics)
+
+    def problem(self, way: State, joints: list[int]) -> str:
+        """Why the body may not go a way, samples of all joints of which these ones are new; "" where it may."""
+        return self._beyond(way.of(joints), joints) or self._touching(way)
+
+    def _beyond(self, way: State, joints: list[int]) -> str:
+        limits = self._limits.some(joints)
+        coming = way.velocity + way.acceleration * np.abs(way.acceleration) / (2 * limits.jerk)
+        jerk = np.abs(np.diff(way.acceleration, axis=0)) / PERIOD
+        halts = brake(way, limits).end.position
+        wide = _ROUNDING * (limits.high - limits.low)
+        begins = np.minimum(way.position[0], halts[0]), np.maximum(way.position[0], halts[0])  # somebody moved it there
+        low, high = np.minimum(limits.low, begins[0]) - wide, np.maximum(limits.high, begins[1]) + wide
+        wrong = {
+            "would turn too far": ((way.position < low) | (way.position > high) | (halts < low) | (halts > high)).any(
+                0
+            ),
+            "would be too fast": (np.abs(np.stack([way.velocity, coming])) > limits.speed * _JERK).any((0, 1)),
+            "would be too forceful": (np.abs(way.acceleration) > limits.acceleration * _JERK).any(0),
+            "would be too jerky": (jerk > limits.jerk * _JERK).any(0),
+        }
+        for says, found in wrong.items():
+            if found.any():
+                return f"the {self._body.joints[joints[int(np.argmax(found))]].name} {says}"
+        return ""
+
+    def _touching(self, way: State) -> str:
+        if not self._collisions.pairs:
+            return ""
+        looks = sorted({*range(0, len(way.position), _EACH), len(way.position) - 1})
+        seen = State(*(getattr(way, name)[looks] for name in State.fields))
+        now = self._collisions.distances(self._braking(seen, slice(0, 1)))
+        allowed = np.minimum(_MARGIN, now.min(axis=1)) - _ROUNDING
+        moving = (np.abs(seen.velocity).max(axis=1) > 0.0) | (np.abs(seen.acceleration).max(axis=1) > 0.0)
+        found = self._collisions.distances(np.concatenate([seen.position, self._braking(seen, moving)]))
+        short = (found - allowed[:, None]).min(axis=1)
+        if short.min() >= 0.0:
+            return ""
+        first, second = self._collisions.pairs[int(np.argmin(short))]
+        return f"the {first or BASE} would touch the {second or BASE}"
+
+    def _braking(self, way: State, rows: slice | Array) -> Array:
+        """Where the body is on its way to rest from these samples."""
+        state = State(*(getattr(way, name)[rows] for name in State.fields))
+        halt = brake(state, self._limits)
+        times = np.append(np.arange(_BRAKING, halt.seconds, _BRAKING), halt.seconds)
+        return np.concatenate([halt.at(float(time)).position for time in times])

@@ -1,0 +1,79 @@
+"""The tables `voice` and `mouth` of robot files, and the engine that a voice names."""
+
+from __future__ import annotations
+
+from btlang.robots.body import Mouth, Voice
+from btlang.robots.modules import module_of
+from btlang.speech.engine import Settings, SpeechError
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.robots.body import Body
+    from btlang.speech.engine import SpeechEngine
+    from btlang.text.toml_table import Table
+
+ENTRY_POINTS = "btlang.speech"
+ESPEAK = "espeak"
+_FOREIGN = f'only "{ESPEAK}" may be the engine of a robot file that isn\'t on this computer: others run code'
+
+
+def read_voice(top: Table, may_load: bool) -> Voice | None:
+    """The voice of a robot, None where it has none. With `may_load` any engine will do. Raises Problem."""
+    if not top.has("voice"):
+        return None
+    table = top.table("voice")
+    engine = table.text("engine") if table.has("engine") else ""
+    if engine not in ("", ESPEAK) and not may_load:
+        raise table.problem("engine", _FOREIGN)
+    usual = Settings()
+    text = table.number("text", usual.text if engine else None, low=0.0)
+    character = table.number("character", usual.character if engine else None, low=0.0)
+    language = table.text("language") if engine and table.has("language") else usual.language
+    variant = table.text("variant") if engine and table.has("variant") else ""
+    speed = table.number("speed", usual.speed, low=80, high=450) if engine else usual.speed
+    pitch = table.number("pitch", usual.pitch, low=0, high=100) if engine else usual.pitch
+    return table.finish(Voice(Settings(language, variant, speed, pitch, text, character), engine))
+
+
+def read_mouth(top: Table, body: Body) -> Mouth | None:
+    """The mouth of a robot, None where it has none. Raises Problem where it has no such joint or display."""
+    if not top.has("mouth"):
+        return None
+    table = top.table("mouth")
+    joints = tuple(joint.name for joint in body.joints)
+    displays = tuple(device.name for device in body.devices if device.kind == "display")
+    joint = table.choice("joint", joints) if table.has("joint") else ""
+    display = table.choice("display", displays) if table.has("display") else ""
+    if not (joint or display):
+        raise top.problem("mouth", 'a mouth is a "joint" or a "display"; write mouth = { joint = "jaw" }')
+    return table.finish(Mouth(joint, display))
+
+
+def engine_of(body: Body) -> SpeechEngine:
+    """The engine that a body's voice names, one without sound where it names none. Raises SpeechError."""
+    voice = body.voice or Voice(Settings())
+    if not voice.engine:
+        from btlang.speech.estimate import Estimate
+
+        return Estimate(voice.settings)
+    if voice.engine == ESPEAK:
+        from btlang.speech.espeak import Espeak
+
+        return Espeak(voice.settings)
+    engine: SpeechEngine = _class_of(voice.engine, body.folder)(voice.settings)
+    return engine
+
+
+def _class_of(place: str, folder: str) -> Any:
+    from importlib.metadata import entry_points
+
+    named = entry_points(group=ENTRY_POINTS, name=place)
+    module, colon, name = (next(iter(named)).value.replace(" ", "") if named else place).partition(":")
+    if not colon:
+        raise SpeechError(f'no package has an engine of speech "{place}"; or write its place, such as "my_voice:Voice"')
+    try:
+        return getattr(module_of(module, folder), name)
+    except Exception as problem:  # whatever somebody's module raises
+        raise SpeechError(f"{place} can't be loaded: {type(problem).__name__}: {problem}") from problem

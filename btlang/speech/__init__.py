@@ -1,0 +1,1 @@
+"""Speech without a robot: engines that speak, and marks in what is said."""

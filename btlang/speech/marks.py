@@ -1,0 +1,46 @@
+"""Marks in what is said: `Welcome <wave> to the museum` is a text, and a gesture whose stroke meets the word "to"."""
+
+from __future__ import annotations
+
+import re
+
+from btlang.record import Record
+
+_MARK = re.compile(r"\\<|<(?![\s\d])([^<>]+)>")
+_SENTENCE_ENDS = re.compile(r"[.!?…]+[\"'”»)\]]*\s+")
+_HUGS = ",.;:!?…)]}”»%"
+
+
+class Mark(Record):
+    """The words in a mark, and the index in the plain text from which the word is looked for that it meets."""
+
+    words: str
+    index: int
+
+
+def read_marks(text: str) -> tuple[str, tuple[Mark, ...]]:
+    r"""The text without its marks, and these. `\<` is a plain `<`, as is one before a blank or digit or not closed."""
+    plain, marks, at = "", list[Mark](), 0
+    for match in _MARK.finditer(text):
+        plain += text[at : match.start()]
+        at = match.end()
+        words = " ".join((match[1] or "").split())
+        if not words:
+            plain += "<" if match[1] is None else match[0]
+            continue
+        if text[at : at + 1] in _HUGS:
+            plain = plain.rstrip()
+        elif not plain or plain[-1].isspace():
+            at += len(text[at:]) - len(text[at:].lstrip())
+        marks.append(Mark(words, len(plain)))
+    return plain + text[at:], tuple(marks)
+
+
+def without_marks(text: str) -> str:
+    """What is heard of a text."""
+    return read_marks(text)[0]
+
+
+def sentence_start(text: str, index: int) -> int:
+    """Where the sentence begins that an index of the text is in."""
+    return max((match.end() for match in _SENTENCE_ENDS.finditer(text) if match.end() <= index), default=0)
