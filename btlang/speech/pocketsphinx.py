@@ -1,8 +1,8 @@
 """The recogniser `pocketsphinx`: English, on this computer, without a network.
 
-Three decoders hear the same sound: one knows only the sentences that are expected, and always finds the nearest one; one
-knows no words, only phones. How near what they found is says whether it was said at all. The third one has the large
-language model, and only hears where any words are expected.
+Three decoders hear the same sound. One knows only the sentences that are expected, and always finds the nearest one.
+One knows no words, only phones: where both agree, the sentence was said. The third one has the large language model,
+and only hears where any words are expected.
 """
 
 from __future__ import annotations
@@ -181,5 +181,4 @@ def _likeness(one: Sequence[str], other: Sequence[str]) -> float:
     """From 0 to 1 for the same phones in the same order."""
     from rapidfuzz.distance import Levenshtein
 
-    likeness: float = Levenshtein.normalized_similarity(one, other)
-    return likeness
+    return float(Levenshtein.normalized_similarity(one, other))

@@ -1,4 +1,4 @@
-"""How words are pronounced, in the phones of the CMU dictionary: other accents of a word, and guesses by its letters."""
+"""How words are pronounced, in phones of the CMU dictionary: other accents of a word, and guesses by its letters."""
 
 from __future__ import annotations
 

@@ -11,13 +11,13 @@ if TYPE_CHECKING:
     from typing import Protocol
 
     class Recogniser(Protocol):
-        """Hears one microphone. Made with RecogniserSettings, in a process apart from the robot's, and used by one thread of it.
+        """Hears one microphone. Made with RecogniserSettings, and used by one thread apart from the tick.
 
-        The class raises RecogniserError where it can't be used.
+        No call may take longer than a few hundredths of a second. Raises RecogniserError where it can't be used.
         """
 
         def expect(self, expected: Expected) -> Sequence[str]:
-            """What is listened for from now on, in the sentence under way too. Returns words it doesn't know how to pronounce."""
+            """What is listened for from now on, in a sentence under way too. Returns the words that it has to guess."""
 
         def hear(self, samples: bytes) -> Sequence[Understood]:
             """The next samples, 16 bits signed, mono, 16 kHz. Returns the sentences that have ended in them."""
