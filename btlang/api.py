@@ -267,11 +267,19 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
             tree = lower_mission(program, self.vocabulary)
         return explain_mission(program, tree, self.vocabulary, self._described, width)
 
-    def check(self) -> None:
-        """Raises MissionError with everything that would keep it from running, as far as known without the robot.
+    def check(self, robot: str = "") -> None:
+        """Raises MissionError with everything that would keep it from running, as far as known without the robot; with
+        the `robot`, a robot file or name, also what its body lacks.
 
-        A tree that was compiled from a mission has no such problems, unless it names nodes by their ids.
+        A tree that was compiled from a mission has no other problems, unless it names nodes by their ids.
         """
+        if robot:
+            from btlang.robots.preflight import check_mission
+            from btlang.robots.registry import body_of
+            from btlang.robots.world_problem import read_world
+
+            body = body_of(robot)
+            check_mission(read_world(self.world, body), body, self.tree, self.vocabulary)
         if not self.says_ids:
             return
         from btlang.backends.checking import misnamed, tree_problems

@@ -127,7 +127,7 @@ def _check(options: argparse.Namespace) -> int:
 
         options.report.add(check_tests(source))
     else:
-        mission_of(options, source).check()
+        mission_of(options, source).check(options.robot)
     if not options.report.is_json:
         show("No problems found.")
     return SUCCESS

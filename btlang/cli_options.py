@@ -13,7 +13,7 @@ from itertools import takewhile
 from btlang.arguments import between, duration, picture, speed
 from btlang.diagnostics.report import FORMATS
 from btlang.frontends.mission.reader import DEFAULT_PARSER, PARSERS
-from btlang.robots.options import add_world
+from btlang.robots.options import add_robot_words, add_world
 from btlang.run.limits import RATES
 from btlang.text.output import WIDEST, columns, show
 from btlang.text.spelling import nearest, respellings
@@ -71,6 +71,8 @@ def _verb_parser(verb: str) -> _Parser:
     parser = _Parser(f"btc {verb}")
     parser.set_defaults(**_DEFAULTS, verb=verb)
     _OPTIONS[verb][1](parser)
+    if verb in _READING:
+        add_robot_words(parser)
     return parser
 
 
@@ -129,6 +131,10 @@ _DEFAULTS: dict[str, Any] = {
 }  # fmt: skip
 
 
+_READING = ("check", "compile", "diff", "explain", "format", "grammar", "tree", "words")
+"""Verbs that run nothing, but may read missions in the words of a robot."""
+
+
 def _words_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--keywords",
@@ -160,12 +166,8 @@ def _main_option(parser: argparse.ArgumentParser) -> None:
 
 def _mission_options(parser: argparse.ArgumentParser) -> None:
     _reading_options(parser)
-    parser.add_argument(
-        "--format",
-        choices=FORMATS,
-        default="text",
-        help="format of messages: text, or json for programs (default: text)",
-    )
+    about = "format of messages: text, or json for programs (default: text)"
+    parser.add_argument("--format", choices=FORMATS, default="text", help=about)
     _main_option(parser)
     text = parser.add_mutually_exclusive_group(required=True)
     text.add_argument("file", nargs="?", metavar="FILE", help="mission, or - for standard input")

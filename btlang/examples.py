@@ -14,13 +14,16 @@ from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.vocabulary.shipped import shipped
 
+_README, _CACHE = "README.md", "__pycache__"
 _COMMAND = re.compile(r"^#   btc .*$", re.MULTILINE)
 _WORLD = re.compile(r"--world (\S+)")
 _INCLUDE = re.compile(r'^include "(.+)"$', re.MULTILINE)
 
 
 class Example(Record):
-    """A shipped mission. `about` is the comment at its top, `world` its world file ("" for the one that ships).
+    """A shipped mission, or a folder of them with its robot, whose text is its README.
+
+    `about` is the comment at its top, `world` its world file ("" for the one that ships).
 
     `parts` are the files that it includes; these include no others. `test` is its file of tests, "" where it has none.
     The comment ends with the command that runs it in the folder of the mission, with worlds in `worlds`.
@@ -32,12 +35,15 @@ class Example(Record):
     text: str
     parts: tuple[str, ...] = ()
     test: str = ""
+    file: str = ""
 
 
 def examples() -> list[Example]:
-    """All shipped missions, by name."""
-    names = sorted(name[: -len(".txt")] for name in os.listdir(shipped("examples")) if name.endswith(".txt"))
-    return [_example(name) for name in names]
+    """All shipped missions and folders, by name."""
+    names = sorted(os.listdir(shipped("examples")))
+    folders = [name for name in names if os.path.isfile(shipped("examples", name, _README))]
+    missions = [name.removesuffix(".txt") for name in names if name.endswith(".txt")]
+    return [*map(_example, missions), *map(_folder, folders)]
 
 
 def found(names: Iterable[str]) -> list[Example]:
@@ -55,6 +61,9 @@ def listing(width: int = 80) -> list[str]:
     lines = []
     for example in examples():
         told = [example.about.removesuffix(":"), *([f"World: {example.world}"] if example.world else [])]
+        told += (
+            [f"A folder, with its robot and {len(example.parts)} more files"] if example.file.endswith(_README) else []
+        )
         lines.append(example.name)
         for text in told:
             lines += textwrap.wrap(text, width, initial_indent="    ", subsequent_indent="    ")
@@ -69,7 +78,7 @@ def copied(folder: str, chosen: Sequence[Example]) -> list[str]:
     Nothing is overwritten: raises MissionError (BT009) with every file that is there already, before any is written.
     A world or part that is there with the same text stays.
     """
-    files = {os.path.join(folder, f"{example.name}.txt"): example.text.encode() for example in chosen}
+    files = {os.path.join(folder, example.file): example.text.encode() for example in chosen}
     needed = [name for example in chosen for name in (example.world, *example.parts, example.test) if name]
     shared = {os.path.join(folder, name): _data(name) for name in needed}
     files |= shared
@@ -100,7 +109,16 @@ def _example(name: str) -> Example:
     test = f"tests/{name}.test.txt"
     tested = os.path.exists(shipped("examples", *test.split("/")))
     parts = tuple(_INCLUDE.findall(text))
-    return Example(name, about, world[1] if world else "", text, parts, test if tested else "")
+    return Example(name, about, world[1] if world else "", text, parts, test if tested else "", f"{name}.txt")
+
+
+def _folder(name: str) -> Example:
+    file, root = f"{name}/{_README}", shipped("examples")
+    text = _data(file).decode("utf-8")
+    about = " ".join(text.split("\n\n")[1].split())
+    found = (os.path.join(place, each) for place, _, names in os.walk(shipped("examples", name)) for each in names)
+    paths = sorted(os.path.relpath(path, root).replace(os.sep, "/") for path in found if _CACHE not in path)
+    return Example(name, about, "", text, tuple(path for path in paths if path != file), "", file)
 
 
 def _data(name: str) -> bytes:

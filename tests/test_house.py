@@ -37,6 +37,7 @@ BORROWED = {ROOT / path for path in PROJECT["tool"]["ruff"]["extend-exclude"]}
 MOST_LINES = 400
 LONG: dict[str, str] = {
     "btlang/task/commands.schema.json": "made from the classes of commands",
+    "examples/guide/robot.toml": "all of a humanoid",
     "btlang/web/package-lock.json": "made by npm",
     "btlang/robots/capabilities.py": "what robots can do, one capability after the other",
     "btlang/robots/simulated.py": "the robot, one capability after the other",

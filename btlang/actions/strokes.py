@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Protocol
 
-from btlang.engine.leaves.leaf import ActionFailed
 from btlang.record import Record
 from btlang.robots.capabilities import Gesturing, Operation, Voice
 from btlang.robots.geometry import Point
+from btlang.robots.robot import RobotError
 from btlang.robots.said_gestures import said_gesture
 from btlang.speech.marks import Mark
 
@@ -45,18 +45,16 @@ class Strokes:
 
     def delay(self, text: str) -> float:
         """Seconds by which speech has to begin later, so that the first stroke can meet its word."""
-        if not self._left:
+        if not self._left or (needed := self._needed(self._left[0])) is None:
             return 0.0
-        first = self._left[0]
-        needed = self._robot.lead(first.name, first.aim) - self._robot.utterance(text).time_of(first.index)
-        return min(_LATEST, max(0.0, needed))
+        return min(_LATEST, max(0.0, needed - self._robot.utterance(text).time_of(self._left[0].index)))
 
     @property
     def busy(self) -> bool:
-        """True while a gesture is to come, or isn't over. Raises ActionFailed where one has failed."""
+        """True while a gesture is to come, or isn't over."""
         for operation in self._going:
             if operation.done and operation.failure is not None:
-                raise ActionFailed(operation.failure)
+                self._warn(operation.failure)
         self._going = [operation for operation in self._going if not operation.done]
         return bool(self._left or self._going)
 
@@ -72,14 +70,21 @@ class Strokes:
             at = robot.said_at + word
             if at - now > _LOOKS_AHEAD:
                 return
-            needed = robot.lead(stroke.name, stroke.aim)
+            needed = self._needed(stroke)
+            if needed is None:
+                self._left.pop(0)
+                continue
             gesture = robot.body.gestures.get(stroke.name)
             usual = needed if gesture is None else max(needed, gesture.stroke)
             if at - now > usual + self._period:
                 return
             self._left.pop(0)
+            try:
+                self._going.append(robot.gesture(stroke.name, aim=stroke.aim, stroke_at=at))
+            except RobotError as problem:
+                self._warn(f"{stroke.name}: {problem}")
+                continue
             self._free_at = max(at, now + needed)
-            self._going.append(robot.gesture(stroke.name, aim=stroke.aim, stroke_at=at))
             if robot.on_event is not None:
                 met = self._free_at - robot.said_at
                 robot.on_event("stroke", {"name": stroke.name, "stroke": round(met, 3), "word": round(word, 3)})
@@ -89,11 +94,24 @@ class Strokes:
         for operation in self._going:
             operation.cancel()
 
+    def _needed(self, stroke: Stroke) -> float | None:
+        """Seconds to the stroke at least; None, with a warning, where the body can't do it: speech goes on."""
+        try:
+            return self._robot.lead(stroke.name, stroke.aim)
+        except RobotError as problem:
+            self._warn(f"{stroke.name}: {problem}")
+            return None
+
+    def _warn(self, text: str) -> None:
+        if self._robot.on_event is not None:
+            self._robot.on_event("warning", {"text": text})
+
 
 def _strokes(robot: Presenting, marks: Sequence[Mark]) -> Iterator[Stroke]:
     """Those that the robot has. Raises RobotError where a target isn't known."""
+    moves = hasattr(robot, "gesture")  # robots of other people may only speak
     for mark in marks:
-        found = said_gesture(robot.body, mark.words)
+        found = said_gesture(robot.body, mark.words) if moves else None
         if found is not None:
             yield Stroke(found.name, robot.locate(found.target) if found.target else None, mark.index)
         elif robot.on_event is not None:  # values of the mission brought it

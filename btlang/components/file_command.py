@@ -1,4 +1,4 @@
-"""What `btc robot check` and `btc robot show` do."""
+"""What `btc robot check`, `show`, `urdf` and `import` do."""
 
 from __future__ import annotations
 
@@ -10,16 +10,28 @@ from btlang.components.order import levels
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.robots.body import Body, ComponentPart
-from btlang.robots.body_file import read_body
+from btlang.robots.body_file import BodyError, read_body
+from btlang.robots.data_file import as_mission_error
+from btlang.robots.motion.urdf import urdf
 from btlang.text.escaping import one_line
-from btlang.text.output import show
+from btlang.text.output import pass_on, show
+from btlang.text.source import Source
 
 _OF_NODES = {"version": "", "needs": []}
 
 
 def serve_file(act: str, path: str) -> int:
-    """Checks a robot file, or draws the robot; returns the exit code. Raises MissionError with all that is wrong."""
+    """Checks a robot file, draws the robot, writes it as URDF, or makes a robot file of URDF; returns the exit code.
+
+    Raises MissionError with all that is wrong.
+    """
     source = read_source(path)
+    if act == "urdf":
+        pass_on(urdf(read_body(source)))
+        return 0
+    if act == "import":
+        pass_on(_imported(source))
+        return 0
     if act == "show":
         show("\n".join(drawn(read_body(source))))
         return 0
@@ -28,6 +40,15 @@ def serve_file(act: str, path: str) -> int:
         raise MissionError(problems)
     show("No problems found.")
     return 0
+
+
+def _imported(source: Source) -> str:
+    from btlang.robots.motion.urdf_reader import read_urdf  # brings numpy
+
+    try:
+        return read_urdf(source).toml
+    except BodyError as problem:
+        raise as_mission_error(problem) from None
 
 
 def drawn(body: Body) -> Iterator[str]:

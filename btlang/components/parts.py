@@ -15,7 +15,7 @@ from btlang.robots.geometry import Pose
 from btlang.robots.hands import Hands
 from btlang.robots.joints import clipped, joint_of
 from btlang.robots.obstacles import Obstacles
-from btlang.robots.parts import Parts
+from btlang.robots.parts import JointsPart, Parts
 from btlang.robots.power import NO_CONTACT
 from btlang.robots.robot import Hand, RobotError
 from btlang.robots.voice import Voice
@@ -60,7 +60,7 @@ def device_parts(
     lidar = devices.first("lidar")
     face = body.mouth.display if body.mouth is not None else ""
     displays = [name for name, device in devices.devices.items() if device.kind == "display" and name != face]
-    joints = DeviceJoints(body, readers)
+    joints = joints_over(body, readers)
     return Parts(
         base,
         DevicePower(devices.first("battery"), readers),
@@ -135,6 +135,15 @@ class DevicePower:
         reading = reader(self._devices, self._name, "battery").read(self._name)
         assert isinstance(reading, Charge)
         return reading
+
+
+def joints_over(body: Body, devices: Mapping[str, Reads]) -> JointsPart:
+    """Joints over servos, whose movements are planned where they are smooth."""
+    if not body.is_smooth:
+        return DeviceJoints(body, devices)
+    from btlang.components.servo_joints import ServoJoints  # brings numpy and ruckig
+
+    return ServoJoints(body, devices)
 
 
 class DeviceJoints:
@@ -290,7 +299,7 @@ class DeviceVoice(Voice):
     """The voice as it is simulated, with a speaker that plays it, and displays that show what is printed."""
 
     def __init__(
-        self, body: Body, devices: Mapping[str, Reads], speaker: str, displays: Sequence[str], joints: DeviceJoints
+        self, body: Body, devices: Mapping[str, Reads], speaker: str, displays: Sequence[str], joints: JointsPart
     ) -> None:
         super().__init__(body, joints.move)
         self._devices, self._speaker, self._displays = devices, speaker, displays

@@ -50,3 +50,10 @@ class Gesture(Record):
     def seconds(self) -> float:
         """How long it takes where no limit of the body slows it down."""
         return self.frames[-1].at + self.frames[-1].hold
+
+    @property
+    def stroke_frame(self) -> int:
+        """The number of the key frame that the stroke is in, or that is nearest to it."""
+        stroke = self.stroke
+        apart = [max(frame.at - stroke, stroke - frame.at - frame.hold, 0.0) for frame in self.frames]
+        return apart.index(min(apart))

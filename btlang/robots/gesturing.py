@@ -2,25 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import cos, radians, sin
+from collections.abc import Callable, Sequence
+from typing import Protocol
 
-from btlang.robots.body import Body, Vector
+from btlang.robots.body import Body
 from btlang.robots.capabilities import Operation
 from btlang.robots.geometry import Point, Pose
-from btlang.robots.gesture import Gesture, Step, angle_of
-from btlang.robots.joints import clipped
-from btlang.robots.parts import JointsPart, SmoothPart
+from btlang.robots.gesture import Gesture
+from btlang.robots.parts import SmoothPart
 from btlang.robots.robot import RobotError
+from btlang.robots.turning import Angles, turned
 
-HEIGHT = 1.0
-"""Metres above the floor of what a gesture points at."""
+
+class Turnable(Protocol):
+    """Joints of any robot; see btlang.robots.joints.Joints."""
+
+    def angle(self, name: str) -> float: ...
+    def move(self, targets: Angles) -> None: ...
+    def at_target(self, names: tuple[str, ...]) -> bool: ...
+    def freeze(self, names: tuple[str, ...]) -> None: ...
 
 
 class Stepped:
-    """See Operation: steps of joints that have no acceleration, the first after so many seconds."""
+    """See Operation: steps of joints whose movements aren't planned, the first after so many seconds."""
 
-    def __init__(self, joints: JointsPart, steps: Sequence[tuple[float, dict[str, float]]], after: float) -> None:
+    def __init__(self, joints: Turnable, steps: Sequence[tuple[float, Angles]], after: float) -> None:
         self._joints, self._steps = joints, list(steps)
         self._passed, self._names = -after, tuple({name for _, step in steps for name in step})
         self._going: tuple[str, ...] = ()
@@ -31,57 +37,61 @@ class Stepped:
     def cancel(self) -> None:
         """Its joints stay where they are."""
         if not self.done:
-            self.done = True
+            self.end(None)
             self._joints.freeze(self._names)
+
+    def end(self, failure: str | None) -> None:
+        """It is over, if it wasn't before."""
+        if not self.done:
+            self.done, self.failure = True, failure
 
     def step(self, dt: float) -> None:
         """Goes on to the next step once one is done and its second has come."""
         self._passed += dt
-        if self.done or self._passed < 0.0 or not self._joints.at_target(self._going):
-            return
-        if not self._steps:
-            self.done = True
-        elif self._passed >= self._steps[0][0]:
-            _, targets = self._steps.pop(0)
-            self._going = tuple(targets)
-            self._joints.move(targets)
+        try:
+            if self.done or self._passed < 0.0 or not self._joints.at_target(self._going):
+                return
+            if not self._steps:
+                self.end(None)
+            elif self._passed >= self._steps[0][0]:
+                _, targets = self._steps.pop(0)
+                self._going = tuple(targets)
+                self._joints.move(targets)
+        except RobotError as problem:
+            self.end(str(problem))
 
 
 class Gestures:
     """Those of a robot."""
 
-    def __init__(self, body: Body, joints: JointsPart) -> None:
+    def __init__(self, body: Body, joints: Turnable) -> None:
         self._body, self._joints = body, joints
         self._stepped: list[Stepped] = []
 
-    def start(self, name: str, pose: Pose, aim: Point | None, room: float | None) -> tuple[Operation, float]:
-        """See btlang.robots.capabilities.Gesturing.gesture; `room` is the time to the stroke in seconds.
+    def start(
+        self, name: str, pose: Callable[[], Pose], aim: Point | None, room: float | None
+    ) -> tuple[Operation, float]:
+        """See btlang.robots.capabilities.Gesturing.gesture; `room` is the time to the stroke in seconds, `pose` says
+        where the robot is.
 
         Gives how many times as long it takes as it should, too: limits of the joints may slow it.
         """
-        wanted = self._known(name)
-        bearing, point = _seen_from(pose, aim)
+        wanted = self._turned(name, pose, aim)
         if isinstance(self._joints, SmoothPart):
-            return self._joints.play(wanted, bearing, point, room)
-        steps = self._steps(wanted, bearing)
-        made = Stepped(self._joints, steps, max(0.0, (room or 0.0) - self._lead(wanted, bearing)))
+            return self._joints.play(wanted, room)
+        made = Stepped(self._joints, _steps(wanted), max(0.0, (room or 0.0) - self._lead(wanted)))
         self._stepped.append(made)
         return made, 1.0
 
-    def lead(self, name: str, pose: Pose, aim: Point | None) -> float:
+    def lead(self, name: str, pose: Callable[[], Pose], aim: Point | None) -> float:
         """See btlang.robots.capabilities.Gesturing."""
-        wanted = self._known(name)
-        bearing, point = _seen_from(pose, aim)
-        if isinstance(self._joints, SmoothPart):
-            return self._joints.lead(wanted, bearing, point)
-        return self._lead(wanted, bearing)
+        wanted = self._turned(name, pose, aim)
+        return self._joints.lead(wanted) if isinstance(self._joints, SmoothPart) else self._lead(wanted)
 
     def stop(self) -> None:
-        """All joints come to rest. For any thread."""
+        """No further step is taken; whoever calls it freezes the joints. For any thread."""
         for stepped in tuple(self._stepped):
-            if not stepped.done:
-                stepped.done, stepped.failure = True, "the robot was stopped"
-        self._joints.freeze()
+            stepped.end("the robot was stopped")
 
     def step(self, dt: float) -> None:
         """So many seconds have passed, in which the joints have moved."""
@@ -89,36 +99,23 @@ class Gestures:
             stepped.step(dt)
         self._stepped = [stepped for stepped in self._stepped if not stepped.done]
 
-    def _known(self, name: str) -> Gesture | Sequence[Step]:
+    def _turned(self, name: str, pose: Callable[[], Pose], aim: Point | None) -> Gesture | Sequence[Angles]:
         found = self._body.gestures.get(name) or self._body.postures.get(name)
         if not found:
             raise RobotError(f'the robot has no gesture "{name}"')
-        return found
+        return turned(self._body, found, pose, aim, self._joints.angle)
 
-    def _steps(self, wanted: Gesture | Sequence[Step], bearing: float) -> list[tuple[float, dict[str, float]]]:
-        frames = [(frame.at, frame.hold, frame.joints) for frame in wanted.frames] if isinstance(wanted, Gesture) else [
-            (0.0, 0.0, step) for step in wanted
-        ]  # fmt: skip
-        steps, begin = [], 0.0
-        for at, hold, joints in frames:
-            turned = {name: angle_of(value, bearing) for name, value in joints.items()}
-            steps.append((begin, clipped(self._body, turned)))
-            begin = at + hold
-        return steps
-
-    def _lead(self, wanted: Gesture | Sequence[Step], bearing: float) -> float:
+    def _lead(self, wanted: Gesture | Sequence[Angles]) -> float:
         if isinstance(wanted, Gesture):
             return wanted.stroke
-        _, first = self._steps(wanted, bearing)[0]
-        return max((abs(to - self._joints.angle(name)) / self._speed(name) for name, to in first.items()), default=0.0)
-
-    def _speed(self, name: str) -> float:
-        joint = self._body.joint(name)
-        return joint.speed if joint is not None else 1.0
+        speeds = {joint.name: joint.speed for joint in self._body.joints}
+        return max((abs(to - self._joints.angle(name)) / speeds[name] for name, to in wanted[0].items()), default=0.0)
 
 
-def _seen_from(pose: Pose, aim: Point | None) -> tuple[float, Vector | None]:
-    if aim is None:
-        return 0.0, None
-    bearing, distance = pose.bearing_to(aim), pose.distance_to(aim)
-    return bearing, (distance * cos(radians(bearing)), distance * sin(radians(bearing)), HEIGHT)
+def _steps(wanted: Gesture | Sequence[Angles]) -> list[tuple[float, Angles]]:
+    """With the second from which each may be taken."""
+    if not isinstance(wanted, Gesture):
+        return [(0.0, step) for step in wanted]
+    begins = [0.0, *(frame.at + frame.hold for frame in wanted.frames)]
+    angles = [{name: float(value) for name, value in frame.joints.items()} for frame in wanted.frames]
+    return list(zip(begins, angles, strict=False))

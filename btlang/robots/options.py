@@ -15,6 +15,13 @@ def add_simulate(parser: ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def add_robot_words(parser: ArgumentParser) -> None:
+    """The option --robot of a verb that only reads missions."""
+    parser.add_argument(
+        "--robot", default="", metavar="ROBOT", help="robot file or name of a robot, whose words and world count"
+    )
+
+
 def add_world(parser: ArgumentParser) -> None:
     """The option --world."""
     parser.add_argument("--world", metavar="FILE", help="world file (default: the world that ships)")

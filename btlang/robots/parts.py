@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 from btlang.record import Record
-from btlang.robots.body import Body, Vector
+from btlang.robots.body import Body
 from btlang.robots.capabilities import Hand, Operation
 from btlang.robots.geometry import Pose
-from btlang.robots.gesture import Gesture, Step
+from btlang.robots.gesture import Gesture
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -80,10 +80,8 @@ class JointsPart(Protocol):
 class SmoothPart(Protocol):
     """Joints with limits of acceleration, whose movements are planned; see btlang.robots.motion.smooth_joints."""
 
-    def play(
-        self, wanted: Gesture | Sequence[Step], bearing: float, aim: Vector | None, room: float | None
-    ) -> tuple[Operation, float]: ...
-    def lead(self, wanted: Gesture | Sequence[Step], bearing: float, aim: Vector | None) -> float: ...
+    def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[Operation, float]: ...
+    def lead(self, wanted: Gesture | Sequence[Mapping[str, float]]) -> float: ...
 
 
 class HandsPart(Protocol):

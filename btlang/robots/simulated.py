@@ -137,6 +137,7 @@ class SimulatedRobot:
         self._navigator.cancel("the robot was stopped")
         self._base.brake()
         self._gestures.stop()
+        self._joints.freeze()
         self._hands.stop()
         self._voice.silence()
 
@@ -457,13 +458,13 @@ class SimulatedRobot:
         if self._latch.refuses:
             raise RobotError("the robot was stopped")
         room = None if stroke_at is None else stroke_at - self.time
-        started, slower = self._gestures.start(name, self.pose, aim, room)
+        started, slower = self._gestures.start(name, lambda: self.pose, aim, room)
         self._emit("gesture", name=name, slower=round(slower, 2))
         return started
 
     def lead(self, name: str, aim: Point | None = None) -> float:
         """See btlang.robots.capabilities.Gesturing. Raises RobotError."""
-        return self._gestures.lead(name, self.pose, aim)
+        return self._gestures.lead(name, lambda: self.pose, aim)
 
     def grasp(self, hand: Hand, name: str | None = None) -> Operation:
         """Closes a hand on the named or the nearest object. Raises RobotError."""

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from btlang.robots.body import Body
-from btlang.robots.needs import check_body
-from btlang.robots.said_gestures import check_marks
+from btlang.robots.preflight import check_mission
 from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.world import World
-from btlang.robots.zone_check import check_zones
 from btlang.run.bus import Bus
 
 TYPE_CHECKING = False
@@ -52,9 +50,7 @@ class Simulation:
 
     def check(self, tree: Tree, vocabulary: Lexicon) -> None:
         """Raises MissionError where its body lacks what a leaf needs (BT072), or a goal is in a closed zone (BT074)."""
-        check_body(self.robot.body, tree, vocabulary)
-        check_zones(self.robot.world, tree, vocabulary)
-        check_marks(self.robot.world, self.robot.body, tree, vocabulary)
+        check_mission(self.robot.world, self.robot.body, tree, vocabulary)
 
     def pace(self, speed: float, controls: Controls) -> Pace:
         """Any speed will do: the world moves on as fast as it is asked to."""

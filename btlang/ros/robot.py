@@ -19,10 +19,12 @@ from btlang.robots.body_file import standard_body
 from btlang.robots.choices import Choices
 from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose
+from btlang.robots.gesturing import Gestures
 from btlang.robots.latch import Latch
 from btlang.robots.protection import Protection
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError
 from btlang.robots.station import Station
+from btlang.robots.voice import make_engine
 from btlang.robots.world import Place, World, Zone, said
 from btlang.robots.zones import Zones
 from btlang.ros.available import optional_interface
@@ -50,6 +52,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.ros.navigation_goal import RosNavigation
     from btlang.ros.server_goal import ServerGoal, ServerGoals
+    from btlang.speech.engine import Utterance
 
 CALL, FOLLOW = "call", "follow"
 _STOP = "stop"
@@ -103,7 +106,8 @@ class RosRobot:
             node, subscriptions, body.radius, (body.driving.top_speed, body.turning.top_speed), self._latch
         )
         self._joints = RosJoints(node, subscriptions, body)
-        self._voice = RosSpeech(node, subscriptions)
+        self._gestures = Gestures(body, self._joints)
+        self._voice = RosSpeech(node, subscriptions, make_engine(body))
         self._services = Services(node, self._executor)
         self._services.add(_STOP, Trigger)
         self._services.add(_LOCALIZE, Empty)
@@ -163,6 +167,7 @@ class RosRobot:
             self._pursuit.step(self.time)
         self.power.step()
         self._hands.step()
+        self._gestures.step(dt)
         self._doors.step()
         self._ears.step(self.time)
         self._services.step()  # last: what was answered is newer than what topics told before
@@ -225,6 +230,7 @@ class RosRobot:
         for servers in self._servers:
             servers.stop(_TOLD_TO_STOP)
         self._services.stop(_TOLD_TO_STOP)
+        self._gestures.stop()
         self._joints.freeze()
         self._voice.silence()
 
@@ -528,6 +534,18 @@ class RosRobot:
         """These joints stay where they are now."""
         self._joints.freeze(names)
 
+    def gesture(self, name: str, *, aim: Point | None = None, stroke_at: float | None = None) -> Operation:
+        """See btlang.robots.capabilities.Gesturing: its key frames one after the other. Raises RobotError."""
+        self._check_stop()
+        room = None if stroke_at is None else stroke_at - self.time
+        started, _ = self._gestures.start(name, lambda: self.pose, aim, room)
+        self._emit("gesture", name=name)
+        return started
+
+    def lead(self, name: str, aim: Point | None = None) -> float:
+        """See btlang.robots.capabilities.Gesturing. Raises RobotError."""
+        return self._gestures.lead(name, lambda: self.pose, aim)
+
     def grasp(self, hand: Hand, name: str | None = None) -> Operation:
         """Closes a hand; where it closes on another object than the named one, it opens again and fails.
 
@@ -570,12 +588,26 @@ class RosRobot:
         self._calls.publish(String(data=text))
         self._emit("call", text=text)
 
-    def say(self, text: str) -> None:
-        """Starts to speak. Raises RobotError where nobody listens."""
+    def say(self, text: str, after: float = 0.0) -> None:
+        """Starts to speak after so many seconds. Raises RobotError where nobody listens."""
         if not self._latch.refuses:
-            self._voice.say(text)
+            self._voice.say(text, after)
             self._last_said = text
             self._emit("say", text=text)
+
+    def utterance(self, text: str) -> Utterance:
+        """What it would say. Raises RobotError."""
+        return self._voice.utterance(text)
+
+    @property
+    def said(self) -> Utterance | None:
+        """What it says, or said last."""
+        return self._voice.said
+
+    @property
+    def said_at(self) -> float:
+        """The second of `time` at which that begins, as far as it's known yet."""
+        return self.time - self._voice.position
 
     @property
     def speaking(self) -> bool:

@@ -12,6 +12,11 @@ from std_msgs.msg import Bool, String
 from btlang.robots.robot import RobotError
 from btlang.ros.awake import AWAKE
 from btlang.ros.subscription_cache import SubscriptionCache
+from btlang.speech.engine import SpeechError
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.speech.engine import SpeechEngine, Utterance
 
 SPEECH, SPEAKING, PRINT = "speech", "speaking", "print"
 _BEGINS = 0.5  # seconds of real time that it gets to begin
@@ -20,28 +25,51 @@ _LATEST = 5.0  # how many times as long as expected it may speak
 
 
 class RosSpeech:
-    """Times are those of the mission. Where nothing tells of its speaking, it takes as long as the text is long."""
+    """Times are those of the mission; words have those of the engine, from the moment at which the topic says that it
+    speaks. Where nothing tells of its speaking, it takes as long as the engine says.
+    """
 
-    def __init__(self, node: Node, subscriptions: SubscriptionCache) -> None:
-        self._subscriptions = subscriptions
+    def __init__(self, node: Node, subscriptions: SubscriptionCache, engine: SpeechEngine) -> None:
+        self._subscriptions, self._engine = subscriptions, engine
+        self.said: Utterance | None = None
+        """What it says, or said last."""
         self._speech = node.create_publisher(String, SPEECH, 10)
         self._print = node.create_publisher(String, PRINT, 10)
         self._made, self._risky = time.monotonic(), False
-        self._expected = 0.0
-        self._age = self._since = 0.0
+        self._age = self._since = self._began = 0.0
+        self._waiting = ""  # what it is to say when `_age` is 0
         self._asked = self._heard = self._told = False
         subscriptions.listen(SPEAKING, Bool, "speech status", qos="state")
 
-    def say(self, text: str) -> None:
-        """Starts to speak. Raises RobotError where nobody listens."""
+    def utterance(self, text: str) -> Utterance:
+        """The text as it would be said. Raises RobotError where the engine can't."""
+        try:
+            return self._engine.speak(text)
+        except SpeechError as problem:
+            raise RobotError(str(problem)) from None
+
+    @property
+    def position(self) -> float:
+        """Seconds since what it says began, negative before."""
+        return self._age - self._began
+
+    def say(self, text: str, after: float = 0.0) -> None:
+        """Starts to speak after so many seconds. Raises RobotError where nobody listens."""
         if not self._speech.get_subscription_count():
             raise RobotError(f"nobody listens to {self._speech.topic_name}")
-        self._asked, self._heard, self._age, self._since = True, False, 0.0, AWAKE.now()
-        self._expected = 0.35 + 0.06 * len(text)
-        self._publish(self._speech, text)
+        self.said = self.utterance(text)
+        self._asked, self._heard, self._age, self._began, self._since = True, False, -after, 0.0, AWAKE.now()
+        self._waiting = text
+        self._begin()
+
+    def _begin(self) -> None:
+        if self._waiting and self._age > -1e-9:
+            text, self._waiting, self._since = self._waiting, "", AWAKE.now()
+            self._publish(self._speech, text)
 
     def silence(self) -> None:
         """Ends speech at once; from any thread."""
+        self._waiting = ""
         if self._asked:
             self._asked = False
             self._speech.publish(String(data=""))
@@ -71,18 +99,24 @@ class RosSpeech:
     def step(self, dt: float) -> None:
         """`dt` seconds have passed."""
         self._age += dt
+        self._begin()
         for message in self._subscriptions.events(SPEAKING):
             if self._heard and self._told and not message.data:
                 self._asked = False
             self._told = bool(message.data)
-            self._heard = self._heard or self._told
-        if self._asked and AWAKE.now() - self._since > _BEGINS:
-            self._asked = self._told if self._subscriptions.has(SPEAKING) else self._age < self._expected
+            if self._told and self._asked and not self._heard and not self._waiting:
+                self._heard, self._began = True, max(0.0, self._age)
+        if self._asked and not self._waiting and AWAKE.now() - self._since > _BEGINS:
+            self._asked = self._told if self._subscriptions.has(SPEAKING) else self._age < self._seconds
+
+    @property
+    def _seconds(self) -> float:
+        return self.said.seconds if self.said is not None else 0.0
 
     @property
     def speaking(self) -> bool:
         """True until it has spoken. Raises RobotError where that takes far longer than the text is long."""
-        if self._asked and self._age > 2.0 + _LATEST * self._expected:
+        if self._asked and self._age > 2.0 + _LATEST * self._seconds:
             raise RobotError(
                 f"it has been speaking for {self._age:.0f} s: {self._subscriptions.shown(SPEAKING)} does not change"
             )

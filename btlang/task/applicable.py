@@ -17,7 +17,7 @@ _ROBOT: Mapping[str, Sequence[str]] = {
     "up": _UP, "down": ("json",), "status": ("json",), "report": ("since", "json"), "stop": ("reason", "json"),
     "release": ("json",), "pause": ("json",), "resume": ("json",), "step": ("json",), "say": ("json",),
     "visitor": ("json",),
-    "unit": _UP, "check": (), "show": (),
+    "unit": _UP, "check": (), "show": (), "urdf": (), "import": (),
     "backup": ("store",), "restore": ("store",), "invite": (), "revoke": (), "invited": ("json",),
 }  # fmt: skip
 _TASK: Mapping[str, Sequence[str]] = {

@@ -37,6 +37,7 @@ from btlang.task.report import report
 from btlang.task.schedule_handler import ScheduleHandler
 from btlang.task.store import Store
 from btlang.task.task import ACTIVE, FINAL, WAITING, Act, Ending, MissionText, Restart, State, Task
+from btlang.task.voice_handler import VoiceHandler
 from btlang.task.world_handler import WorldHandler
 from btlang.text.escaping import one_line
 from btlang.text.source import NOWHERE
@@ -89,7 +90,7 @@ class Handler:
             messages.Status: self._status, messages.Report: self._report, messages.Trail: self._trail,
             messages.Components: components.list, messages.ChangeComponent: components.change,
             messages.Picture: components.picture, messages.AnswerQuestion: world.answer,
-            messages.InviteVisitor: world.invite,
+            messages.InviteVisitor: world.invite, messages.Voice: VoiceHandler(session).sound,
         }  # fmt: skip
 
     def do(self, command: Command, person: str) -> Answer:

@@ -10,10 +10,10 @@ from functools import partial
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.needs import check_body, needs_of_tree
+from btlang.house_rules import HouseRules, house_rules, no_house_rules
+from btlang.robots.needs import needs_of_tree
+from btlang.robots.preflight import check_mission
 from btlang.robots.registry import runs_on
-from btlang.robots.said_gestures import check_marks
-from btlang.robots.zone_check import check_zones
 from btlang.run.world_input import WorldInput
 from btlang.session import Run, Session
 from btlang.task.component_handler import component_data
@@ -21,7 +21,6 @@ from btlang.task.emergency import EmergencyStop, latch_path
 from btlang.task.executor import Executor
 from btlang.task.feed import Feed
 from btlang.task.handler import Handler
-from btlang.task.house_rules import HouseRules, no_house_rules, read_house_rules
 from btlang.task.manager import DAY, Manager
 from btlang.task.messages import Answer, Command, as_json, read_command
 from btlang.task.missions import MissionReader
@@ -80,7 +79,9 @@ class TaskLayer:
     ) -> None:
         os.makedirs(folder, mode=0o700, exist_ok=True)
         self.reader = reader or MissionReader()
-        self.rules: HouseRules = no_house_rules() if rules is None else read_house_rules(rules, self.reader)
+        self.rules: HouseRules = no_house_rules()
+        if rules is not None:
+            self.rules = house_rules(self.reader.read(MissionText("", file=rules)))
         self.store = open_store(store or os.path.join(folder, "tasks.db"), durable)
         try:
             self.store.own()
@@ -195,10 +196,7 @@ class TaskLayer:
         mission = self.reader.read(text)
         mission.check()
         body = getattr(self.session.robot, "body", None)
-        if body is not None:
-            check_body(body, mission.tree, mission.vocabulary)
-            check_marks(self.session.world, body, mission.tree, mission.vocabulary)
-        check_zones(self.session.world, mission.tree, mission.vocabulary)
+        check_mission(self.session.world, body, mission.tree, mission.vocabulary)
         state = self.executor.robot_state
         battery = None if state is None else state.battery
         if battery is not None and battery < _EMPTY and _WHEELS & {*needs_of_tree(mission.tree, mission.vocabulary)}:

@@ -262,6 +262,15 @@ class Picture(Command):
     device: str
 
 
+class Voice(Command):
+    """What the robot says now, or said last: the answer has up to half a minute of it as WAV in base64, and how many
+    seconds of it are over. Refused if it has a speaker, or no voice that can be heard.
+    """
+
+    tag = "voice"
+    changes = False
+
+
 class ChangeComponent(Command):
     """Starts a component anew ("restart"), takes it from the robot file as that is by now ("load"), or out of the robot
     ("unload"): at once, or as soon as no running mission uses it.
@@ -296,7 +305,7 @@ COMMANDS: dict[str, type[Command]] = {
     for kind in (
         Submit, List, Show, Cancel, Kill, Interrupt, Resume, Skip, Reorder, Again, AddSchedule, RemoveSchedule,
         Schedules, Put, Delete, Library, Pause, Step, EmergencyStop, Release, Say, AnswerQuestion, InviteVisitor,
-        Down, Status, Report, Trail, Components, ChangeComponent, Picture,
+        Down, Status, Report, Trail, Components, ChangeComponent, Picture, Voice,
     )
 }  # fmt: skip
 """By their names."""

@@ -74,7 +74,7 @@ def serve(options: argparse.Namespace) -> int:
     check_robot_words(options)
     if act == "up":
         return _up(options)
-    if act in ("check", "show"):
+    if act in ("check", "show", "urdf", "import"):
         return serve_file(act, options.item[0])
     if act == "unit":
         pass_on(_unit(options))

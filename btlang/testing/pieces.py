@@ -18,7 +18,7 @@ from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.trie import longest
 
-_BEFORE_RUN = ("world", "robot", "with")
+_BEFORE_RUN = ("world", "robot", "rules", "with")
 _ANYWHERE = ("run", "fake")
 _KINDS = {"always": ALWAYS, "never": NEVER, "finally": FINALLY, "within": WITHIN, "for": FOR}
 _TOPIC = "testing"
@@ -57,7 +57,7 @@ class Pieces:
             self.fakes += self._fakes(one)
         elif one.kind == "with":
             self.setup.append(self._event(one.first, one.last))
-        elif one.kind not in ("run", "world", "robot"):
+        elif one.kind not in ("run", "world", "robot", "rules"):
             self.steps.append(self._step(one))
 
     def _step(self, one: Statement) -> Step:

@@ -14,6 +14,7 @@ from btlang.vocabulary.lexicon import Lexicon
 OPENERS = {
     "in": 'in the world "museum.toml" with the battery at 25%',
     "on": 'on the robot "guide.toml"',
+    "under": 'under the rules "house_rules.txt"',
     "with": "with the battery at 25%",
     "run": 'run "patrol.txt" for 2 minutes',
     "then": "then within 10 s the robot is charging",
@@ -28,15 +29,15 @@ OPENERS = {
 }
 """What a line may begin with, and an example of each."""
 _QUOTE = '"'
-_FILES = {("in", "world"), ("on", "robot")}
+_FILES = {("in", "world"), ("on", "robot"), ("under", "rules")}
 
 
 class Statement(Record):
     """A line without the words that say what it is. Words are given by their numbers: `first` to `last` (exclusive).
 
     `seconds` are those of `within`, `for` and `after`, and the time of `run`, the longest one if `at_most`; `file` of
-    `world`, `robot` and `run` is the path in quotes, `block` the mission below `run:`. The words from `head` on to the
-    comma before `first` are a condition.
+    `world`, `robot`, `rules` and `run` is the path in quotes, `block` the mission below `run:`. The words from `head`
+    on to the comma before `first` are a condition.
     """
 
     kind: str

@@ -19,6 +19,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import OUTSIDE, included_path, is_below, read_source
 from btlang.frontends.mission.symbols.needs import WORDS as NEEDED_WORDS
+from btlang.house_rules import house_rules
 from btlang.printer.layout import laid_out
 from btlang.record import Record
 from btlang.robots.registry import body_of
@@ -107,6 +108,7 @@ class _Reader:
         self._statements = list(statements_of(text, block.lines, vocabulary, self._problems))
         self._robot = ""
         self._robot_words: list[str] = []
+        self._world: str | None = None
 
     def test(self) -> MissionTest:
         """Raises MissionError."""
@@ -118,6 +120,8 @@ class _Reader:
             raise MissionError(self._problems)
         try:
             mission = self._mission(runs[0])
+            if rules := self._named_file("rules"):
+                mission = house_rules(self._parsed(read_source(rules, _root(self._source)))).around(mission)
         except MissionError as error:  # the other lines need its words
             told = [moved(problem, self._source) for problem in error.diagnostics]
             raise MissionError([*self._problems, *told]) from None
@@ -146,15 +150,19 @@ class _Reader:
         if self._robot:
             self._robot_words = robot_words(self._robot)
             world = world or body_of(self._robot).world or None
-        keywords = self._robot_words
+        self._world = world
         if run.file is not None:
             mission = self._given(_named(run.file), world)
             if mission is not None:
                 return mission
-            return parse_tree(read_source(self._path(run.file), _root(self._source)), keywords=keywords, world=world)
+            return self._parsed(read_source(self._path(run.file), _root(self._source)))
         if run.block is None:
             raise MissionError([_told("BT181", run.span, "it runs no mission", 'run "patrol.txt"')])
-        return parse_tree(_only(self._source, run.block), keywords=keywords, world=world)
+        return self._parsed(_only(self._source, run.block))
+
+    def _parsed(self, source: Source) -> Mission:
+        """In the words of the robot and the names of the world of the test. Raises MissionError."""
+        return parse_tree(source, keywords=self._robot_words, world=self._world)
 
     def _named_file(self, kind: str) -> str:
         """The path that the first statement of a kind names; "" where none does."""

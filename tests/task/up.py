@@ -14,13 +14,13 @@ import pytest
 
 from btlang.api import parse_tree
 from btlang.diagnostics.errors import MissionError
+from btlang.house_rules import house_rules
 from btlang.session import Session
 from btlang.task.house import read_schedules
-from btlang.task.house_rules import read_house_rules
 from btlang.task.missions import MissionReader
 from btlang.task.paths import socket_path
 from btlang.task.store import open_store
-from btlang.task.task import State
+from btlang.task.task import MissionText, State
 from tests.task.layers import robot_up, submit, wait_for, wait_until
 
 REFUSALS = ("BT186", "BT187", "BT192")
@@ -114,7 +114,7 @@ def read_week(path: str) -> str:
 def read_rules(path: str) -> str:
     """What is wrong with a file of house rules, "" for nothing."""
     try:
-        read_house_rules(path, MissionReader())
+        house_rules(MissionReader().read(MissionText("", file=path)))
     except MissionError as error:
         return str(error)
     return ""

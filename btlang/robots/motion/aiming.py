@@ -71,11 +71,11 @@ class Aiming:
         moving = [joint for joint in self._body.joints if joint.part == part and joint.link]
         first, last = moving[0], moving[-1]
         if self._looks(part):
-            begin = frames[last.link].origin
-            points: Array = frames[last.link].turned[:, :, 0]
+            begin = frames[last.link].origin.T
+            points: Array = frames[last.link].turned[:, 0].T
         else:
-            begin = frames[first.link].origin
-            points = _unit(frames[last.link].place(self._tip(last.link)) - begin)
+            begin = frames[first.link].origin.T
+            points = _unit(frames[last.link].place(self._tip(last.link)).T - begin)
         return points - _unit(np.asarray(aim) - begin)
 
     def _tip(self, link: str) -> Vector:

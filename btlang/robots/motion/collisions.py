@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import dist
+
 import numpy as np
 
 from btlang.robots.body import Body
@@ -28,35 +30,45 @@ class Collisions:
         """Two links for each row of `distances`; links that have several capsules are in several."""
         self._first = [one for _, one, _ in pairs]
         self._second = [other for *_, other in pairs]
-        radii = np.array([capsule.radius for capsule in body.capsules])
-        self._radii = radii[self._first] + radii[self._second] if pairs else np.zeros(0)
+        sizes = [(capsule.radius, dist(capsule.start, capsule.end) / 2) for capsule in body.capsules]
+        self._radii = [sizes[one][0] + sizes[other][0] for _, one, other in pairs]
+        self._reach = [sum(sizes[one]) + sum(sizes[other]) for _, one, other in pairs]
 
-    def distances(self, configurations: Array) -> Array:
-        """Metres between two capsules, a row for each of `pairs`, a column for each configuration; below 0 inside."""
+    def distances(self, configurations: Array, within: float = np.inf) -> Array:
+        """Metres between two capsules, a row for each of `pairs`, a column for each configuration; below 0 inside.
+
+        What is further than `within` may be inf.
+        """
+        found = np.full((len(self.pairs), len(configurations)), np.inf)
         if not self.pairs:
-            return np.zeros((0, len(configurations)))
+            return found
         frames = self._kinematics.frames(configurations)
         starts = np.stack([frames[capsule.link].place(capsule.start) for capsule in self._capsules])
-        ends = np.stack([frames[capsule.link].place(capsule.end) for capsule in self._capsules])
-        one, other = self._first, self._second
-        return segment_distances(starts[one], ends[one], starts[other], ends[other]) - self._radii[:, None]
+        ways = np.stack([frames[capsule.link].place(capsule.end) for capsule in self._capsules]) - starts
+        middles = starts + ways / 2
+        for row, (one, other) in enumerate(zip(self._first, self._second, strict=True)):
+            apart = middles[one] - middles[other]
+            near = np.flatnonzero(_dot(apart, apart) <= (within + self._reach[row]) ** 2)
+            if len(near):
+                segments = (points[:, near] for points in (starts[one], ways[one], starts[other], ways[other]))
+                found[row, near] = segment_distances(*segments) - self._radii[row]
+        return found
 
 
-def segment_distances(start: Array, end: Array, other_start: Array, other_end: Array) -> Array:
-    """Metres between two line segments, for arrays of points whose last axis is x, y, z."""
-    along, other, between = end - start, other_end - other_start, start - other_start
+def segment_distances(start: Array, along: Array, other_start: Array, other: Array) -> Array:
+    """Metres between two line segments from a start along a way, for arrays of points whose first axis is x, y, z."""
+    between = start - other_start
     a, e = _dot(along, along), _dot(other, other)
     b, c, f = _dot(along, other), _dot(along, between), _dot(other, between)
     slant = a * e - b * b
     s = np.where(slant > _TINY, np.clip((b * f - c * e) / np.maximum(slant, _TINY), 0.0, 1.0), 0.0)
-    t = np.where(e > _TINY, (b * s + f) / np.maximum(e, _TINY), 0.0)
-    t = np.clip(t, 0.0, 1.0)
+    t = np.where(e > _TINY, np.clip((b * s + f) / np.maximum(e, _TINY), 0.0, 1.0), 0.0)
     s = np.where(a > _TINY, np.clip((b * t - c) / np.maximum(a, _TINY), 0.0, 1.0), 0.0)
-    apart = between + along * s[..., None] - other * t[..., None]
+    apart = between + along * s - other * t
     found: Array = np.sqrt(_dot(apart, apart))
     return found
 
 
 def _dot(one: Array, other: Array) -> Array:
-    found: Array = np.einsum("...k,...k->...", one, other)
+    found: Array = one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
     return found

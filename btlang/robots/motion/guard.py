@@ -14,6 +14,7 @@ from btlang.robots.motion.kinematics import Array, Kinematics
 _MARGIN = 0.01  # metres that are kept between links: more than they can get nearer between two looks
 _EACH = 2  # samples between two looks at the way
 _BRAKING = 0.04  # seconds between two looks at the way to rest
+_AT_ONCE = 1024  # configurations, whose arrays fit into the cache of a processor
 _ROUNDING = 1e-6
 _JERK = 1.02  # of the limit, for differences of sampled accelerations
 
@@ -56,15 +57,17 @@ class Guard:
             return ""
         looks = sorted({*range(0, len(way.position), _EACH), len(way.position) - 1})
         seen = State(*(getattr(way, name)[looks] for name in State.fields))
-        now = self._collisions.distances(self._braking(seen, slice(0, 1)))
+        now = self._collisions.distances(self._braking(seen, slice(0, 1)), _MARGIN)
         allowed = np.minimum(_MARGIN, now.min(axis=1)) - _ROUNDING
         moving = (np.abs(seen.velocity).max(axis=1) > 0.0) | (np.abs(seen.acceleration).max(axis=1) > 0.0)
-        found = self._collisions.distances(np.concatenate([seen.position, self._braking(seen, moving)]))
-        short = (found - allowed[:, None]).min(axis=1)
-        if short.min() >= 0.0:
-            return ""
-        first, second = self._collisions.pairs[int(np.argmin(short))]
-        return f"the {first or BASE} would touch the {second or BASE}"
+        looked = np.concatenate([seen.position, self._braking(seen, moving)])
+        for begin in range(0, len(looked), _AT_ONCE):
+            found = self._collisions.distances(looked[begin : begin + _AT_ONCE], _MARGIN)
+            short = (found - allowed[:, None]).min(axis=1)
+            if short.min() < 0.0:
+                first, second = self._collisions.pairs[int(np.argmin(short))]
+                return f"the {first or BASE} would touch the {second or BASE}"
+        return ""
 
     def _braking(self, way: State, rows: slice | Array) -> Array:
         """Where the body is on its way to rest from these samples."""

@@ -14,14 +14,16 @@ Array = npt.NDArray[np.float64]
 
 
 class Frames(Record):
-    """Of one link in n configurations: n rotation matrices, and its origin n times, in the frame of the base."""
+    """Of one link in n configurations, in the frame of the base: `turned[:, :, k]` are rotation matrices, and
+    `origin[:, k]` its origins.
+    """
 
     turned: Array
     origin: Array
 
-    def place(self, point: Vector | Array) -> Array:
-        """A point of the link, n times."""
-        placed: Array = self.turned @ np.asarray(point, dtype=np.float64) + self.origin
+    def place(self, point: Vector) -> Array:
+        """A point of the link, three rows of n."""
+        placed: Array = np.matmul(np.array(point, dtype=np.float64), self.turned) + self.origin
         return placed
 
 
@@ -34,21 +36,21 @@ class Kinematics:
         for index, joint in _parents_first(by_link):
             x, y, z = joint.axis
             cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-            self._joints.append((index, joint, cross, cross @ cross))
+            self._joints.append((index, joint, cross.T, (cross @ cross).T))
 
     def frames(self, configurations: Array) -> Mapping[str, Frames]:
         """The links by name, the base as "", for an array of n times all joints."""
         n = len(configurations)
-        found = {"": Frames(np.broadcast_to(np.eye(3), (n, 3, 3)), np.zeros((n, 3)))}
+        found = {"": Frames(np.repeat(np.eye(3)[:, :, None], n, axis=2), np.zeros((3, n)))}
         for index, joint, cross, squared in self._joints:
             parent, moved = found[joint.parent], configurations[:, index] * joint.si
-            origin = parent.place(joint.at)
+            turned, origin = parent.turned, parent.place(joint.at)
             if joint.slides:
-                origin = origin + (parent.turned @ np.array(joint.axis)) * moved[:, None]
-                found[joint.link] = Frames(parent.turned, origin)
-                continue
-            sine, rest = np.sin(moved)[:, None, None], (1.0 - np.cos(moved))[:, None, None]
-            found[joint.link] = Frames(parent.turned @ (np.eye(3) + sine * cross + rest * squared), origin)
+                origin = origin + np.matmul(np.array(joint.axis), turned) * moved
+            else:
+                turned = turned + np.sin(moved) * np.matmul(cross, turned)
+                turned += (1.0 - np.cos(moved)) * np.matmul(squared, parent.turned)
+            found[joint.link] = Frames(turned, origin)
         return found
 
 

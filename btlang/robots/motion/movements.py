@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
 
 from btlang.record import Record
-from btlang.robots.gesture import Gesture, angle_of
+from btlang.robots.gesture import Gesture
 from btlang.robots.motion.course import Limits, Piece, State, to_state
 from btlang.robots.motion.key_frames import Frames, curve
 from btlang.robots.motion.kinematics import Array
@@ -80,31 +80,17 @@ def resting(position: Array) -> State:
     return State(position, np.zeros_like(position), np.zeros_like(position))
 
 
-def frames_of(
-    gesture: Gesture, names: Sequence[str], settled: Array, bearing: float, aimed: Mapping[str, float]
-) -> Frames:
-    """The key frames as positions of the joints of these `names`, which would come to rest `settled`.
-
-    `aimed` are angles for the frames at the stroke.
-    """
+def frames_of(gesture: Gesture, names: Sequence[str], settled: Array) -> Frames:
+    """The key frames as positions of the joints of these `names`, which would come to rest `settled`."""
     times: list[float] = []
     rows: list[Array] = []
-    at, row = stroke_frame(gesture), settled.copy()
-    for index, frame in enumerate(gesture.frames):
-        found = {name: angle_of(value, bearing) for name, value in frame.joints.items()}
-        found |= aimed if index == at else {}
+    row = settled
+    for frame in gesture.frames:
         row = row.copy()
-        row[[names.index(name) for name in found]] = list(found.values())
+        row[[names.index(name) for name in frame.joints]] = [float(value) for value in frame.joints.values()]
         times.append(frame.at)
         rows.append(row)
         if frame.hold > 0.0:
             times.append(frame.at + frame.hold)
             rows.append(row)
     return Frames(np.array(times), np.array(rows))
-
-
-def stroke_frame(gesture: Gesture) -> int:
-    """The number of the key frame that the stroke is in, or that is nearest to it."""
-    stroke = gesture.stroke
-    apart = [max(frame.at - stroke, stroke - frame.at - frame.hold, 0.0) for frame in gesture.frames]
-    return apart.index(min(apart))

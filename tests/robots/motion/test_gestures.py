@@ -72,7 +72,7 @@ def test_an_arm_points_at_what_is_there(aim: tuple[float, float]) -> None:
     moved.gesture("point", aim=aim)
     moved.step(1.0)
     frames = Kinematics(guide()).frames(np.array([[moved.joint(joint.name) for joint in guide().joints]]))
-    shoulder, tip = frames["right shoulder"].origin[0], frames["right hand"].place((0, 0, -0.14))[0]
+    shoulder, tip = frames["right shoulder"].origin[:, 0], frames["right hand"].place((0, 0, -0.14))[:, 0]
     wanted = np.array([*aim, 1.0]) - shoulder
     turned = np.dot(tip - shoulder, wanted) / np.linalg.norm(tip - shoulder) / np.linalg.norm(wanted)
     assert np.degrees(np.arccos(min(1.0, turned))) < 1.5

@@ -13,6 +13,7 @@ import { LogView } from "./log";
 import { MapView } from "./map";
 import { Parts } from "./parts";
 import { Question } from "./question";
+import { Voice } from "./voice";
 
 const MOST_RUNNING = 12; // that are listed
 const RESTING = 2; // nodes of the tree of a robot that has nothing to do
@@ -40,6 +41,7 @@ class Watch implements View {
   private log = new LogView();
   private visitor = h("button", { type: "button", class: "visitor", hidden: true, onclick: () => void this.act("visitor", {}) }, t("visitor"));
   private question: Question;
+  private voice: Voice;
   private parts: Parts;
   private failure: Failure;
   private queue: Queue;
@@ -50,6 +52,7 @@ class Watch implements View {
   constructor(private context: Context) {
     this.robot = context.fleet.get(context.robot);
     this.question = new Question(context);
+    this.voice = new Voice(context);
     this.parts = new Parts(context);
     this.failure = new Failure(context, (path) => this.select(path));
     this.queue = new Queue(context, () => this.refresh());
@@ -62,7 +65,7 @@ class Watch implements View {
       h(
         "div",
         { class: "side" },
-        h("div", { class: "card place" }, this.map.canvas, this.visitor, this.says, this.question.element),
+        h("div", { class: "card place" }, this.map.canvas, this.visitor, this.says, this.voice.element, this.question.element),
         operates && h("details", { class: "card" }, h("summary", {}, t("submit.title")), submitForm(context)),
         this.parts.element,
         h("div", { class: "card events" }, h("h2", {}, t("log")), this.log.element),
@@ -71,7 +74,10 @@ class Watch implements View {
     this.unwatch = context.fleet.watch((robot, kind, news) => {
       if (robot !== this.robot) return;
       if (kind === "statuses" && news?.["run"] === this.run?.id) this.tree.setStatuses(news!["changes"]);
-      if (kind === "event") this.failure.note(news!["task"], news!["event"]);
+      if (kind === "event") {
+        this.failure.note(news!["task"], news!["event"]);
+        this.voice.note(news!["event"]);
+      }
       if (kind === "run" && news!["task"]) this.failure.clear();
       this.refresh();
     });
@@ -83,6 +89,7 @@ class Watch implements View {
     this.queue.close();
     this.map.close();
     this.parts.close();
+    this.voice.close();
     this.tree.close();
   }
 

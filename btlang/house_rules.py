@@ -5,8 +5,6 @@ from __future__ import annotations
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.task.missions import MissionReader
-from btlang.task.task import MissionText
 from btlang.text.source import NOWHERE
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree
@@ -19,7 +17,7 @@ _EXAMPLE = "whenever the battery is below 20%, go to the dock then charge to 80%
 
 
 class HouseRules:
-    """The rules of a robot, the first one the most important. Made by `read_house_rules` or `no_house_rules`."""
+    """The rules of a robot, the first one the most important. Made by `house_rules` or `no_house_rules`."""
 
     def __init__(self, mission: Mission | None) -> None:
         self._mission = mission
@@ -63,9 +61,8 @@ def no_house_rules() -> HouseRules:
     return HouseRules(None)
 
 
-def read_house_rules(path: str, reader: MissionReader) -> HouseRules:
-    """Raises MissionError: as a mission in a file does, and if there is anything but rules in it (BT188)."""
-    mission = reader.read(MissionText("", file=path))
+def house_rules(mission: Mission) -> HouseRules:
+    """Those in a mission. Raises MissionError (BT188) if there is anything but rules in it."""
     node = mission.tree.root
     while _is_rule(node):
         node = node.children[2]

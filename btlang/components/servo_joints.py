@@ -1,0 +1,139 @@
+"""Smooth joints over servos: what is planned is written to them a hundred times a second, beside the tick."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+
+from btlang.devices.device_set import Reads, reader
+from btlang.devices.driver import DeviceError
+from btlang.devices.kinds import JointState, JointTarget
+from btlang.devices.loop import DeviceLoop
+from btlang.robots.body import Body
+from btlang.robots.gesture import Gesture
+from btlang.robots.joints import joint_of
+from btlang.robots.motion.course import PERIOD
+from btlang.robots.motion.smooth_joints import SmoothJoints
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.robots.capabilities import Operation
+
+_LATE = 3 * PERIOD
+"""Seconds that one turn of the loop counts at most: after a pause the joints go on from where they are."""
+
+
+class ServoJoints:
+    """See btlang.robots.parts.JointsPart: a servo for each joint, of the same name.
+
+    A thread writes to real servos while anything moves. Should it hang, the loop of their devices brings them to rest.
+    Simulated ones are told in `step`.
+    """
+
+    def __init__(self, body: Body, devices: Mapping[str, Reads]) -> None:
+        self._body, self._devices = body, devices
+        self._smooth = SmoothJoints(body)
+        self._is_real = any(isinstance(devices.get(joint.name), DeviceLoop) for joint in body.joints)
+        self._told: frozenset[str] = frozenset()
+        self._lets_go = False
+        self._thread: threading.Thread | None = None
+
+    @property
+    def moving(self) -> bool:
+        """True while any joint is on its way, as far as that is known."""
+        try:
+            return self._smooth.moving or not all(map(self._reached, self._told))
+        except DeviceError:
+            return False
+
+    def angle(self, name: str) -> float:
+        """As its servo measures it. Raises RobotError for an unknown joint, and DeviceSilent."""
+        reading = reader(self._devices, joint_of(self._body, name).name, name).read(name)
+        assert isinstance(reading, JointState)
+        return reading.position
+
+    def move(self, targets: Mapping[str, float]) -> None:
+        """See SmoothJoints."""
+        self._begin(targets)
+        self._smooth.move(targets)
+        self._go_on()
+
+    def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[Operation, float]:
+        """See SmoothJoints."""
+        steps = [frame.joints for frame in wanted.frames] if isinstance(wanted, Gesture) else wanted
+        self._begin({name for step in steps for name in step})
+        made = self._smooth.play(wanted, room)
+        self._go_on()
+        return made
+
+    def lead(self, wanted: Gesture | Sequence[Mapping[str, float]]) -> float:
+        """See SmoothJoints."""
+        return self._smooth.lead(wanted)
+
+    def at_target(self, names: tuple[str, ...]) -> bool:
+        """True when none of them is on its way. Raises DeviceSilent."""
+        return self._smooth.at_target(names) and all(self._reached(name) for name in names if name in self._told)
+
+    def freeze(self, names: tuple[str, ...] | None = None) -> None:
+        """They come to rest, and stay there; None: all of them, which takes no lock."""
+        self._smooth.freeze(names)
+        self._lets_go = self._lets_go or names is None
+
+    def step(self, dt: float) -> None:
+        """Tells them again; what has arrived holds its place by itself."""
+        if not self._smooth.moving:
+            self._write()
+            return
+        for name in self._told:
+            if (silent := self._devices[name].silent(name)) is not None:
+                self._smooth.timeline.halt(f"the {name} is silent: {silent}")
+        if self._is_real:
+            self._go_on()
+        else:
+            self._smooth.step(dt)
+            self._write()
+
+    def _begin(self, names: Iterable[str]) -> None:
+        """Raises DeviceSilent where one of them is. From rest, they begin where their servos are."""
+        wanted = frozenset(names)
+        for name in wanted:
+            self.angle(name)
+        if not self._smooth.moving:
+            self._smooth.timeline.put(np.array([self._measured(joint.name) for joint in self._body.joints]))
+        self._lets_go = False
+        self._told |= wanted
+
+    def _measured(self, name: str) -> float:
+        try:
+            return self.angle(name)
+        except DeviceError:
+            return self._smooth.angle(name)
+
+    def _go_on(self) -> None:
+        if self._is_real and (self._thread is None or not self._thread.is_alive()):
+            self._thread = threading.Thread(target=self._work, name="btlang body", daemon=True)
+            self._thread.start()
+
+    def _work(self) -> None:
+        before = due = time.monotonic()
+        while self._smooth.moving:
+            due = max(due + PERIOD, before)
+            time.sleep(max(0.0, due - time.monotonic()))
+            now = time.monotonic()
+            self._smooth.step(min(now - before, _LATE))
+            before = now
+            self._write()
+
+    def _write(self) -> None:
+        at, let_go = self._smooth.angles, self._lets_go and not self._smooth.moving
+        for name in self._told:
+            target = JointTarget() if let_go else JointTarget(at[name], joint_of(self._body, name).speed)
+            self._devices[name].write(name, target)
+        if let_go:
+            self._told, self._lets_go = frozenset(), False
+
+    def _reached(self, name: str) -> bool:
+        return abs(self.angle(name) - self._smooth.angle(name)) <= joint_of(self._body, name).close_enough
