@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from btlang.robots.body import Ears
-from btlang.robots.modules import module_of
+from btlang.robots.modules import class_of
 from btlang.speech.recogniser import RecogniserError, RecogniserSettings
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
-
     from btlang.robots.body import Body
     from btlang.speech.recogniser import Recogniser
     from btlang.text.toml_table import Table
@@ -44,18 +42,9 @@ def recogniser_of(body: Body) -> Recogniser:
         from btlang.speech.pocketsphinx import PocketSphinx
 
         return PocketSphinx(body.ears.settings)
-    recogniser: Recogniser = _class_of(body.ears.engine, body.folder)(body.ears.settings)
-    return recogniser
-
-
-def _class_of(place: str, folder: str) -> Any:
-    from importlib.metadata import entry_points
-
-    named = entry_points(group=ENTRY_POINTS, name=place)
-    module, colon, name = (next(iter(named)).value.replace(" ", "") if named else place).partition(":")
-    if not colon:
-        raise RecogniserError(f'no package has a recogniser "{place}"; or write its place, such as "my_ears:Ears"')
     try:
-        return getattr(module_of(module, folder), name)
-    except Exception as problem:  # whatever somebody's module raises
-        raise RecogniserError(f"{place} can't be loaded: {type(problem).__name__}: {problem}") from problem
+        make = class_of(body.ears.engine, ENTRY_POINTS, body.folder)
+    except ValueError as problem:
+        raise RecogniserError(str(problem)) from problem
+    recogniser: Recogniser = make(body.ears.settings)
+    return recogniser

@@ -48,7 +48,7 @@ class Surroundings(Knowledge):
         """A run begins: zones are as the world says, and chance follows from the seed."""
         self.zones.begin()
         self.people.begin(seed)
-        self.ears.asking = self.ears.answer = ""
+        self.ears.begin()
 
     def step(self, now: float, dt: float, pose: Pose, velocity: float) -> None:
         """People live on for `dt` seconds until `now`, and the robot looks around."""

@@ -36,7 +36,7 @@ class RosEars:
 
     def begin(self) -> None:
         """A run begins: nobody is asked anything."""
-        self.ears.asking = self.ears.answer = ""
+        self.ears.begin()
         self.step(0.0)
 
     def hear(self, text: str, who: str, now: float) -> None:

@@ -24,10 +24,10 @@ _WINDOW, _RATIO = 0.3, 0.9  # of the endpointer: seconds, and their part without
 _LONGEST = 10.0  # seconds of a sentence: what is longer is none, or the hall is loud
 _BASE = math.log(1.0001)  # of the scores of a decoder
 _VARIANT = re.compile(r"\(\d+\)$")
-_SAME_PHONES, _SCORE, _CONSTANT = 15.8, 0.057, -2.77
+_SAME_PHONES, _SCORE, _CONSTANT = 15.5, 0.11, -1.7
 """Of a logistic regression over the training samples of tests/speech/ears: see tests/speech/ears/tuning.py."""
-_SURE = {False: 1.5, True: -3.0}
-_UNSURE = {False: 0.0, True: -5.0}
+_SURE = {False: -0.5, True: -3.0}
+_UNSURE = {False: -1.5, True: -6.0}
 """From which on a sentence is sure, and worth a question; by whether whoever speaks is known to speak to the robot."""
 
 
@@ -118,7 +118,7 @@ class PocketSphinx:
             phone for each in said for phone in self._known.get(each.word, "").split() or self._phones_of(each.word)
         ]
         heard = [phone for phone in phones.hypstr.split() if phone != "SIL" and phone[0].isalpha()]
-        score = (math.log(sentence.score) - math.log(phones.score)) / _BASE / frames
+        score: float = (math.log(sentence.score) - math.log(phones.score)) / _BASE / frames
         return _SAME_PHONES * _likeness(wanted, heard) + _SCORE * score + _CONSTANT
 
     def _sentence(self) -> Understood | None:
