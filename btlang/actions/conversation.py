@@ -13,6 +13,7 @@ from btlang.actions.speech import say
 from btlang.actions.strokes import Presenting
 from btlang.actions.watch import Watch
 from btlang.engine.leaves.leaf import ActionFailed, Failed
+from btlang.robots.body import Body
 from btlang.robots.capabilities import Conversing, Listening
 from btlang.robots.world import said
 from btlang.speech.grammar import plain
@@ -37,17 +38,19 @@ def ask(robot: Questioning, question: str, person: str | None = None, kept: dict
     if person is not None:
         robot.locate(person)  # nobody is asked whom the robot hasn't seen
     yield from say(robot, question, kept)
-    yield from _listened(robot, without_marks(question), person, lambda text: True, answers(robot, robot.ears.choices))
+    yield from _listened(
+        robot, without_marks(question), person, lambda text: True, answers(robot.ears.choices, robot.body)
+    )
 
 
 def listen_for_yes_or_no(robot: Listening) -> Steps:
     """Waits until somebody says yes or no. Fails after a minute."""
-    yield from _listened(robot, "", None, lambda text: meaning_of(text) in _MEANINGS, answers(robot, _MEANINGS))
+    yield from _listened(robot, "", None, lambda text: meaning_of(text) in _MEANINGS, answers(_MEANINGS, robot.body))
 
 
 def listen_for(robot: Listening, text: str) -> Steps:
     """Waits until somebody says these words, maybe among others. Fails after a minute."""
-    yield from _listened(robot, "", None, lambda heard: holds(heard, text), answers(robot, (text,)))
+    yield from _listened(robot, "", None, lambda heard: holds(heard, text), answers((text,), robot.body))
 
 
 def answer_is(robot: Listening, text: str) -> bool | Failed:
@@ -76,12 +79,12 @@ def somebody_says(robot: Listening, text: str) -> bool:
     return any(holds(heard.text, text) for heard in robot.ears.news(text, robot.time))
 
 
-def answers(robot: Listening, texts: Iterable[str]) -> Expected:
+def answers(texts: Iterable[str], body: Body) -> Expected:
     """What is listened for as one of these answers: the words, politely or not, and all that means yes or no for these.
 
     Without any, whatever is said.
     """
-    language = robot.body.ears.settings.language.partition("-")[0] if robot.body.ears is not None else ""
+    language = body.ears.settings.language.partition("-")[0] if body.ears is not None else ""
     phrases: dict[str, None] = {}
     for text in texts:
         meaning = meaning_of(text)

@@ -73,7 +73,7 @@ class Hearing:
         if self._doubtful and now > self._asked_until:
             self._doubtful = ""
         asking = bool(self._doubtful or self._ears.asking)
-        wanted = answers(self._robot, ("yes", "no")) if self._doubtful else self._ears.expected(now)
+        wanted = answers(("yes", "no"), self._robot.body) if self._doubtful else self._ears.expected(now)
         expected = self._attention.expected(wanted, asking, now)
         if expected != self._expected:
             self._expected = expected
