@@ -20,20 +20,19 @@ class Attention:
     def expected(self, wanted: Expected, answering: bool, now: float) -> Expected:
         """What to listen for. No wake word is needed for `answering`, when the robot has asked."""
         if self._push:
-            return wanted.replace(addressed=True)  # type: ignore[no-any-return]
+            return wanted.replace(mode="addressed")  # type: ignore[no-any-return]
         if not self._wake or not wanted:
             return wanted
         if answering or now < self._until:
-            return wanted.replace(addressed=True)  # type: ignore[no-any-return]
+            return wanted.replace(mode="addressed")  # type: ignore[no-any-return]
         phrases = tuple(f"{self._wake} {phrase}" for phrase in wanted.phrases)
-        return Expected((self._wake, *phrases), wanted.names)
+        return Expected((self._wake, *phrases), wanted.names, mode="wake")
 
     def meant(self, understood: Understood, now: float) -> Understood | None:
         """What was said to the robot, without the wake word; None where that is all. It is awake from then on."""
-        text = understood.text
-        if not self._wake or not f"{text} ".lower().startswith(f"{self._wake} "):
+        if not self._wake or not f"{spoken(understood.text)} ".startswith(f"{self._wake} "):
             return understood
-        rest = text[len(self._wake) :].strip()
+        rest = " ".join(understood.text.split()[len(self._wake.split()) :])
         if rest:
             return understood.replace(text=rest)  # type: ignore[no-any-return]
         if understood.sure:

@@ -20,15 +20,15 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_WINDOW, _RATIO = 0.3, 0.9  # of the endpointer: seconds, and their part without speech that ends a sentence
+_WINDOW, _RATIO = 0.24, 0.9  # of the endpointer: seconds, and their part without speech that ends a sentence
 _LONGEST = 10.0  # seconds of a sentence: what is longer is none, or the hall is loud
 _BASE = math.log(1.0001)  # of the scores of a decoder
 _VARIANT = re.compile(r"\(\d+\)$")
 _SAME_PHONES, _SCORE, _CONSTANT = 15.5, 0.11, -1.7
 """Of a logistic regression over the training samples of tests/speech/ears: see tests/speech/ears/tuning.py."""
-_SURE = {False: -0.5, True: -3.0}
-_UNSURE = {False: -1.5, True: -6.0}
-"""From which on a sentence is sure, and worth a question; by whether whoever speaks is known to speak to the robot."""
+_SURE = {"open": 1.0, "wake": -0.5, "addressed": -6.0}
+_UNSURE = {"open": -0.5, "wake": -1.7, "addressed": -9.0}
+"""From which confidence on a sentence is sure, and worth a question, by the mode of what is expected."""
 
 
 class PocketSphinx:
@@ -43,7 +43,7 @@ class PocketSphinx:
         from pocketsphinx import Decoder, get_model_path
 
         phones = f"{get_model_path()}/en-us/en-us-phone.lm.bin"
-        self._sentences = Decoder(lm=None, loglevel="FATAL", bestpath=False)
+        self._sentences = Decoder(lm=None, loglevel="FATAL", bestpath=False, beam=1e-80, pbeam=1e-80, wbeam=1e-60)
         self._phones = Decoder(lm=None, loglevel="FATAL", allphone=phones, lw=2.0, beam=1e-20, pbeam=1e-20)
         self._words: Any = None
         self._push, self._endpointer = settings.push, self._new_endpointer()
@@ -125,10 +125,10 @@ class PocketSphinx:
         text = _text(self._sentences)
         if not self._grammar.holds(text):  # half a sentence
             return None
-        confidence, addressed = self.confidence, self._expected.addressed
-        if confidence < _UNSURE[addressed]:
+        confidence, mode = self.confidence, self._expected.mode
+        if confidence < _UNSURE[mode]:
             return None
-        return Understood(self._grammar.written(text), confidence >= _SURE[addressed])
+        return Understood(self._grammar.written(text), confidence >= _SURE[mode])
 
     def _phones_of(self, word: str) -> list[str]:
         return (self._sentences.lookup_word(word) or "").split()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Literal
 
 from btlang.record import Record
 
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
             """What was heard so far belongs to nothing that follows."""
 
 
+Mode = Literal["open", "wake", "addressed"]
 RATE = 16_000
 """Samples a second of what a recogniser hears."""
 
@@ -47,13 +49,14 @@ class RecogniserSettings(Record):
 class Expected(Record):
     """What is listened for: `phrases` and their `names` as in btlang.speech.grammar, and with `anything` all else too.
 
-    `addressed`: whoever speaks is known to speak to the robot, so that little else than this is said.
+    In the `mode` "open" anybody may say anything, in "wake" all phrases begin with the wake word, and in "addressed"
+    whoever speaks is known to speak to the robot.
     """
 
     phrases: tuple[str, ...] = ()
     names: Mapping[str, tuple[str, ...]] = {}
     anything: bool = False
-    addressed: bool = False
+    mode: Mode = "open"
 
     def __bool__(self) -> bool:
         return bool(self.phrases) or self.anything
@@ -61,7 +64,7 @@ class Expected(Record):
     def __or__(self, other: Expected) -> Expected:
         """Both."""
         phrases, names = tuple(dict.fromkeys(self.phrases + other.phrases)), {**self.names, **other.names}
-        return Expected(phrases, names, self.anything or other.anything, self.addressed)
+        return Expected(phrases, names, self.anything or other.anything, self.mode)
 
 
 class Understood(Record):

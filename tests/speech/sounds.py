@@ -38,11 +38,11 @@ def lines(name: str) -> list[str]:
     return [line for line in text.splitlines() if line and not line.startswith("#")]
 
 
-def guide(addressed: bool = False) -> Expected:
+def guide() -> Expected:
     """What a guide listens for, yes and no apart."""
     pairs = (line.split(":") for line in lines("names.txt"))
     names = {kind.strip(): tuple(name.strip() for name in listed.split(",")) for kind, listed in pairs}
-    return Expected(tuple(lines("guide.txt")), names, addressed=addressed)
+    return Expected(tuple(lines("guide.txt")), names)
 
 
 @lru_cache(maxsize=4096)
