@@ -18,7 +18,7 @@ from btlang.engine.saving import SaveError
 from btlang.engine.timing import Stopwatch
 from btlang.robots.proxy import RobotProxy
 from btlang.robots.registry import connector
-from btlang.robots.spoken import choices
+from btlang.robots.spoken import SpokenCommands, choices
 from btlang.robots.world import Place
 from btlang.robots.world_problem import read_world
 from btlang.run.bus import Bus
@@ -363,6 +363,7 @@ class Run:
         body: Body | None = getattr(connection.robot, "body", None)
         if body is not None and body.ears is not None:
             connection.robot.ears.choices = choices(mission.tree, mission.vocabulary)
+            connection.robot.ears.commands = SpokenCommands(mission.vocabulary, body)
         for sink in sinks:
             self.bus.add(sink)
         connection.begin(self.bus)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 WAITS = 60.0
 """Seconds of the mission in which somebody has to answer."""
-_MEANINGS = ("yes", "no")
+MEANINGS = ("yes", "no")
 
 
 class Questioning(Conversing, Presenting, Protocol):
@@ -38,19 +38,18 @@ def ask(robot: Questioning, question: str, person: str | None = None, kept: dict
     if person is not None:
         robot.locate(person)  # nobody is asked whom the robot hasn't seen
     yield from say(robot, question, kept)
-    yield from _listened(
-        robot, without_marks(question), person, lambda text: True, answers(robot.ears.choices, robot.body)
-    )
+    expected = answers(robot.ears.choices, robot.body)
+    yield from listened(robot, without_marks(question), lambda text: True, expected, person)
 
 
 def listen_for_yes_or_no(robot: Listening) -> Steps:
     """Waits until somebody says yes or no. Fails after a minute."""
-    yield from _listened(robot, "", None, lambda text: meaning_of(text) in _MEANINGS, answers(_MEANINGS, robot.body))
+    yield from listened(robot, "", lambda text: meaning_of(text) in MEANINGS, answers(MEANINGS, robot.body))
 
 
 def listen_for(robot: Listening, text: str) -> Steps:
     """Waits until somebody says these words, maybe among others. Fails after a minute."""
-    yield from _listened(robot, "", None, lambda heard: holds(heard, text), answers((text,), robot.body))
+    yield from listened(robot, "", lambda heard: holds(heard, text), answers((text,), robot.body))
 
 
 def answer_is(robot: Listening, text: str) -> bool | Failed:
@@ -88,7 +87,7 @@ def answers(texts: Iterable[str], body: Body) -> Expected:
     phrases: dict[str, None] = {}
     for text in texts:
         meaning = meaning_of(text)
-        if meaning in _MEANINGS:
+        if meaning in MEANINGS:
             phrases.update(dict.fromkeys(map(plain, _answers().get(language, _answers()["en"])[meaning])))
         elif words := plain(text):
             phrases[f"[i would like/want] [a/an/the/some] {words} [please]"] = None
@@ -101,7 +100,7 @@ def holds(heard: str, text: str) -> bool:
     words, wanted = _words(heard), _words(text)
     found = any(words[at : at + len(wanted)] == wanted for at in range(len(words) - len(wanted) + 1))
     meaning = meaning_of(text)
-    return meaning_of(heard) == meaning if meaning in _MEANINGS else found
+    return meaning_of(heard) == meaning if meaning in MEANINGS else found
 
 
 def meaning_of(text: str) -> str:
@@ -124,14 +123,14 @@ def _words(text: str) -> list[str]:
     return "".join(letter if letter.isalnum() or letter == "'" else " " for letter in text.lower()).split()
 
 
-def _listened(
+def listened(
     robot: Listening,
     question: str,
-    person: str | None,
     wanted: Callable[[str], bool],
     expected: Expected,
+    person: str | None = None,
 ) -> Steps:
-    """Waits for the first text that is wanted, which is then the answer."""
+    """Waits for the first text that is wanted, which is then the answer. Fails after a minute."""
     watch, ears = Watch(robot), robot.ears
     count, until = ears.count, robot.time + WAITS
     robot.ask(question, person or "")

@@ -10,6 +10,10 @@ from btlang.record import Record
 from btlang.speech.grammar import plain
 from btlang.speech.recogniser import Expected
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 _MOST = 100
 _LISTENS = 5.0  # seconds for which it listens for what a condition has looked for
 
@@ -34,6 +38,8 @@ class Ears:
         """The open question; "" where there is none."""
         self.answer = ""
         """What answered the last question."""
+        self.commands: Any = None
+        """A btlang.robots.spoken.SpokenCommands: those that people may speak; None where there are none."""
         self.choices: tuple[str, ...] = ()
         """The answers that the mission asks about: "if the answer is tea"."""
 

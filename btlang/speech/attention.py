@@ -20,7 +20,7 @@ class Attention:
     def expected(self, wanted: Expected, answering: bool, now: float) -> Expected:
         """What to listen for. No wake word is needed for `answering`, when the robot has asked."""
         if self._push:
-            return wanted.replace(mode="addressed")  # type: ignore[no-any-return]
+            return wanted.replace(mode="pushed")  # type: ignore[no-any-return]
         if not self._wake or not wanted:
             return wanted
         if answering or now < self._until:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
             """What was heard so far belongs to nothing that follows."""
 
 
-Mode = Literal["open", "wake", "addressed"]
+Mode = Literal["open", "wake", "addressed", "pushed"]
 RATE = 16_000
 """Samples a second of what a recogniser hears."""
 
@@ -50,7 +50,7 @@ class Expected(Record):
     """What is listened for: `phrases` and their `names` as in btlang.speech.grammar, and with `anything` all else too.
 
     In the `mode` "open" anybody may say anything, in "wake" all phrases begin with the wake word, and in "addressed"
-    whoever speaks is known to speak to the robot.
+    whoever speaks has woken the robot or was asked, and in "pushed" holds its button.
     """
 
     phrases: tuple[str, ...] = ()

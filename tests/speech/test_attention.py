@@ -16,7 +16,7 @@ def test_all_the_time() -> None:
 
 
 def test_a_button() -> None:
-    assert Attention("", True).expected(WANTED, False, 0.0).mode == "addressed"
+    assert Attention("", True).expected(WANTED, False, 0.0).mode == "pushed"
 
 
 def test_behind_the_wake_word() -> None:
