@@ -227,7 +227,7 @@ def _grammar(options: argparse.Namespace) -> int:
 def _examples(options: argparse.Namespace) -> int:
     from btlang import examples
 
-    chosen = examples.found(options.name) if options.name else examples.examples()
+    chosen = examples.found(options.name) if options.name else examples.all_examples()
     if options.copy is not None:
         written = examples.copied(options.copy, chosen)
         show("\n".join((*written, f"To run a mission, use the command at its top, in the folder {options.copy}.")))
@@ -322,7 +322,7 @@ def _repl(options: argparse.Namespace) -> int:
 
 
 def _completion(options: argparse.Namespace) -> int:
-    from btlang.examples import examples
+    from btlang.examples import all_examples
     from btlang.robots.body_file import shipped_bodies
     from btlang.robots.platforms import ROBOTS
     from btlang.shell_completion import completion_script
@@ -335,7 +335,7 @@ def _completion(options: argparse.Namespace) -> int:
         "ROBOT": (*ROBOTS, *shipped_bodies()),
         "SPEED": ("real", "max"),
         "SEARCH": dict.fromkeys(item.topic for item in items(world_vocabulary()) if " " not in item.topic),
-        "NAME": [example.name for example in examples()],
+        "NAME": [example.name for example in all_examples()],
     }
     pass_on(completion_script(options.shell, verb_parsers(), known))
     return SUCCESS

@@ -39,16 +39,20 @@ class Example(Record):
 
 
 def examples() -> list[Example]:
-    """All shipped missions and folders, by name."""
+    """All shipped missions, by name."""
+    names = sorted(name[: -len(".txt")] for name in os.listdir(shipped("examples")) if name.endswith(".txt"))
+    return [_example(name) for name in names]
+
+
+def all_examples() -> list[Example]:
+    """The missions, then the folders."""
     names = sorted(os.listdir(shipped("examples")))
-    folders = [name for name in names if os.path.isfile(shipped("examples", name, _README))]
-    missions = [name.removesuffix(".txt") for name in names if name.endswith(".txt")]
-    return [*map(_example, missions), *map(_folder, folders)]
+    return [*examples(), *(_folder(name) for name in names if os.path.isfile(shipped("examples", name, _README)))]
 
 
 def found(names: Iterable[str]) -> list[Example]:
     """The missions of these names, with or without `.txt`. Raises MissionError (BT008)."""
-    known = {example.name: example for example in examples()}
+    known = {example.name: example for example in all_examples()}
     wanted = [name.removesuffix(".txt") for name in names]
     problems = [_unknown(name, known) for name in wanted if name not in known]
     if problems:
@@ -59,7 +63,7 @@ def found(names: Iterable[str]) -> list[Example]:
 def listing(width: int = 80) -> list[str]:
     """Each mission with what it does and its world, as lines to read."""
     lines = []
-    for example in examples():
+    for example in all_examples():
         told = [example.about.removesuffix(":"), *([f"World: {example.world}"] if example.world else [])]
         told += (
             [f"A folder, with its robot and {len(example.parts)} more files"] if example.file.endswith(_README) else []

@@ -27,7 +27,7 @@ class _Way:
 
     def __init__(self, name: str, targets: Mapping[str, float], at: float) -> None:
         self.name, self.targets, self.at = name, targets, at
-        self.met: float | None = None
+        self.met: float | None = None  # of a gesture with an aim what its course says
         self._nearest, self._over = _NEAR, False
 
     def look(self, robot: SimulatedRobot) -> None:
@@ -39,7 +39,7 @@ class _Way:
 
 
 def measured(robot: SimulatedRobot, text: str, period: float, beside: Callable[[], object] = lambda: None) -> list[Met]:
-    """Says a text with a tick each `period`, and `beside` that; the strokes of its gestures whose joints are known."""
+    """Says a text with a tick each `period`, and `beside` that; the strokes of its gestures."""
     ways: list[_Way] = []
     planned: list[Mapping[str, Any]] = []
     begin = robot.gesture
@@ -47,10 +47,11 @@ def measured(robot: SimulatedRobot, text: str, period: float, beside: Callable[[
     def watched(name: str, **options: Any) -> Operation:
         made = begin(name, **options)
         found = robot.body.gestures[name]
-        if not found.aim:
-            [frame] = [frame for frame in found.frames if frame.at == found.stroke]
-            targets = {joint: float(angle) for joint, angle in frame.joints.items()}
-            ways.append(_Way(name, targets, float(options["stroke_at"])))
+        [frame] = [frame for frame in found.frames if frame.at == found.stroke]
+        targets = {} if found.aim else {joint: float(angle) for joint, angle in frame.joints.items()}
+        ways.append(_Way(name, targets, float(options["stroke_at"])))
+        if found.aim:
+            ways[-1].met = getattr(made, "stroke", None)
         return made
 
     robot.gesture = watched  # type: ignore[method-assign]
@@ -61,10 +62,10 @@ def measured(robot: SimulatedRobot, text: str, period: float, beside: Callable[[
         for _ in range(round(period / FINE)):
             robot.step(FINE)
             for way in ways:
-                way.look(robot)
-    promised = [data for data in planned if not robot.body.gestures[data["name"]].aim]
-    assert len(promised) == len(ways)
+                if way.targets:
+                    way.look(robot)
+    assert len(planned) == len(ways)
     return [
         Met(way.name, 99.0 if way.met is None else way.met - way.at, data["stroke"] - data["word"])
-        for way, data in zip(ways, promised, strict=True)
+        for way, data in zip(ways, planned, strict=True)
     ]

@@ -38,7 +38,7 @@ def test_strokes_meet_their_words(period: float, drives: bool) -> None:
         found += measured(
             speaker, SAMPLES[name].replace("{guest}", "Ann"), period, lambda it=speaker: drives and it.drive(0.2, 5.0)
         )
-    assert len(found) == 9
+    assert len(found) == 11
     assert p95(found) <= MOST
 
 

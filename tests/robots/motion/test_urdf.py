@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from btlang.cli import main
 from btlang.robots.body_file import BodyError, load_body
 from btlang.robots.motion.urdf import urdf
 from btlang.robots.motion.urdf_reader import read_urdf
 from btlang.text.source import Source
-from tests.robots.motion.bodies import guide
+from tests.robots.motion.bodies import GUIDE, guide
+
+
+@pytest.fixture
+def typed(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, str]]:
+    def call(*words: str) -> tuple[int, str, str]:
+        code = main([*words])
+        found = capsys.readouterr()
+        return code, found.out, found.err
+
+    return call
+
 
 LIMIT = '<limit lower="-1" upper="1" velocity="2"/>'
 ARM = f"""<robot name="my_arm"><link name="base_link"/><link name="flange"/><link name="upper_arm">
@@ -68,3 +81,18 @@ def test_what_cannot_be_read_has_a_line(old: str, new: str, line: int, says: str
         read_urdf(Source(ARM.replace(old, new), "arm.urdf"))
     assert says in str(caught.value)
     assert caught.value.line == line
+
+
+def test_the_command_writes_and_reads(typed: Callable[..., tuple[int, str, str]], tmp_path: Path) -> None:
+    code, text, _ = typed("robot", "urdf", str(GUIDE))
+    assert (code, text) == (0, urdf(guide()))
+    written = tmp_path / "guide.urdf"
+    written.write_text(text)
+    code, text, _ = typed("robot", "import", str(written))
+    assert code == 0
+    (tmp_path / "guide.toml").write_text(text)
+    assert typed("robot", "check", str(tmp_path / "guide.toml"))[:2] == (0, "No problems found.\n")
+    written.write_text("<robot>")
+    code, _, problem = typed("robot", "import", str(written))
+    assert code == 2
+    assert f"{written}:1:1: error BT071: This robot file can't be used: this isn't XML: no element found" in problem

@@ -129,6 +129,7 @@ class Watch implements View {
 
   private showControls(): void {
     const paused = this.robot.state?.paused ?? false;
+    if (paused || this.robot.away) this.voice.silence();
     const task = this.queue.underway;
     this.visitor.hidden = !may(this.context.me, "operator") || !this.robot.state?.visitors;
     const shown = JSON.stringify([paused, task?.id, this.robot.up]);
