@@ -18,11 +18,12 @@ from btlang.engine.saving import SaveError
 from btlang.engine.timing import Stopwatch
 from btlang.robots.proxy import RobotProxy
 from btlang.robots.registry import connector
+from btlang.robots.spoken import SpokenCommands, choices
 from btlang.robots.world import Place
 from btlang.robots.world_problem import read_world
-from btlang.run.bus import INLINE, Bus
+from btlang.run.bus import Bus
+from btlang.run.choice_count import ChoiceCount
 from btlang.run.controls import Controls, disable
-from btlang.run.events import Chosen
 from btlang.run.failure_history import FailureHistory
 from btlang.run.limits import RATES, SLOWEST
 from btlang.run.recent import RecentEvents
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from typing import Any, Protocol
 
     from btlang.engine.instance import Hooks
+    from btlang.robots.body import Body
     from btlang.robots.registry import Connect
     from btlang.run.connection import Connection
     from btlang.run.events import Event, Sink
@@ -205,7 +207,7 @@ class Run:
         self.follower = Follower(self._engine)
         """The statuses of all nodes, for any thread."""
         self._recent = RecentEvents()
-        self._choices = _Choices()
+        self._choices = ChoiceCount()
         for own in (self._story, self.follower, self._recent, self._choices):
             self.bus.add(own)
         self._runner = Runner(
@@ -358,6 +360,10 @@ class Run:
         if hasattr(connection.robot, "seed_choices"):
             connection.robot.seed_choices(self.seed)
         connection.check(mission.tree, mission.vocabulary)
+        body: Body | None = getattr(connection.robot, "body", None)
+        if body is not None and body.ears is not None:
+            connection.robot.ears.choices = choices(mission.tree, mission.vocabulary)
+            connection.robot.ears.commands = SpokenCommands(mission.vocabulary, body)
         for sink in sinks:
             self.bus.add(sink)
         connection.begin(self.bus)
@@ -385,16 +391,3 @@ class Run:
 
 def _bind(vocabulary: Lexicon, connection: Connection, node_id: str) -> Any:
     return bind_leaf(node_id, vocabulary, connection.bind)
-
-
-class _Choices:
-    """Counts the random choices of a run."""
-
-    policy = INLINE
-
-    def __init__(self) -> None:
-        self.made = 0
-
-    def __call__(self, event: Event) -> None:
-        if isinstance(event, Chosen) and event.how == "random":
-            self.made += 1
