@@ -34,7 +34,7 @@ from btlang.ros.doors import RosDoors
 from btlang.ros.ears import RosEars
 from btlang.ros.executor_thread import ExecutorThread
 from btlang.ros.hands import RosHands
-from btlang.ros.joints import RosJoints
+from btlang.ros.joints import ros_joints
 from btlang.ros.perception import RosPerception
 from btlang.ros.places import Places
 from btlang.ros.power import RosPower, make_docking_clients
@@ -105,7 +105,7 @@ class RosRobot:
         self._base = RosBase(
             node, subscriptions, body.radius, (body.driving.top_speed, body.turning.top_speed), self._latch
         )
-        self._joints = RosJoints(node, subscriptions, body)
+        self._joints = ros_joints(node, subscriptions, body)
         self._gestures = Gestures(body, self._joints)
         self._voice = RosSpeech(node, subscriptions, make_engine(body))
         self._services = Services(node, self._executor)
@@ -146,6 +146,7 @@ class RosRobot:
         """`dt` seconds have passed: reads what has come, and tells the wanted velocity again."""
         self.time += dt
         self.subscriptions.read()
+        self._joints.step()
         if self._naps != AWAKE.naps:
             self._naps = AWAKE.naps
             self._emit("warning", text=f"this computer was asleep for {AWAKE.nap:.0f} s, or btlang was suspended")
@@ -535,11 +536,13 @@ class RosRobot:
         self._joints.freeze(names)
 
     def gesture(self, name: str, *, aim: Point | None = None, stroke_at: float | None = None) -> Operation:
-        """See btlang.robots.capabilities.Gesturing: its key frames one after the other. Raises RobotError."""
+        """See btlang.robots.capabilities.Gesturing. Raises RobotError."""
         self._check_stop()
         room = None if stroke_at is None else stroke_at - self.time
-        started, _ = self._gestures.start(name, lambda: self.pose, aim, room)
-        self._emit("gesture", name=name)
+        started, slower = self._gestures.start(name, lambda: self.pose, aim, room)
+        if self._latch.refuses:
+            self._joints.freeze()  # `stop` came in between from another thread
+        self._emit("gesture", name=name, slower=round(slower, 2))
         return started
 
     def lead(self, name: str, aim: Point | None = None) -> float:

@@ -39,7 +39,10 @@ class RosSpeech:
         self._age = self._since = self._began = 0.0
         self._waiting = ""  # what it is to say when `_age` is 0
         self._asked = self._heard = self._told = False
-        subscriptions.listen(SPEAKING, Bool, "speech status", qos="state")
+        self._node, self._clock = node, node.get_clock()
+        self._stepped = self._set_in = self._now()  # of the node's clock: the latest step, and when speech began
+        self._timer: Any = None
+        subscriptions.listen(SPEAKING, Bool, "speech status", qos="state", also=self._arrived)
 
     def utterance(self, text: str) -> Utterance:
         """The text as it would be said. Raises RobotError where the engine can't."""
@@ -60,12 +63,32 @@ class RosSpeech:
         self.said = self.utterance(text)
         self._asked, self._heard, self._age, self._began, self._since = True, False, -after, 0.0, AWAKE.now()
         self._waiting = text
-        self._begin()
+        self._cancel_timer()
+        if after > 0.0:  # between two ticks
+            wait = max(0.0, after - self._now() + self._stepped)
+            self._timer = self._node.create_timer(wait, self._begin, clock=self._clock)
+        else:
+            self._begin()
 
     def _begin(self) -> None:
-        if self._waiting and self._age > -1e-9:
-            text, self._waiting, self._since = self._waiting, "", AWAKE.now()
+        self._cancel_timer()
+        text, self._waiting = self._waiting, ""
+        if text:
+            self._since = AWAKE.now()
             self._publish(self._speech, text)
+            if not self._asked:
+                self._speech.publish(String(data=""))  # `silence` came in between from another thread
+
+    def _cancel_timer(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+
+    def _now(self) -> float:
+        return float(self._clock.now().nanoseconds) * 1e-9
+
+    def _arrived(self, message: Bool) -> None:
+        if message.data:
+            self._set_in = self._now()
 
     def silence(self) -> None:
         """Ends speech at once; from any thread."""
@@ -99,13 +122,16 @@ class RosSpeech:
     def step(self, dt: float) -> None:
         """`dt` seconds have passed."""
         self._age += dt
-        self._begin()
+        self._stepped = self._now()
+        if self._waiting and self._age > -1e-9:
+            self._begin()
         for message in self._subscriptions.events(SPEAKING):
             if self._heard and self._told and not message.data:
                 self._asked = False
             self._told = bool(message.data)
             if self._told and self._asked and not self._heard and not self._waiting:
-                self._heard, self._began = True, max(0.0, self._age)
+                since = min(max(0.0, self._stepped - self._set_in), dt)
+                self._heard, self._began = True, max(0.0, self._age - since)
         if self._asked and not self._waiting and AWAKE.now() - self._since > _BEGINS:
             self._asked = self._told if self._subscriptions.has(SPEAKING) else self._age < self._seconds
 
