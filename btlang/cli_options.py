@@ -35,7 +35,9 @@ def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
     for word in takewhile(lambda word: word != "--", words):
         if word.startswith("--") and " " not in word:
             parser.check_option(word.partition("=")[0])
-    read = parser.parse_known_intermixed_args if verb in ("robot", "task", "world") else parser.parse_known_args
+    read = (
+        parser.parse_known_intermixed_args if verb in ("robot", "task", "world", "gesture") else parser.parse_known_args
+    )
     options, unknown = read(words)
     if unknown:
         parser.refuse(f"unexpected argument '{unknown[0]}'")
@@ -328,6 +330,10 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "robot": ("keep a robot up for many tasks of many people", _elsewhere("btlang.task.options", "add_robot_options")),
     "task": ("give work to a robot that is up", _elsewhere("btlang.task.options", "add_task_options")),
     "world": ("check, draw, import and export world files", _elsewhere("btlang.maps.options", "add_world_options")),
+    "gesture": (
+        "play, check, draw and record gestures of a robot",
+        _elsewhere("btlang.gestures.options", "add_gesture_options"),
+    ),
     "components": (
         "list the components and devices of a robot that is up",
         _elsewhere("btlang.task.options", "add_component_options"),

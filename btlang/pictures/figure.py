@@ -64,7 +64,7 @@ def _draw(canvas: Canvas, body: Body, angles: Mapping[str, float], left: float, 
         canvas.line([(middle - 0.5 * _SCALE, floor), (middle + 0.5 * _SCALE, floor)], colour=_BODY, line=1)
         shapes = []
         for capsule in body.capsules:
-            ends = [frames[capsule.link].place(point)[0] for point in (capsule.start, capsule.end)]
+            ends = [frames[capsule.link].place(point)[:, 0] for point in (capsule.start, capsule.end)]
             depth = [-end[1] for end in ends] if view == 0 else [end[0] for end in ends]
             across = [end[0] for end in ends] if view == 0 else [end[1] for end in ends]
             points = [(middle + x * _SCALE, floor - end[2] * _SCALE) for x, end in zip(across, ends, strict=True)]
@@ -73,10 +73,12 @@ def _draw(canvas: Canvas, body: Body, angles: Mapping[str, float], left: float, 
             canvas.line(points, colour=_EDGE, line=wide + 1.6)
             canvas.line(points, colour=_colour(link), line=wide)
         if "head" in frames:
-            nose = frames["head"].place((0.14, 0.0, 0.12))[0]
+            nose = frames["head"].place((0.14, 0.0, 0.12))[:, 0]
             ahead, across = (nose[1], nose[0]) if view == 0 else (-nose[0], nose[1])
-            if view == 0 or ahead < frames["head"].origin[0][0]:
-                canvas.circle(middle + across * _SCALE, floor - nose[2] * _SCALE, 2.4, fill=_HEAD)
+            if view == 0 or ahead < -frames["head"].origin[0, 0]:
+                canvas.circle(
+                    middle + across * _SCALE, floor - nose[2] * _SCALE, 2.4, fill=_HEAD if view == 0 else _EDGE
+                )
 
 
 def _colour(link: str) -> str:

@@ -16,7 +16,6 @@ from btlang.robots.body import (
     ComponentPart,
     Device,
     Dock,
-    Ears,
     HandPart,
     Limits,
     Navigation,
@@ -24,6 +23,7 @@ from btlang.robots.body import (
     Sensor,
 )
 from btlang.robots.data_file import DataFileError, as_mission_error, load_data
+from btlang.robots.ears_file import read_ears
 from btlang.robots.gesture import Gesture, Step
 from btlang.robots.gesture_file import read_gestures
 from btlang.robots.platforms import ROBOTS
@@ -126,7 +126,7 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     made = Body(
         name, radius, over, base, navigation, joints, postures, hands, sensors, battery, dock, voice, screen,
         devices, components, file, problems.part(lambda: _beside(top, "world", file), ""),
-        problems.part(lambda: _ears(top), None), capsules, forbidden,
+        problems.part(lambda: read_ears(top, bool(file)), None), capsules, forbidden,
         rules=problems.part(lambda: _beside(top, "rules", file), ""),
         missions=problems.part(lambda: _beside(top, "missions", file, os.path.isdir), ""),
         schedules=problems.part(lambda: _beside(top, "schedules", file), ""), gestures=gestures,
@@ -197,13 +197,6 @@ def _dock(top: Table) -> Dock | None:
     speed = table.number("speed", 0.15, low=_LEAST)
     retries = int(table.number("retries", 2, low=0, high=100))
     return table.finish(Dock(within, beyond, backs_off, staging, speed, retries))
-
-
-def _ears(top: Table) -> Ears | None:
-    if not top.has("ears"):
-        return None
-    table = top.table("ears")
-    return table.finish(Ears(table.number("within", low=_LEAST)))
 
 
 def _base(table: Table) -> Base:

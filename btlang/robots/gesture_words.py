@@ -16,7 +16,7 @@ from btlang.robots.gesture import Gesture
 from btlang.robots.gesture_file import TARGET, GestureError, phrase_forms
 from btlang.text.toml_writing import toml_key, toml_value
 from btlang.tree.catalogue import CATALOGUE
-from btlang.user_dirs import user_dir
+from btlang.vocabulary.cache import own_folder
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import load_vocabulary
@@ -133,15 +133,13 @@ def _new_id(name: str, english: Lexicon) -> str:
 @cache
 def _folder() -> str:
     """One that only the user writes to; for this process alone where there is none."""
-    folder = os.path.join(user_dir("cache"), "words")
     try:
+        folder = os.path.join(own_folder(), "words")
         os.makedirs(folder, 0o700, exist_ok=True)
-        if os.access(folder, os.W_OK) and (os.name == "nt" or os.stat(folder).st_uid == os.getuid()):
-            return folder
     except OSError:
-        pass
-    _kept.append(tempfile.TemporaryDirectory(prefix="btlang-"))
-    return _kept[0].name
+        _kept.append(tempfile.TemporaryDirectory(prefix="btlang-"))
+        return _kept[0].name
+    return folder
 
 
 _kept: list[tempfile.TemporaryDirectory[str]] = []  # until the process ends

@@ -3,38 +3,55 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import ceil, isfinite
+from math import ceil
+from typing import Protocol
 
 from rclpy.node import Node
-from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 
 from btlang.robots.body import Body
 from btlang.robots.joints import clipped, joint_of
-from btlang.robots.robot import RobotError, SensorSilent
+from btlang.robots.robot import RobotError
 from btlang.ros.awake import AWAKE
 from btlang.ros.commands import trajectory
+from btlang.ros.joint_states import JointStates, on_wire, shown
 from btlang.ros.subscription_cache import SubscriptionCache
 
-STATES, TRAJECTORY = "joint_states", "joint_trajectory"
-_SILENT = 2.0  # seconds without joint states
+TRAJECTORY = "joint_trajectory"
 _STALLED = 5.0  # seconds in which a joint on its way gets no nearer
 _PROGRESS = 0.5  # of what is close enough counts as nearer
 
 
-class RosJoints:
-    """Degrees here, radians on the wire, metres in both of a joint that slides; names have `_` for blanks there.
+class JointsOverRos(Protocol):
+    """Joints of any kind. `freeze`, which without names is for all of them, may be called from any thread."""
 
-    `freeze` may be called from any thread.
-    """
+    @property
+    def moving(self) -> bool: ...
+    def angle(self, name: str) -> float: ...
+    def move(self, targets: Mapping[str, float]) -> None: ...
+    def at_target(self, names: tuple[str, ...]) -> bool: ...
+    def freeze(self, names: tuple[str, ...] = ()) -> None: ...
+    def step(self) -> None: ...
+
+
+def ros_joints(node: Node, subscriptions: SubscriptionCache, body: Body) -> JointsOverRos:
+    """Joints as the body has them: smooth ones plan their movements."""
+    if not body.is_smooth:
+        return RosJoints(node, subscriptions, body)
+    from btlang.ros.smooth_joints import RosSmoothJoints  # brings ruckig
+
+    return RosSmoothJoints(node, subscriptions, body)
+
+
+class RosJoints:
+    """See JointsOverRos: each command is one point, and how the joints get there is up to the robot."""
 
     def __init__(self, node: Node, subscriptions: SubscriptionCache, body: Body) -> None:
         self._body = body
-        self._subscriptions = subscriptions
+        self._states = JointStates(subscriptions, body)
         self._targets: dict[str, float] = {}
         self._nearest: dict[str, tuple[float, float]] = {}  # what was left at the nearest, and since when
         self._publisher = node.create_publisher(JointTrajectory, TRAJECTORY, 10)
-        subscriptions.listen(STATES, JointState, "joint states")
 
     @property
     def moving(self) -> bool:
@@ -42,14 +59,11 @@ class RosJoints:
         return bool(self._targets)
 
     def angle(self, name: str) -> float:
-        """Raises RobotError for an unknown joint, and where the joint states are silent."""
-        joint = joint_of(self._body, name)
-        states = self._subscriptions.get(STATES, _SILENT)
-        wire = _on_wire(name)
-        position = positions(states).get(wire)
-        if position is None:
-            raise SensorSilent(f'{self._subscriptions.shown(STATES)} doesn\'t report the joint "{wire}"')
-        return position / joint.si
+        """See JointStates."""
+        return self._states.angle(name)
+
+    def step(self) -> None:
+        """Nothing: they move by themselves."""
 
     def move(self, targets: Mapping[str, float]) -> None:
         """Sets off towards the targets, clipped to the limits. Raises RobotError as `angle` does."""
@@ -84,21 +98,11 @@ class RosJoints:
         if left < nearest - _PROGRESS * joint.close_enough:
             self._nearest[name] = left, now
         elif now - since > _STALLED:
-            far = f"{left:.2f} m" if joint.slides else f"{left:.0f} degrees"
-            raise RobotError(f"the {name} doesn't move: it is {far} from where it should be")
+            raise RobotError(f"the {name} doesn't move: it is {shown(joint, left)} from where it should be")
         return False
 
     def _tell(self, targets: Mapping[str, float], seconds: float) -> None:
         if not targets:
             return
-        angles = {_on_wire(name): target * joint_of(self._body, name).si for name, target in targets.items()}
+        angles = {on_wire(name): target * joint_of(self._body, name).si for name, target in targets.items()}
         self._publisher.publish(trajectory(angles, ceil(seconds)))
-
-
-def positions(states: JointState) -> dict[str, float]:
-    """The joints that it says a position of, which is finite, in radians or metres."""
-    return {name: at for name, at in zip(states.name, states.position, strict=False) if isfinite(at)}
-
-
-def _on_wire(name: str) -> str:
-    return name.replace(" ", "_")

@@ -24,7 +24,7 @@ from btlang.robots.latch import Latch
 from btlang.robots.protection import Protection
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError
 from btlang.robots.station import Station
-from btlang.robots.voice import make_engine
+from btlang.robots.voice import Synthesizer
 from btlang.robots.world import Place, World, Zone, said
 from btlang.robots.zones import Zones
 from btlang.ros.available import optional_interface
@@ -34,7 +34,7 @@ from btlang.ros.doors import RosDoors
 from btlang.ros.ears import RosEars
 from btlang.ros.executor_thread import ExecutorThread
 from btlang.ros.hands import RosHands
-from btlang.ros.joints import RosJoints
+from btlang.ros.joints import ros_joints
 from btlang.ros.perception import RosPerception
 from btlang.ros.places import Places
 from btlang.ros.power import RosPower, make_docking_clients
@@ -105,9 +105,9 @@ class RosRobot:
         self._base = RosBase(
             node, subscriptions, body.radius, (body.driving.top_speed, body.turning.top_speed), self._latch
         )
-        self._joints = RosJoints(node, subscriptions, body)
+        self._joints = ros_joints(node, subscriptions, body)
         self._gestures = Gestures(body, self._joints)
-        self._voice = RosSpeech(node, subscriptions, make_engine(body))
+        self._voice = RosSpeech(node, subscriptions, Synthesizer(body))
         self._services = Services(node, self._executor)
         self._services.add(_STOP, Trigger)
         self._services.add(_LOCALIZE, Empty)
@@ -146,6 +146,7 @@ class RosRobot:
         """`dt` seconds have passed: reads what has come, and tells the wanted velocity again."""
         self.time += dt
         self.subscriptions.read()
+        self._joints.step()
         if self._naps != AWAKE.naps:
             self._naps = AWAKE.naps
             self._emit("warning", text=f"this computer was asleep for {AWAKE.nap:.0f} s, or btlang was suspended")
@@ -217,6 +218,7 @@ class RosRobot:
         self._rest()
         self._ears.begin()
         self._zones.begin()
+        self._voice.speak_in()
         self._base.confirm_halt()
         self._voice.confirm(_HEARTBEAT)
         until = time.monotonic() + _LAST_WORDS
@@ -393,6 +395,7 @@ class RosRobot:
         self._began = None
         self._zones.begin()
         self._ears.begin()
+        self._voice.speak_in()
 
     def nearby_people(self, within: float) -> list[str]:
         """Names of people within so many metres, nearest first: those who walk as far as they are in view."""
@@ -535,11 +538,13 @@ class RosRobot:
         self._joints.freeze(names)
 
     def gesture(self, name: str, *, aim: Point | None = None, stroke_at: float | None = None) -> Operation:
-        """See btlang.robots.capabilities.Gesturing: its key frames one after the other. Raises RobotError."""
+        """See btlang.robots.capabilities.Gesturing. Raises RobotError."""
         self._check_stop()
         room = None if stroke_at is None else stroke_at - self.time
-        started, _ = self._gestures.start(name, lambda: self.pose, aim, room)
-        self._emit("gesture", name=name)
+        started, slower = self._gestures.start(name, lambda: self.pose, aim, room)
+        if self._latch.refuses:
+            self._joints.freeze()  # `stop` came in between from another thread
+        self._emit("gesture", name=name, slower=round(slower, 2))
         return started
 
     def lead(self, name: str, aim: Point | None = None) -> float:
@@ -594,6 +599,17 @@ class RosRobot:
             self._voice.say(text, after)
             self._last_said = text
             self._emit("say", text=text)
+
+    @property
+    def language(self) -> str:
+        """In which it speaks."""
+        return self._voice.language
+
+    def speak_in(self, language: str) -> None:
+        """What is said from now on is in this language, to the end of the run. Raises RobotError where it can't."""
+        if language != self._voice.language:
+            self._voice.speak_in(language)
+            self._emit("language", name=language)
 
     def utterance(self, text: str) -> Utterance:
         """What it would say. Raises RobotError."""

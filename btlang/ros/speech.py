@@ -10,15 +10,16 @@ from rclpy.node import Node
 from std_msgs.msg import Bool, String
 
 from btlang.robots.robot import RobotError
+from btlang.robots.voice import Synthesizer
 from btlang.ros.awake import AWAKE
+from btlang.ros.node import LATCHED
 from btlang.ros.subscription_cache import SubscriptionCache
-from btlang.speech.engine import SpeechError
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.speech.engine import SpeechEngine, Utterance
+    from btlang.speech.engine import Utterance
 
-SPEECH, SPEAKING, PRINT = "speech", "speaking", "print"
+SPEECH, SPEAKING, PRINT, LANGUAGE = "speech", "speaking", "print", "language"
 _BEGINS = 0.5  # seconds of real time that it gets to begin
 _YOUNG = 2.0  # seconds in which a listener may not have found this node yet: what it misses then is sent again
 _LATEST = 5.0  # how many times as long as expected it may speak
@@ -29,24 +30,37 @@ class RosSpeech:
     speaks. Where nothing tells of its speaking, it takes as long as the engine says.
     """
 
-    def __init__(self, node: Node, subscriptions: SubscriptionCache, engine: SpeechEngine) -> None:
-        self._subscriptions, self._engine = subscriptions, engine
+    def __init__(self, node: Node, subscriptions: SubscriptionCache, synthesizer: Synthesizer) -> None:
+        self._subscriptions, self._synthesizer = subscriptions, synthesizer
         self.said: Utterance | None = None
         """What it says, or said last."""
         self._speech = node.create_publisher(String, SPEECH, 10)
         self._print = node.create_publisher(String, PRINT, 10)
+        self._language = node.create_publisher(String, LANGUAGE, LATCHED)
         self._made, self._risky = time.monotonic(), False
         self._age = self._since = self._began = 0.0
         self._waiting = ""  # what it is to say when `_age` is 0
         self._asked = self._heard = self._told = False
-        subscriptions.listen(SPEAKING, Bool, "speech status", qos="state")
+        self._node, self._clock = node, node.get_clock()
+        self._stepped = self._set_in = self._now()  # of the node's clock: the latest step, and when speech began
+        self._timer: Any = None
+        subscriptions.listen(SPEAKING, Bool, "speech status", qos="state", also=self._arrived)
 
     def utterance(self, text: str) -> Utterance:
         """The text as it would be said. Raises RobotError where the engine can't."""
-        try:
-            return self._engine.speak(text)
-        except SpeechError as problem:
-            raise RobotError(str(problem)) from None
+        return self._synthesizer.speak(text)
+
+    @property
+    def language(self) -> str:
+        """In which it speaks."""
+        return self._synthesizer.language
+
+    def speak_in(self, language: str = "") -> None:
+        """See btlang.robots.voice.Synthesizer. A latched topic tells it, once another than its own was asked for."""
+        before = self.language
+        self._synthesizer.speak_in(language)
+        if self.language != before:
+            self._language.publish(String(data=self.language))
 
     @property
     def position(self) -> float:
@@ -60,12 +74,32 @@ class RosSpeech:
         self.said = self.utterance(text)
         self._asked, self._heard, self._age, self._began, self._since = True, False, -after, 0.0, AWAKE.now()
         self._waiting = text
-        self._begin()
+        self._cancel_timer()
+        if after > 0.0:  # between two ticks
+            wait = max(0.0, after - self._now() + self._stepped)
+            self._timer = self._node.create_timer(wait, self._begin, clock=self._clock)
+        else:
+            self._begin()
 
     def _begin(self) -> None:
-        if self._waiting and self._age > -1e-9:
-            text, self._waiting, self._since = self._waiting, "", AWAKE.now()
+        self._cancel_timer()
+        text, self._waiting = self._waiting, ""
+        if text:
+            self._since = AWAKE.now()
             self._publish(self._speech, text)
+            if not self._asked:
+                self._speech.publish(String(data=""))  # `silence` came in between from another thread
+
+    def _cancel_timer(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+
+    def _now(self) -> float:
+        return float(self._clock.now().nanoseconds) * 1e-9
+
+    def _arrived(self, message: Bool) -> None:
+        if message.data:
+            self._set_in = self._now()
 
     def silence(self) -> None:
         """Ends speech at once; from any thread."""
@@ -99,13 +133,16 @@ class RosSpeech:
     def step(self, dt: float) -> None:
         """`dt` seconds have passed."""
         self._age += dt
-        self._begin()
+        self._stepped = self._now()
+        if self._waiting and self._age > -1e-9:
+            self._begin()
         for message in self._subscriptions.events(SPEAKING):
             if self._heard and self._told and not message.data:
                 self._asked = False
             self._told = bool(message.data)
             if self._told and self._asked and not self._heard and not self._waiting:
-                self._heard, self._began = True, max(0.0, self._age)
+                since = min(max(0.0, self._stepped - self._set_in), dt)
+                self._heard, self._began = True, max(0.0, self._age - since)
         if self._asked and not self._waiting and AWAKE.now() - self._since > _BEGINS:
             self._asked = self._told if self._subscriptions.has(SPEAKING) else self._age < self._seconds
 

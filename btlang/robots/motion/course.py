@@ -73,19 +73,20 @@ def between(before: State, after: State, share: float) -> State:
 
 def quintic(start: State, end: State, seconds: float) -> Piece:
     """The polynomial of degree five from one state to another."""
+    return Piece(seconds, lambda times: on_quintic(start, end, seconds, times))
+
+
+def on_quintic(start: State, end: State, seconds: float | Array, times: Array) -> State:
+    """States on `quintic` at times from its beginning; with rows of states and a column of seconds, on one for each."""
     h = seconds
     p, v, a = start.position, start.velocity * h, start.acceleration * h * h / 2
     way = end.position - p - v - a
     speed, force = end.velocity * h - v - 2 * a, end.acceleration * h * h - 2 * a
     c3, c4, c5 = 10 * way - 4 * speed + force / 2, -15 * way + 7 * speed - force, 6 * way - 3 * speed + force / 2
-
-    def at(times: Array) -> State:
-        t = np.clip(times / h, 0.0, 1.0)[:, None]
-        position = p + t * (v + t * (a + t * (c3 + t * (c4 + t * c5))))
-        velocity = (v + t * (2 * a + t * (3 * c3 + t * (4 * c4 + t * 5 * c5)))) / h
-        return State(position, velocity, (2 * a + t * (6 * c3 + t * (12 * c4 + t * 20 * c5))) / (h * h))
-
-    return Piece(h, at)
+    t = np.clip(times[:, None] / h, 0.0, 1.0)
+    position = p + t * (v + t * (a + t * (c3 + t * (c4 + t * c5))))
+    velocity = (v + t * (2 * a + t * (3 * c3 + t * (4 * c4 + t * 5 * c5)))) / h
+    return State(position, velocity, (2 * a + t * (6 * c3 + t * (12 * c4 + t * 20 * c5))) / (h * h))
 
 
 def to_state(start: State, end: State, limits: Limits, least: float = 0.0) -> Piece | None:

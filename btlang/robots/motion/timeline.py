@@ -9,7 +9,7 @@ from math import ceil, floor
 import numpy as np
 
 from btlang.robots.body import Body
-from btlang.robots.motion.course import PERIOD, Limits, State, between, samples
+from btlang.robots.motion.course import PERIOD, Limits, Piece, State, between, samples
 from btlang.robots.motion.guard import Guard
 from btlang.robots.motion.kinematics import Array, Kinematics
 from btlang.robots.motion.movements import resting
@@ -59,8 +59,18 @@ class Timeline:
     @property
     def state(self) -> State:
         """Of all joints, now."""
+        return self.at(self.seconds)
+
+    @property
+    def plan(self) -> tuple[float, State]:
+        """What all joints do until they rest: samples from a second on, PERIOD apart. A new one whenever that changes."""
         with self._lock:
-            ticks = self.seconds / PERIOD
+            return self._first * PERIOD, self._way
+
+    def at(self, seconds: float) -> State:
+        """Of all joints at a second that is to come, as things are."""
+        with self._lock:
+            ticks = seconds / PERIOD
             whole = floor(ticks + _EXACT)
             share = ticks - whole
             return (
@@ -114,6 +124,19 @@ class Timeline:
         with self._lock:
             return self._tick * PERIOD - self.seconds + find(self._planner, self._sample(self._tick))
 
+    def follow(self, joints: Sequence[int], at: Callable[[Array], State], begins: float, ends: float) -> None:
+        """From one second to another, these go a way that comes from elsewhere and isn't checked; then they rest.
+
+        `at` gives their states at an array of seconds. Where everything was to halt, it halts like that.
+        """
+        with self._lock:
+            self._end_plays()
+            tick = self._tick
+            wait = max(0, ceil(begins / PERIOD - _EXACT) - tick)
+            first = (tick + wait) * PERIOD
+            piece = Piece(max(PERIOD, ends - first), lambda times: at(times + first))
+            self._take(*self._with(Course(joints, wait, [piece], 0.0), tick), tick, joints)
+
     def freeze(self, joints: Iterable[int]) -> None:
         """These come to rest; all of them, where the others would run into them."""
         with self._lock:
@@ -133,13 +156,15 @@ class Timeline:
         self._halts = True
         self._halted = reason
 
-    def _begin_halt(self) -> None:
-        if not self._halts:
-            return
-        self._halts = False
-        for play in self._plays:
+    def _end_plays(self) -> bool:
+        """Ends all of them where they were to halt, and says whether they were."""
+        halts, self._halts = self._halts, False
+        for play in self._plays if halts else ():
             play.end(self._halted)
-        if not self.rests():
+        return halts
+
+    def _begin_halt(self) -> None:
+        if self._end_plays() and not self.rests():
             course = self._planner.stop(range(len(self._ends)), self._sample(self._tick))
             way, ends = self._with(course, self._tick)
             self._take(way, ends, self._tick, course.joints)

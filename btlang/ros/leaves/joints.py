@@ -10,7 +10,7 @@ from btlang.engine.leaves.leaf import ActionFailed, Failed
 from btlang.ros.clients import Clients
 from btlang.ros.commands import trajectory
 from btlang.ros.graph import no_listener
-from btlang.ros.joints import positions
+from btlang.ros.joint_states import positions
 from btlang.ros.latest import AGE
 from btlang.ros.word import Word, type_name
 from btlang.vocabulary.ros_table import SLOT

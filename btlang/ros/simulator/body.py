@@ -1,7 +1,8 @@
-"""Arms, head, hands and voice: /joint_states, /joint_trajectory, /left_hand/..., /speech, /speaking, /print."""
+"""Arms, head, hands and voice: /joint_states, /joint_trajectory, /left_hand/..., /speech, /language, /print, ..."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from functools import partial
 from math import isfinite
@@ -13,25 +14,33 @@ from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory
 
-from btlang.robots.robot import Hand
+from btlang.robots.robot import Hand, RobotError
 from btlang.robots.simulated import SimulatedRobot
+from btlang.ros.node import LATCHED
 from btlang.ros.simulator.call_queue import CallQueue
 from btlang.ros.simulator.publishing import COMMANDS, Every, Latched, Moment
+from btlang.ros.speech import LANGUAGE
+from btlang.text.output import show
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.ros.simulator.joint_player import JointPlayer
 
 _HANDS: tuple[Hand, Hand] = ("left", "right")
+_JOINTS, _SMOOTH_JOINTS = 20, 50  # states of them a second
 
 
 class Body:
-    """Moves joints, hands and voice as topics and services say."""
+    """Moves joints, hands and voice as topics and services say. A `player` moves joints along whole trajectories."""
 
-    def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
-        self._robot = robot
+    def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue, player: JointPlayer | None) -> None:
+        self._robot, self._player, self._logger = robot, player, node.get_logger()
         self._calls = calls
         self._names = {joint.name.replace(" ", "_"): joint.name for joint in robot.body.joints}
         self._si = {joint.name: joint.si for joint in robot.body.joints}
         hands = [hand for hand in _HANDS if robot.body.hand(hand) is not None]
         self._joints = node.create_publisher(JointState, "joint_states", COMMANDS)
-        self._joints_due = Every(20)
+        self._joints_due = Every(_JOINTS if player is None else _SMOOTH_JOINTS)
         self._speaking = Latched(node, Bool, "speaking", robot.speaking)
         self._holding = {hand: Latched(node, String, f"{hand}_hand/holding", "") for hand in hands}
         for hand in hands:
@@ -42,6 +51,7 @@ class Body:
             (String, "print", self._print),
         ):
             node.create_subscription(kind, topic, partial(self._hand_over, act), COMMANDS)
+        node.create_subscription(String, LANGUAGE, partial(self._hand_over, self._speak_in), LATCHED)
 
     def publish(self, now: Moment) -> None:
         """Tells the state of joints, hands and voice."""
@@ -71,7 +81,19 @@ class Body:
         return held
 
     def _move(self, message: JointTrajectory) -> None:
-        """The last point counts, and how fast is up to the joints. No point at all: they stay where they are."""
+        """Points with velocities are played. Else the last point counts, and how fast is up to the joints. No point at
+        all: they stay where they are.
+        """
+        try:
+            if self._player is not None and any(len(point.velocities) for point in message.points):
+                if not self._robot.refuses:
+                    self._player.play(message)
+                return
+            self._go(message)
+        except RobotError as problem:
+            self._logger.warning(f"joint_trajectory: {problem}")
+
+    def _go(self, message: JointTrajectory) -> None:
         names = [self._names[name] for name in message.joint_names if name in self._names]
         if not message.points:
             self._robot.freeze_joints(*(names or self._names.values()))
@@ -88,6 +110,12 @@ class Body:
         else:
             self._robot.silence()
         self._speaking.set(self._robot.speaking)
+
+    def _speak_in(self, message: String) -> None:
+        try:
+            self._robot.speak_in(message.data)
+        except RobotError as problem:
+            show(f"I can't speak {message.data!r}: {problem}", stream=sys.stderr)
 
     def _print(self, message: String) -> None:
         self._robot.print(message.data)

@@ -24,6 +24,7 @@ PACKAGES = (
     "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs",
 )  # fmt: skip
 """The packages of messages that it needs beside rclpy."""
+_RATE, _SMOOTH_RATE = 20.0, 50.0
 _UNCOMPILED = (
     "no /heard, /asking, /sightings, /follow and /hand_over: btlang's interfaces are not compiled"
     " (python -m btlang.ros.interfaces --own)"
@@ -36,8 +37,9 @@ def add_simulator_options(parser: argparse.ArgumentParser) -> None:
     add_body_options(parser, ("simulated",))
     parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
     parser.add_argument(
-        "--rate", type=between(*RATES), default=20.0, metavar="HZ", help="steps per simulated second (default: 20)"
-    )
+        "--rate", type=between(*RATES), metavar="HZ",
+        help="steps per simulated second (default: 20, or 50 for a body whose joints have accelerations)",
+    )  # fmt: skip
     parser.add_argument(
         "--clock", action=argparse.BooleanOptionalAction, default=True, help="publish simulated time on /clock"
     )
@@ -59,7 +61,8 @@ def serve(options: argparse.Namespace) -> int:
 
 
 def _simulate(options: argparse.Namespace, body: Body, world: World, came: EndingSignals) -> int:
-    speed, rate = 1.0 if options.speed == "real" else options.speed, options.rate
+    speed = 1.0 if options.speed == "real" else options.speed
+    rate = options.rate or (_SMOOTH_RATE if body.is_smooth else _RATE)
     from btlang.ros.available import require_ros
 
     require_ros(*PACKAGES)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from importlib.util import find_spec
-from typing import Any, Protocol
+from typing import Any, Protocol, cast
 
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
@@ -13,7 +13,9 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from btlang.robots import body as bodies
+from btlang.robots.parts import JointsPart, Parts
 from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.simulated_parts import simulated_parts
 from btlang.robots.world import World
 from btlang.ros.available import optional_interface
 from btlang.ros.node import SpunNode
@@ -28,6 +30,7 @@ from btlang.ros.times import stamp
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from btlang.robots.motion.smooth_joints import SmoothJoints
     from btlang.ros.simulator.hearing import Hearing
 
 
@@ -58,7 +61,14 @@ class Simulator:
         body: bodies.Body | None = None,
         seed: int | None = None,
     ) -> None:
-        self.robot = SimulatedRobot(world, body=body)
+        joints: list[JointsPart] = []
+
+        def make_parts(*of: Any) -> Parts:
+            made = simulated_parts(*of)
+            joints.append(made.joints)
+            return made
+
+        self.robot = SimulatedRobot(world, body=body, make_parts=make_parts)
         if seed is not None:
             self.robot.seed_choices(seed)
         self._show = show
@@ -66,10 +76,15 @@ class Simulator:
         self._spun = SpunNode("btlang_sim", namespace=namespace)
         self.node = node = self._spun.node
         self._wheels = Wheels(node, self.robot, self._calls)
+        self._player = None
+        if self.robot.body.is_smooth:
+            from btlang.ros.simulator.joint_player import JointPlayer  # brings ruckig
+
+            self._player = JointPlayer(self.robot.body, cast("SmoothJoints", joints[0]), self._clocks)
         self._parts: list[Part] = [
             self._wheels,
             Sensors(node, self.robot, self._calls),
-            Body(node, self.robot, self._calls),
+            Body(node, self.robot, self._calls, self._player),
             Doors(node, self.robot, self._calls),
         ]
         self._hearing: Hearing | None = None
@@ -88,6 +103,7 @@ class Simulator:
                     from btlang.ros.simulator.docking import Docking
 
                     self._parts.append(Docking(node, self.robot, self._calls, self._wheels))
+        self._stepped = self._system_time()
         self._clock = node.create_publisher(Clock, "/clock", QoSProfile(depth=1)) if gives_clock else None
         node.create_service(Trigger, "stop", self._stop)
         node.create_subscription(String, "call", self._called, COMMANDS)
@@ -104,7 +120,10 @@ class Simulator:
     def step(self, seconds: float) -> None:
         """Lets simulated time pass and publishes what has become of the robot."""
         self._wheels.watch()
+        if self._player is not None:
+            self._player.watch()
         self.robot.step(seconds)
+        self._stepped = self._system_time()
         now = self._now()
         if self._clock is not None:
             self._clock.publish(Clock(clock=now.stamp))
@@ -124,6 +143,13 @@ class Simulator:
         if self._clock is None:
             return Moment(seconds, self._spun.node.get_clock().now().to_msg())
         return Moment(seconds, stamp(seconds))
+
+    def _system_time(self) -> float:
+        return float(self.node.get_clock().now().nanoseconds) * 1e-9
+
+    def _clocks(self) -> list[float]:
+        """Seconds of what nodes may go by, at the latest step."""
+        return [self._stepped, *([self.robot.time] if self._clock is not None else [])]
 
     def _stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """In the thread of the executor, at once: it waits for no step. What is asked for from now on counts again."""

@@ -1,0 +1,125 @@
+"""Plays trajectories on smooth joints exactly, as joint trajectory controllers do."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from math import inf
+
+import numpy as np
+from trajectory_msgs.msg import JointTrajectory
+
+from btlang.robots.body import Body
+from btlang.robots.motion.course import PERIOD, Limits, Piece, State, on_quintic, to_state
+from btlang.robots.motion.kinematics import Array
+from btlang.robots.motion.movements import resting
+from btlang.robots.motion.smooth_joints import SmoothJoints
+from btlang.robots.motion.timeline import Timeline
+from btlang.robots.robot import RobotError
+from btlang.ros.times import seconds_of
+
+_SILENCE = 0.5  # simulated and real seconds without a trajectory after which the joints brake
+_FAR_OFF = 10.0  # seconds from now beyond which a stamp is from another clock, or nonsense
+_SAME, _SAME_SPEED = 0.001, 0.05  # seconds at the speed of a joint, and a share of that speed
+_CATCHES_UP = (0.05, 0.1, 0.2, 0.4, 0.8)  # seconds in which it may join what has begun already
+_TOLERANCE = 1.05  # of a limit
+
+
+class JointPlayer:
+    """A new trajectory replaces the rest of the old one. One with a stamp has to be sent again while it is played, as
+    velocities have to be: where its sender is silent, the joints brake.
+
+    `clocks` give the second of each clock that a stamp may be of, at the simulated second `now` of the joints.
+    """
+
+    def __init__(self, body: Body, joints: SmoothJoints, clocks: Callable[[], list[float]]) -> None:
+        self._body, self._clocks = body, clocks
+        self._timeline: Timeline = joints.timeline
+        self._names = [joint.name.replace(" ", "_") for joint in body.joints]
+        self._limits = Limits.of(body.joints)
+        self._si = np.array([joint.si for joint in body.joints])
+        self._playing: list[int] = []
+        self._told = self._told_really = inf  # simulated and real second of the latest one that has to be sent again
+
+    def play(self, message: JointTrajectory) -> None:
+        """Raises RobotError for one that can't be played; the joints go on then."""
+        joints, times, way = self._read(message)
+        stamp = seconds_of(message.header.stamp)
+        now = self._timeline.seconds
+        wait = min((stamp - each for each in self._clocks()), key=abs) if stamp else 0.0
+        if abs(wait) > _FAR_OFF:
+            raise RobotError(f"its stamp is {abs(wait):.0f} s from now")
+        times = times + now + wait
+        self._told, self._told_really = (now, time.monotonic()) if stamp else (inf, inf)
+        if others := set(self._playing) - set(joints):
+            self._timeline.freeze(others)
+        self._playing = joints
+        begins = max(now, float(times[0]))
+        if begins >= times[-1] and self._timeline.rests(joints):
+            return
+        at = self._joined(joints, lambda seconds: _on(times, way, seconds), begins)
+        self._timeline.follow(joints, at, begins, float(times[-1]))
+
+    def watch(self) -> None:
+        """Brakes where the sender has fallen silent; to be called before each step."""
+        quiet = self._timeline.seconds - self._told, time.monotonic() - self._told_really
+        if min(quiet) > _SILENCE:
+            self._timeline.freeze(self._playing)
+            self._told = self._told_really = inf
+
+    def _read(self, message: JointTrajectory) -> tuple[list[int], Array, State]:
+        """Its joints, the seconds of its points and how they are then. Raises RobotError."""
+        unknown = [name for name in message.joint_names if name not in self._names]
+        if unknown or len(set(message.joint_names)) != len(message.joint_names):
+            raise RobotError(f"it has no joint {unknown[0]}" if unknown else "it names a joint twice")
+        joints = [self._names.index(name) for name in message.joint_names]
+        points = message.points
+        if any({len(point.positions), len(point.velocities)} != {len(joints)} for point in points):
+            raise RobotError("a point needs a position and a velocity for each joint")
+        times = np.array([seconds_of(point.time_from_start) for point in points])
+        position, velocity = (
+            np.array([getattr(point, name) for point in points]) / self._si[joints]
+            for name in ("positions", "velocities")
+        )
+        limits = self._limits.some(joints)
+        if (np.diff(times) <= 0.0).any() or times[0] < 0.0:
+            raise RobotError("its times don't rise")
+        if not (np.isfinite(position).all() and (np.abs(velocity) <= limits.speed * _TOLERANCE).all()):
+            raise RobotError("a joint would be too fast, or nowhere")
+        acceleration = np.gradient(velocity, times, axis=0) if len(times) > 1 else 0.0 * velocity
+        return joints, times, State(np.clip(position, limits.low, limits.high), velocity, acceleration)
+
+    def _joined(self, joints: list[int], at: Callable[[Array], State], begins: float) -> Callable[[Array], State]:
+        """How they get from what they do to a way that has begun. Raises RobotError where they can't."""
+        tick = PERIOD * np.ceil(begins / PERIOD - 1e-6)
+        now, wanted = self._timeline.at(tick).of(joints), at(np.array([tick]))
+        off, faster = np.abs(wanted.position[0] - now.position), np.abs(wanted.velocity[0] - now.velocity)
+        limits = self._limits.some(joints)
+        if (off <= _SAME * limits.speed).all() and (faster <= _SAME_SPEED * limits.speed).all():
+            return at
+        for within in _CATCHES_UP:
+            goal = at(np.array([tick + within]))
+            goal = State(*(getattr(goal, name)[0] for name in State.fields))
+            piece = to_state(now, goal, limits, within)
+            if piece is not None and piece.seconds <= within + 1e-6:
+                return _first(piece, tick, at)
+        self._timeline.freeze(joints)
+        raise RobotError("the joints are too far from where it begins")
+
+
+def _first(piece: Piece, begins: float, at: Callable[[Array], State]) -> Callable[[Array], State]:
+    def joined(seconds: Array) -> State:
+        early, late = piece.at(np.clip(seconds - begins, 0.0, piece.seconds)), at(seconds)
+        joins = (seconds < begins + piece.seconds)[:, None]
+        return State(*(np.where(joins, getattr(early, name), getattr(late, name)) for name in State.fields))
+
+    return joined
+
+
+def _on(times: Array, way: State, seconds: Array) -> State:
+    """Where they are at some seconds; before and after the points they rest."""
+    if len(times) == 1:
+        return resting(np.repeat(way.position, len(seconds), axis=0))
+    before = np.clip(np.searchsorted(times, seconds, side="right") - 1, 0, len(times) - 2)
+    start, end = (State(*(getattr(way, name)[rows] for name in State.fields)) for rows in (before, before + 1))
+    return on_quintic(start, end, (times[before + 1] - times[before])[:, None], seconds - times[before])
