@@ -1,4 +1,6 @@
-"""Makes the pictures that the README shows: `python docs/make_pictures.py [FOLDER]`, by default into docs/pictures."""
+"""Makes the pictures that the README shows: `python docs/make_pictures.py [FOLDER]`, by default into docs/pictures. With
+`--page` it makes that of the page instead, in the browser of the tests.
+"""
 
 from __future__ import annotations
 
@@ -33,5 +35,20 @@ def make_pictures(folder: Path) -> None:
     assert main(["world", str(guide / "world.toml"), "--picture", str(folder / "guide_museum.svg")]) == 0
 
 
+def make_page_picture(folder: Path) -> None:
+    """Brings the guide up with its server, and takes a picture of its page; needs npm."""
+    sys.path.insert(0, str(DOCS.parent))
+    from tests.server.doors import PASSWORD
+    from tests.web.packages import installed, node
+    from tests.web.served import served
+
+    scripts = DOCS.parent / "tests" / "web"
+    with served("--robot", str(DOCS.parent / "examples" / "guide" / "robot.toml")) as address:
+        picture = str(folder / "page_guide.png")
+        node(scripts / "guide_picture.mjs", address, PASSWORD, picture, folder=installed(scripts))
+
+
 if __name__ == "__main__":
-    make_pictures(Path(sys.argv[1]) if len(sys.argv) > 1 else DOCS / "pictures")
+    given = [word for word in sys.argv[1:] if word != "--page"]
+    make = make_page_picture if "--page" in sys.argv else make_pictures
+    make(Path(given[0]).absolute() if given else DOCS / "pictures")
