@@ -365,6 +365,7 @@ _ELSEWHERE = {
     "mcp": "btlang.mcp_server",
     "new": "btlang.templates.command",
     "world": "btlang.maps.command",
+    "gesture": "btlang.gestures.command",
     "task": "btlang.task.command",
     "components": "btlang.task.component_command",
     "serve": "btlang.server.command",
@@ -394,7 +395,3 @@ _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "help": _help,
     "version": _version,
 }
-
-
-if __name__ == "__main__":
-    sys.exit(main())

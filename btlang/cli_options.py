@@ -13,15 +13,15 @@ from itertools import takewhile
 from btlang.arguments import between, duration, picture, speed
 from btlang.diagnostics.report import FORMATS
 from btlang.frontends.mission.reader import DEFAULT_PARSER, PARSERS
+from btlang.option_parser import OptionParser
 from btlang.robots.options import add_robot_words, add_world
 from btlang.run.limits import RATES
-from btlang.text.output import WIDEST, columns, show
-from btlang.text.spelling import nearest, respellings
+from btlang.text.spelling import respellings
 from btlang.vocabulary.shipped import ENGLISH
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, NoReturn
+    from typing import Any
 
 
 def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
@@ -35,7 +35,9 @@ def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
     for word in takewhile(lambda word: word != "--", words):
         if word.startswith("--") and " " not in word:
             parser.check_option(word.partition("=")[0])
-    read = parser.parse_known_intermixed_args if verb in ("robot", "task", "world") else parser.parse_known_args
+    read = (
+        parser.parse_known_intermixed_args if verb in ("robot", "task", "world", "gesture") else parser.parse_known_args
+    )
     options, unknown = read(words)
     if unknown:
         parser.refuse(f"unexpected argument '{unknown[0]}'")
@@ -58,17 +60,17 @@ def verb_parsers() -> dict[str, tuple[str, argparse.ArgumentParser]]:
     return {verb: (about, _verb_parser(verb)) for verb, (about, _) in _OPTIONS.items()}
 
 
-def _main_parser() -> _Parser:
+def _main_parser() -> OptionParser:
     usage = 'btc [VERB] [OPTION ...]\n       btc FILE|"MISSION" [OPTION ...]   as with the verb run'
-    parser = _Parser("btc", usage=usage, description="Compiles and runs robot missions in plain English.")
+    parser = OptionParser("btc", usage=usage, description="Compiles and runs robot missions in plain English.")
     verbs = parser.add_subparsers(metavar="VERB", title="verbs", description="btc help VERB lists its options.")
     for verb, (about, _) in _OPTIONS.items():
         verbs.add_parser(verb, help=about)
     return parser
 
 
-def _verb_parser(verb: str) -> _Parser:
-    parser = _Parser(f"btc {verb}")
+def _verb_parser(verb: str) -> OptionParser:
+    parser = OptionParser(f"btc {verb}")
     parser.set_defaults(**_DEFAULTS, verb=verb)
     _OPTIONS[verb][1](parser)
     if verb in _READING:
@@ -328,6 +330,10 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "robot": ("keep a robot up for many tasks of many people", _elsewhere("btlang.task.options", "add_robot_options")),
     "task": ("give work to a robot that is up", _elsewhere("btlang.task.options", "add_task_options")),
     "world": ("check, draw, import and export world files", _elsewhere("btlang.maps.options", "add_world_options")),
+    "gesture": (
+        "play, check, draw and record gestures of a robot",
+        _elsewhere("btlang.gestures.options", "add_gesture_options"),
+    ),
     "components": (
         "list the components and devices of a robot that is up",
         _elsewhere("btlang.task.options", "add_component_options"),
@@ -363,38 +369,3 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
 
 
 _ALIASES = {"-h": "help", "--help": "help", "--version": "version"}
-
-
-class _Help(argparse.HelpFormatter):
-    """Asks for the width of the terminal only to print: argparse makes one for each option that it is told of."""
-
-    def __init__(self, prog: str) -> None:
-        super().__init__(prog, width=WIDEST)
-
-    def format_help(self) -> str:
-        self._width = columns(80) - 2
-        return super().format_help()
-
-
-class _Parser(argparse.ArgumentParser):
-    def __init__(self, prog: str | None = None, **options: Any) -> None:
-        super().__init__(prog, formatter_class=_Help, **options)
-        self.set_defaults(refuse=self.refuse)  # ends with a usage error what only the verb can see to be wrong
-
-    def check_option(self, name: str) -> None:
-        """Refuses an option that doesn't exist, before its value is taken for a file."""
-        known = [option for action in self._actions for option in action.option_strings]
-        if not any(option.startswith(name) for option in known):
-            near = nearest(name, known, 1)
-            self.refuse(f"there's no option '{name}'", f"Did you mean: {near[0]}" if near else "")
-
-    def error(self, message: str) -> NoReturn:
-        self.refuse(message)
-
-    def refuse(self, message: str, hint: str = "") -> NoReturn:
-        """Ends the command with exit code 2, after a line that says what is wrong and one that says what to do."""
-        hint = hint or f"Run 'btc help{self.prog.removeprefix('btc')}' for help."
-        self.exit(2, f"{self.prog}: {message}\n{hint}\n")
-
-    def _print_message(self, message: str, file: Any = None) -> None:
-        show(message, sys.stderr if file is None else file, end="")

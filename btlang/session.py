@@ -14,19 +14,21 @@ from btlang.diagnostics.errors import MissionError
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine, EngineError
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.saving import SaveError
 from btlang.engine.timing import Stopwatch
 from btlang.robots.proxy import RobotProxy
 from btlang.robots.registry import connector
+from btlang.robots.spoken import SpokenCommands, choices
 from btlang.robots.world import Place
 from btlang.robots.world_problem import read_world
-from btlang.run.bus import INLINE, Bus
+from btlang.run.bus import Bus
 from btlang.run.controls import Controls, disable
-from btlang.run.events import Chosen
 from btlang.run.failure_history import FailureHistory
 from btlang.run.limits import RATES, SLOWEST
 from btlang.run.recent import RecentEvents
 from btlang.run.report import failure_report
+from btlang.run.resumption import RunChoices
 from btlang.run.runner import Outcome, Runner, traced_engine
 from btlang.run.snapshot import Follower, Snapshot
 from btlang.run.statuses import Status
@@ -40,6 +42,7 @@ if TYPE_CHECKING:
     from typing import Any, Protocol
 
     from btlang.engine.instance import Hooks
+    from btlang.robots.body import Body
     from btlang.robots.registry import Connect
     from btlang.run.connection import Connection
     from btlang.run.events import Event, Sink
@@ -205,7 +208,7 @@ class Run:
         self.follower = Follower(self._engine)
         """The statuses of all nodes, for any thread."""
         self._recent = RecentEvents()
-        self._choices = _Choices()
+        self._choices = RunChoices()
         for own in (self._story, self.follower, self._recent, self._choices):
             self.bus.add(own)
         self._runner = Runner(
@@ -287,7 +290,7 @@ class Run:
             saved = self._runner.between_ticks(self._engine.save)
         except SaveError as error:
             raise MissionError([diagnostic("BT192", NOWHERE, reason=str(error))]) from None
-        return {**saved, "seed": self.seed, "choices": self._choices.made}
+        return {**saved, **self._choices.save(), "seed": self.seed}
 
     def call(self, call: Callable[[], Any]) -> Any:
         """What `call` returns or raises, in the thread of the run, between two ticks; waits until then."""
@@ -300,11 +303,9 @@ class Run:
     def _restore(self, saved: Mapping[str, Any]) -> None:
         try:
             self._engine.restore(saved)
-            self._choices.made = int(saved["choices"])
-        except (SaveError, KeyError, TypeError, ValueError) as error:
+            self._choices.restore(saved, self._robot, self.seed)
+        except (SaveError, ActionFailed, KeyError, TypeError, ValueError) as error:
             raise MissionError([diagnostic("BT193", NOWHERE, reason=str(error))]) from None
-        if self._choices.made:
-            self._robot.seed_choices(self.seed, self._choices.made)
 
     def emergency_stop(self) -> None:
         """Stops the robot at once without waiting for the current tick, then ends the run.
@@ -358,6 +359,10 @@ class Run:
         if hasattr(connection.robot, "seed_choices"):
             connection.robot.seed_choices(self.seed)
         connection.check(mission.tree, mission.vocabulary)
+        body: Body | None = getattr(connection.robot, "body", None)
+        if body is not None and body.ears is not None:
+            connection.robot.ears.choices = choices(mission.tree, mission.vocabulary)
+            connection.robot.ears.commands = SpokenCommands(mission.vocabulary, body)
         for sink in sinks:
             self.bus.add(sink)
         connection.begin(self.bus)
@@ -385,16 +390,3 @@ class Run:
 
 def _bind(vocabulary: Lexicon, connection: Connection, node_id: str) -> Any:
     return bind_leaf(node_id, vocabulary, connection.bind)
-
-
-class _Choices:
-    """Counts the random choices of a run."""
-
-    policy = INLINE
-
-    def __init__(self) -> None:
-        self.made = 0
-
-    def __call__(self, event: Event) -> None:
-        if isinstance(event, Chosen) and event.how == "random":
-            self.made += 1

@@ -13,7 +13,7 @@ from btlang.cli import main
 from tests.examples.cases import CASES
 
 ROOT = Path(__file__).parent.parent
-FOLDERS = ["guide"]
+FOLDERS = ["guide", "rover"]
 
 
 def command(text: str) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from importlib.resources import files
 from typing import Protocol
@@ -13,9 +13,12 @@ from btlang.actions.speech import say
 from btlang.actions.strokes import Presenting
 from btlang.actions.watch import Watch
 from btlang.engine.leaves.leaf import ActionFailed, Failed
+from btlang.robots.body import Body
 from btlang.robots.capabilities import Conversing, Listening
 from btlang.robots.world import said
+from btlang.speech.grammar import plain
 from btlang.speech.marks import without_marks
+from btlang.speech.recogniser import Expected
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -23,6 +26,7 @@ if TYPE_CHECKING:
 
 WAITS = 60.0
 """Seconds of the mission in which somebody has to answer."""
+MEANINGS = ("yes", "no")
 
 
 class Questioning(Conversing, Presenting, Protocol):
@@ -34,17 +38,18 @@ def ask(robot: Questioning, question: str, person: str | None = None, kept: dict
     if person is not None:
         robot.locate(person)  # nobody is asked whom the robot hasn't seen
     yield from say(robot, question, kept)
-    yield from _listened(robot, without_marks(question), person, lambda text: True)
+    expected = answers(robot.ears.choices, robot.body)
+    yield from listened(robot, without_marks(question), lambda text: True, expected, person)
 
 
 def listen_for_yes_or_no(robot: Listening) -> Steps:
     """Waits until somebody says yes or no. Fails after a minute."""
-    yield from _listened(robot, "", None, lambda text: meaning_of(text) in ("yes", "no"))
+    yield from listened(robot, "", lambda text: meaning_of(text) in MEANINGS, answers(MEANINGS, robot.body))
 
 
 def listen_for(robot: Listening, text: str) -> Steps:
     """Waits until somebody says these words, maybe among others. Fails after a minute."""
-    yield from _listened(robot, "", None, lambda heard: holds(heard, text))
+    yield from listened(robot, "", lambda heard: holds(heard, text), answers((text,), robot.body))
 
 
 def answer_is(robot: Listening, text: str) -> bool | Failed:
@@ -64,7 +69,30 @@ def answer(robot: Listening) -> str:
 
 def has_heard(robot: Listening, text: str) -> bool:
     """Whether somebody has said these words, maybe among others."""
+    robot.ears.news(text, robot.time)  # it listens for them
     return any(holds(heard.text, text) for heard in robot.ears.since(0))
+
+
+def somebody_says(robot: Listening, text: str) -> bool:
+    """Whether somebody has said these words since this was asked last."""
+    return any(holds(heard.text, text) for heard in robot.ears.news(text, robot.time))
+
+
+def answers(texts: Iterable[str], body: Body) -> Expected:
+    """What is listened for as one of these answers: the words, politely or not, and all that means yes or no for these.
+
+    Without any, whatever is said.
+    """
+    language = body.ears.settings.language.partition("-")[0] if body.ears is not None else ""
+    phrases: dict[str, None] = {}
+    for text in texts:
+        meaning = meaning_of(text)
+        if meaning in MEANINGS:
+            phrases.update(dict.fromkeys(map(plain, _answers().get(language, _answers()["en"])[meaning])))
+        elif words := plain(text):
+            phrases[f"[i would like/want] [a/an/the/some] {words} [please]"] = None
+            phrases[f"i'd like [a/an/the/some] {words} [please]"] = None
+    return Expected(tuple(phrases), anything=not phrases)
 
 
 def holds(heard: str, text: str) -> bool:
@@ -72,43 +100,51 @@ def holds(heard: str, text: str) -> bool:
     words, wanted = _words(heard), _words(text)
     found = any(words[at : at + len(wanted)] == wanted for at in range(len(words) - len(wanted) + 1))
     meaning = meaning_of(text)
-    return meaning_of(heard) == meaning if meaning in ("yes", "no") else found
+    return meaning_of(heard) == meaning if meaning in MEANINGS else found
 
 
 def meaning_of(text: str) -> str:
     """ "yes" or "no" for what means that, else the text."""
     words = _words(text)
-    for meaning, phrases in _answers().items():
-        if any(words[: len(phrase)] == phrase for phrase in phrases):
-            return meaning
+    for forms in _answers().values():
+        for meaning, phrases in forms.items():
+            if any(words[: len(phrase.split())] == phrase.split() for phrase in phrases):
+                return meaning
     return text
 
 
 @cache
-def _answers() -> dict[str, list[list[str]]]:
-    table = tomllib.loads(files("btlang.actions").joinpath("answers.toml").read_text(encoding="utf-8"))
-    return {meaning: [phrase.split() for phrase in phrases] for meaning, phrases in table.items()}
+def _answers() -> dict[str, dict[str, list[str]]]:
+    """By languages, then by "yes" and "no"."""
+    return tomllib.loads(files("btlang.actions").joinpath("answers.toml").read_text(encoding="utf-8"))
 
 
 def _words(text: str) -> list[str]:
     return "".join(letter if letter.isalnum() or letter == "'" else " " for letter in text.lower()).split()
 
 
-def _listened(robot: Listening, question: str, person: str | None, wanted: Callable[[str], bool]) -> Steps:
-    """Waits for the first text that is wanted, which is then the answer."""
+def listened(
+    robot: Listening,
+    question: str,
+    wanted: Callable[[str], bool],
+    expected: Expected,
+    person: str | None = None,
+) -> Steps:
+    """Waits for the first text that is wanted, which is then the answer. Fails after a minute."""
     watch, ears = Watch(robot), robot.ears
     count, until = ears.count, robot.time + WAITS
     robot.ask(question, person or "")
     try:
-        while True:
-            for heard in ears.since(count):
-                if wanted(heard.text) and (person is None or heard.who in (person, "")):
-                    ears.answer = heard.text
-                    return
-            if robot.time > until:
-                raise ActionFailed(f"{said(person)} didn't answer" if person else "nobody answered")
-            count = ears.count
-            yield
-            watch.check_stop()
+        with ears.awaiting(expected):
+            while True:
+                for heard in ears.since(count):
+                    if wanted(heard.text) and (person is None or heard.who in (person, "")):
+                        ears.answer = heard.text
+                        return
+                if robot.time > until:
+                    raise ActionFailed(f"{said(person)} didn't answer" if person else "nobody answered")
+                count = ears.count
+                yield
+                watch.check_stop()
     finally:
         ears.asking = ""

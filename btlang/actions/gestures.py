@@ -6,9 +6,10 @@ from typing import Protocol
 
 from btlang.actions.joints import take
 from btlang.actions.motion import Steps
+from btlang.actions.navigation import accomplish
 from btlang.actions.points import spot, where
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Base, Joints
+from btlang.robots.capabilities import Base, Gesturing, Joints
 from btlang.robots.geometry import Point
 from btlang.robots.world import said
 
@@ -20,6 +21,22 @@ class Aiming(Joints, Base, Protocol):
 def wave(robot: Aiming, person: str | None = None) -> Steps:
     """Waves the right arm, towards the person if one is named, and lets it hang again."""
     yield from _towards(robot, "wave", person) if person else take(robot, "wave")
+
+
+def perform(
+    robot: Gesturing,
+    movement: str,
+    person: str | None = None,
+    object: str | None = None,
+    place: str | None = None,
+    x: float | None = None,
+    y: float | None = None,
+) -> Steps:
+    """Does a gesture of the robot file, aimed at what is named. Fails where that is out of reach."""
+    name = person or object
+    is_aimed = name or place or x is not None
+    aim = None if not is_aimed else robot.locate(name) if name else where(robot, place, x, y)
+    yield from accomplish(robot.gesture(movement, aim=aim))
 
 
 def point_at_person(robot: Aiming, person: str) -> Steps:

@@ -48,6 +48,11 @@ def _begun(robot: Voice, text: str) -> int:
     return sentence_start(text, robot.said.index_at(spoken)) if robot.speaking else len(text)
 
 
+def speak_language(robot: Voice, language: str) -> None:
+    """What is said from now on is in this language, such as "es", to the end of the mission."""
+    robot.speak_in(language)
+
+
 def print_text(robot: Voice, text: str) -> None:
     """Shows the text."""
     robot.print(text)

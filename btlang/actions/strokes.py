@@ -14,7 +14,7 @@ from btlang.speech.marks import Mark
 
 _LOOKS_AHEAD = 4.0  # seconds before a word in which the way to a stroke is planned
 _PERIOD = 0.2  # seconds to the next tick, as long as none has shown how long that takes
-_LATEST = 1.0  # seconds that speech may begin later, for its first stroke
+_LATEST = 2.0  # seconds by which speech may begin later, for its first stroke
 
 
 class Presenting(Voice, Gesturing, Protocol):

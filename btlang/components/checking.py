@@ -16,9 +16,11 @@ from btlang.devices.drivers import SIMULATED, driver_class, make_driver
 from btlang.devices.kinds import KINDS
 from btlang.devices.simulated import SimulatedDevice
 from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.robots.body import Body, ComponentPart, Device
 from btlang.robots.body_file import BodyError, load_body
-from btlang.robots.data_file import as_mission_error, placed
+from btlang.robots.data_file import DataFileError, as_mission_error, placed
+from btlang.robots.gesture_words import gesture_words
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem
 from btlang.vocabulary.capabilities import CAPABILITIES
@@ -31,10 +33,10 @@ _DESCRIBE = 30.0  # seconds that a class gets to be loaded and to say what it is
 
 
 def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:
-    """The body of a robot file, None where it can't be read, and what is wrong with the file (BT071)."""
+    """The body of a robot file, None where it can't be read, and what is wrong with the file (BT071, BT076)."""
     try:
         body = load_body(source)
-    except BodyError as error:
+    except DataFileError as error:
         return None, list(as_mission_error(error).diagnostics)
     found: list[Diagnostic] = []
     described: dict[str, Mapping[str, Any]] = {}
@@ -45,6 +47,10 @@ def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:
     methods = {located(place): known["methods"] for place, known in described.items()} if all_loaded else {}
     for path in _words(body):
         found += check_words(path, methods)
+    try:
+        gesture_words(body)
+    except MissionError as error:
+        found += error.diagnostics
     return body, found
 
 

@@ -10,6 +10,7 @@ from btlang.backends.engine import leaf_binding
 from btlang.components.component import ComponentError
 from btlang.components.device_robot import DeviceSimulation
 from btlang.components.gate import Gate
+from btlang.components.hearing import Hearing
 from btlang.components.inside_host import InsideHost
 from btlang.components.manager import Keeper, Manager, class_of
 from btlang.components.process_host import ProcessHost
@@ -21,6 +22,7 @@ from btlang.robots.body_file import unusable_robot
 from btlang.robots.platforms import node_function
 from btlang.robots.simulation import Simulation
 from btlang.run.events import RobotEvent
+from btlang.speech.recogniser import RecogniserError
 from btlang.vocabulary.entry import COMPARISONS, MEASURED
 
 TYPE_CHECKING = False
@@ -63,6 +65,7 @@ class ComponentConnection:
         kinds = {name: device.kind for name, device in self.devices.devices.items()}
         self._gates = {name: Gate(reads, kinds[name], self.robot) for name, reads in self.devices.readers.items()}
         self.manager = Manager(body.components, self._host, self._tell, self._in_use)
+        self._hearing = Hearing(body, self.robot, self.devices) if body.ears and body.ears.engine else None
         self.robot.on_step = self._step
         self.manager.start()
         self.manager.wait(_UP)
@@ -112,6 +115,8 @@ class ComponentConnection:
     def close(self) -> None:
         """See Connection."""
         try:
+            if self._hearing is not None:
+                self._hearing.close()
             self.manager.close()
             if self._nodes is not None:
                 self._nodes.close()
@@ -145,6 +150,8 @@ class ComponentConnection:
 
     def _step(self, seconds: float) -> None:
         self.devices.step()
+        if self._hearing is not None:
+            self._hearing.step()
         for keeper in self.manager.keepers:
             if isinstance(keeper.host, InsideHost):
                 keeper.host.step(seconds)
@@ -227,7 +234,7 @@ def component_connection(connect: Callable[[], Connection], body: Body) -> Conne
             class_of(part)
         inner = connect()
         return ComponentConnection(inner, body)
-    except (ComponentError, DeviceError, MissionError) as problem:
+    except (ComponentError, DeviceError, MissionError, RecogniserError) as problem:
         if inner is not None:
             inner.close()
         if isinstance(problem, MissionError):  # without ROS 2

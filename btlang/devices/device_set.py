@@ -90,6 +90,12 @@ class DeviceSet:
         """The name of the first device of a kind; "" where there is none."""
         return next((name for name, device in self.devices.items() if device.kind == kind), "")
 
+    def follow(self, name: str, take: Callable[[Reading], object]) -> None:
+        """As DeviceLoop.follow; a simulated device has nothing to follow."""
+        for loop in self.loops:
+            if name in loop.devices:
+                loop.follow(name, take)
+
     def states(self) -> Sequence[tuple[Device, str | None]]:
         """All devices, with why each is silent."""
         return [(device, self._reads[name].silent(name)) for name, device in self.devices.items()]

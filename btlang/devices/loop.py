@@ -41,6 +41,7 @@ class DeviceLoop:
         self._commands: dict[str, tuple[Command, float]] = {}
         self._readings: dict[str, tuple[Reading, float]] = {}
         self._wrong: dict[str, str | None] = dict.fromkeys(self.devices, _NOT_YET)
+        self._followers: dict[str, list[Callable[[Reading], object]]] = {}
         self.settled = threading.Event()
         """Set once it is known of each device whether it answers."""
         self._stopped = threading.Event()
@@ -64,6 +65,10 @@ class DeviceLoop:
         if wrong is None and found is not None:
             return found[0]
         raise DeviceSilent(f"the {name} is silent: {wrong or _NOTHING_NEW}")
+
+    def follow(self, name: str, take: Callable[[Reading], object]) -> None:
+        """`take` gets each new reading from now on, in the thread of the loop; it must return at once."""
+        self._followers[name] = [*self._followers.get(name, ()), take]
 
     def write(self, name: str, command: Command) -> None:
         """Tells a device a command, which counts for `silence` seconds; whoever drives tells it again.
@@ -142,7 +147,10 @@ class DeviceLoop:
             self._readings.pop(name, None)
             self._set_wrong(name, wrong)
         else:
-            self._readings[name] = _calibrated(reading, self.devices[name]), now
+            calibrated = _calibrated(reading, self.devices[name])
+            self._readings[name] = calibrated, now
+            for take in self._followers.get(name, ()):
+                take(calibrated)
             self._set_wrong(name, None)
 
     def _set_wrong(self, name: str, reason: str | None) -> None:

@@ -22,7 +22,8 @@ _NONE: Holders = {}  # one for all
 def check_resources(compilation: Compilation) -> list[Diagnostic]:
     """BT041 once for each parallel and resource that two of its children need."""
     vocabulary = compilation.vocabulary
-    needs = {id: vocabulary.entries[id][0].resources for id in compilation.ids if id in vocabulary.entries}
+    known = {id: vocabulary.entries[id] for id in compilation.ids if id in vocabulary.entries}
+    needs = {id: dict.fromkeys(each for entry in known[id] for each in entry.resources) for id in known}
     at_once = {id for id in compilation.ids if id in CATALOGUE and CATALOGUE[id].at_once}
     problems: list[Diagnostic] = []
 

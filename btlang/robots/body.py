@@ -9,6 +9,7 @@ from math import pi
 from btlang.record import Record
 from btlang.robots.gesture import BEARINGS, Gesture, Step, angle_of
 from btlang.speech.engine import Settings
+from btlang.speech.recogniser import RecogniserSettings
 from btlang.vocabulary.capabilities import POSTURE
 
 TYPE_CHECKING = False
@@ -157,9 +158,15 @@ class Mouth(Record):
 
 
 class Ears(Record):
-    """It understands what is said up to `within` metres away."""
+    """It understands what is said up to `within` metres away, through microphones by a recogniser; "" without one.
+
+    Without a `wake` word and `settings.push` it listens all the time.
+    """
 
     within: float
+    engine: str = ""
+    settings: RecogniserSettings = RecogniserSettings()
+    wake: str = ""
 
 
 class Device(Record):

@@ -16,7 +16,6 @@ from btlang.robots.body import (
     ComponentPart,
     Device,
     Dock,
-    Ears,
     HandPart,
     Limits,
     Navigation,
@@ -24,7 +23,9 @@ from btlang.robots.body import (
     Sensor,
 )
 from btlang.robots.data_file import DataFileError, as_mission_error, load_data
-from btlang.robots.gesture import Step
+from btlang.robots.ears_file import read_ears
+from btlang.robots.gesture import Gesture, Step
+from btlang.robots.gesture_file import read_gestures
 from btlang.robots.platforms import ROBOTS
 from btlang.robots.voice_file import read_mouth, read_voice
 from btlang.text.source import Source
@@ -54,7 +55,7 @@ class BodyError(DataFileError):
 
 
 def load_body(file: str | Source, overs: Collection[str] = tuple(ROBOTS)) -> Body:
-    """The robot in a file or a text, which may run on one of `overs`. Raises BodyError.
+    """The robot in a file or a text, which may run on one of `overs`. Raises BodyError, or GestureError.
 
     A text that isn't that of a file which the user named has no components and no devices but simulated ones.
     """
@@ -64,10 +65,10 @@ def load_body(file: str | Source, overs: Collection[str] = tuple(ROBOTS)) -> Bod
 
 
 def read_body(file: str | Source, overs: Collection[str] = tuple(ROBOTS)) -> Body:
-    """As `load_body`. Raises MissionError (BT071)."""
+    """As `load_body`. Raises MissionError (BT071, BT076)."""
     try:
         return load_body(file, overs)
-    except BodyError as error:
+    except DataFileError as error:
         raise as_mission_error(error) from None
 
 
@@ -106,6 +107,9 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     forbidden = problems.part(lambda: joint_tables.forbidden_pairs(top), tuple[tuple[str, str], ...]())
     if not problems.found:
         problems.found += joint_tables.link_problems(joints, capsules, forbidden)
+    gestures = dict[str, Gesture]()
+    if top.has("gestures") and not problems.found:
+        gestures = problems.part(lambda: read_gestures(top, joints, file), gestures)
     hands = _listed(top, "hands", _hand, problems)
     sensors = _listed(top, "sensors", _sensor, problems, key="kind")
     problems.found += [
@@ -122,10 +126,10 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     made = Body(
         name, radius, over, base, navigation, joints, postures, hands, sensors, battery, dock, voice, screen,
         devices, components, file, problems.part(lambda: _beside(top, "world", file), ""),
-        problems.part(lambda: _ears(top), None), capsules, forbidden,
+        problems.part(lambda: read_ears(top, bool(file)), None), capsules, forbidden,
         rules=problems.part(lambda: _beside(top, "rules", file), ""),
         missions=problems.part(lambda: _beside(top, "missions", file, os.path.isdir), ""),
-        schedules=problems.part(lambda: _beside(top, "schedules", file), ""),
+        schedules=problems.part(lambda: _beside(top, "schedules", file), ""), gestures=gestures,
     )  # fmt: skip
     mouth = problems.part(lambda: read_mouth(top, made), None)
     problems.part(lambda: top.finish(made), made)
@@ -193,13 +197,6 @@ def _dock(top: Table) -> Dock | None:
     speed = table.number("speed", 0.15, low=_LEAST)
     retries = int(table.number("retries", 2, low=0, high=100))
     return table.finish(Dock(within, beyond, backs_off, staging, speed, retries))
-
-
-def _ears(top: Table) -> Ears | None:
-    if not top.has("ears"):
-        return None
-    table = top.table("ears")
-    return table.finish(Ears(table.number("within", low=_LEAST)))
 
 
 def _base(table: Table) -> Base:

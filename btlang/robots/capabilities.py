@@ -351,6 +351,13 @@ class Voice(Machine, Protocol):
     def say(self, text: str, after: float = 0.0) -> None:
         """Starts to speak after so many seconds; `speaking` is False when it has finished. Raises RobotError."""
 
+    @property
+    def language(self) -> str:
+        """In which it speaks, such as "en"; "" where it has no voice."""
+
+    def speak_in(self, language: str) -> None:
+        """What is said from now on is in this language, to the end of the run. Raises RobotError where it can't."""
+
     def utterance(self, text: str) -> Utterance:
         """What it would say, with the times of the words. Raises RobotError."""
 

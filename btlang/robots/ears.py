@@ -1,10 +1,21 @@
-"""What the robot hears, and the question that it waits for an answer to."""
+"""What the robot hears, what it listens for at this moment, and the question that it waits for an answer to."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from math import inf
+
 from btlang.record import Record
+from btlang.speech.grammar import plain
+from btlang.speech.recogniser import Expected
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 _MOST = 100
+_LISTENS = 5.0  # seconds for which it listens for what a condition has looked for
 
 
 class Heard(Record):
@@ -21,10 +32,21 @@ class Ears:
     def __init__(self) -> None:
         self._heard: list[Heard] = []
         self._count = 0
+        self._awaited: list[Expected] = []
+        self._looks: dict[str, tuple[float, int, int]] = {}
         self.asking = ""
         """The open question; "" where there is none."""
         self.answer = ""
         """What answered the last question."""
+        self.commands: Any = None
+        """A btlang.robots.spoken.SpokenCommands: those that people may speak; None where there are none."""
+        self.choices: tuple[str, ...] = ()
+        """The answers that the mission asks about: "if the answer is tea"."""
+
+    def begin(self) -> None:
+        """A run begins: nobody is asked anything, and nothing is listened for."""
+        self.asking = self.answer = ""
+        self._awaited, self._looks = [], {}
 
     @property
     def count(self) -> int:
@@ -40,3 +62,33 @@ class Ears:
         """Somebody said this, or typed it."""
         self._heard = [*self._heard[-_MOST + 1 :], Heard(text, who, time)]
         self._count += 1
+
+    @contextmanager
+    def awaiting(self, expected: Expected) -> Iterator[None]:
+        """Listens for this meanwhile."""
+        self._awaited = [*self._awaited, expected]
+        try:
+            yield
+        finally:
+            self._awaited = [each for each in self._awaited if each is not expected]
+
+    def news(self, text: str, now: float) -> list[Heard]:
+        """What was heard since this text was last looked for, in which it may be; nothing at the first look.
+
+        The robot listens for the text until 5 seconds after the last look. All who look at one time see the same.
+        """
+        looked, before, then = self._looks.get(text, (-inf, 0, 0))
+        if now - looked > _LISTENS:
+            before = self._count
+        elif now != looked:
+            before = then
+        self._looks[text] = now, before, self._count
+        return self.since(before)
+
+    def expected(self, now: float) -> Expected:
+        """What the robot listens for."""
+        texts = (plain(text) for text, (looked, _, _) in self._looks.items() if now - looked <= _LISTENS)
+        found = Expected(tuple(filter(None, texts)))
+        for each in self._awaited:
+            found |= each
+        return found

@@ -34,7 +34,8 @@ class Gesture(Record):
 
     The way to the stroke may take `least` to `most` times as long as its key frames say, so that the stroke meets a
     word. `aim` is the part of the body, such as "right arm", that points at what the phrase names: its joints are found
-    by geometry at the stroke. `phrases` are those of the word, `help` says what it is.
+    by geometry at the stroke. `phrases` are those of the word, `help` says what it is. `other` is what is done instead
+    where the target is on the other side of the robot than the part that points at it. `file` is where it comes from.
     """
 
     name: str
@@ -45,6 +46,13 @@ class Gesture(Record):
     aim: str = ""
     least: float = 0.7
     most: float = 1.5
+    other: Gesture | None = None
+    file: str = ""
+
+    def towards(self, bearing: float) -> Gesture:
+        """That of the side that is nearer to what is `bearing` degrees to the left."""
+        is_left = self.aim.startswith("left")
+        return self if self.other is None or bearing == 0.0 or is_left == (bearing > 0.0) else self.other
 
     @property
     def seconds(self) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from math import hypot
 
 from btlang.robots.body import Capsule, Joint, Vector
@@ -113,10 +113,12 @@ def postures(top: Table, joints: Sequence[Joint]) -> dict[str, tuple[Step, ...]]
     return found
 
 
-def step(table: Table, known: Mapping[str, Joint]) -> Step:
-    """Where some joints are. Raises Problem."""
+def step(table: Table, known: Mapping[str, Joint], others: Collection[str] = ()) -> Step:
+    """Where some joints are; `others` are keys of the table that are no joints. Raises Problem."""
     found: dict[str, float | str] = {}
     for name in table.keys():  # noqa: SIM118
+        if name in others:
+            continue
         if name not in known:
             listed = ", ".join(known) or "none"
             raise table.problem(name, f'the robot has no joint "{name}"; its joints are {listed}')

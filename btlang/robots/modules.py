@@ -10,6 +10,7 @@ from importlib.util import module_from_spec
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import ModuleType
+    from typing import Any
 
 
 def module_of(name: str, folder: str) -> ModuleType:
@@ -32,3 +33,19 @@ def module_of(name: str, folder: str) -> ModuleType:
             sys.modules[name] = before
         raise
     return module
+
+
+def class_of(place: str, group: str, folder: str) -> Any:
+    """A class by its `module:Class`, or by its name in a group of entry points. Raises ValueError with the reason."""
+    from importlib.metadata import entry_points
+
+    named = entry_points(group=group, name=place)
+    module, colon, name = (next(iter(named)).value.replace(" ", "") if named else place).partition(":")
+    if not colon:
+        raise ValueError(
+            f'no package has a class "{place}" for {group}; or write its place, such as "my_module:MyClass"'
+        )
+    try:
+        return getattr(module_of(module, folder), name)
+    except Exception as problem:  # whatever somebody's module raises
+        raise ValueError(f"{place} can't be loaded: {type(problem).__name__}: {problem}") from problem

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from btlang.robots.languages import check_languages
 from btlang.robots.needs import check_body
 from btlang.robots.said_gestures import check_marks
 from btlang.robots.zone_check import check_zones
@@ -15,11 +16,12 @@ if TYPE_CHECKING:
 
 
 def check_mission(world: World, body: Body | None, tree: Tree, vocabulary: Lexicon) -> None:
-    """Raises MissionError where the body, if it is known, lacks what a leaf needs or a gesture that is in what it says
-    (BT072), where the target of one isn't in the world (BT013), and where a goal is in a closed zone (BT074).
+    """Raises MissionError where the body, if it is known, lacks what a leaf needs, a language or a gesture in what it
+    says (BT072), where the target of one isn't in the world (BT013), and where a goal is in a closed zone (BT074).
     """
     if body is not None:
         check_body(body, tree, vocabulary)
     check_zones(world, tree, vocabulary)
     if body is not None:
         check_marks(world, body, tree, vocabulary)
+        check_languages(body, tree, vocabulary)

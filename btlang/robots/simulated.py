@@ -276,6 +276,7 @@ class SimulatedRobot:
         """A run begins, whose random choices follow from the seed; so many have been made."""
         self._choices.begin(seed, made)
         self._surroundings.begin(seed)
+        self._voice.speak_in()
         self._began, self.pace = self._base.pose, 1.0
 
     def nearby_people(self, within: float) -> list[str]:
@@ -508,6 +509,18 @@ class SimulatedRobot:
             self._voice.say(text, after)
             self._last_said = text
             self._emit("say", text=text)
+
+    @property
+    def language(self) -> str:
+        """In which it speaks; "" where it has no voice."""
+        return self._voice.language
+
+    def speak_in(self, language: str) -> None:
+        """What is said from now on is in this language, to the end of the run. Raises RobotError where it can't."""
+        self._need("voice")
+        if language != self._voice.language:
+            self._voice.speak_in(language)
+            self._emit("language", name=language)
 
     def utterance(self, text: str) -> Utterance:
         """What it would say. Raises RobotError."""

@@ -14,6 +14,9 @@ from btlang.robots.robot import RobotError
 from btlang.robots.view import View
 from btlang.robots.world import World, WorldObject, said
 from btlang.run.robot_state import Whereabouts
+from btlang.speech.attention import Attention
+from btlang.speech.grammar import Grammar
+from btlang.speech.recogniser import Understood
 
 _REACH = 1.2  # metres to a door or a switch
 _HAND = 1.5  # metres to somebody who takes something
@@ -41,6 +44,9 @@ class Surroundings(Knowledge):
         self._hears = body.ears.within if body.ears is not None else 0.0
         self._now, self._pose = 0.0, world.start
         self.ears = Ears()
+        self._attention: Attention | None = None
+        if body.ears is not None and body.ears.engine:
+            self._attention = Attention(body.ears.wake, body.ears.settings.push)
         self.people = People(world, obstacles, body.radius, self._happen)
         self.sight.look(0.0, world.start)
 
@@ -48,7 +54,7 @@ class Surroundings(Knowledge):
         """A run begins: zones are as the world says, and chance follows from the seed."""
         self.zones.begin()
         self.people.begin(seed)
-        self.ears.asking = self.ears.answer = ""
+        self.ears.begin()
 
     def step(self, now: float, dt: float, pose: Pose, velocity: float) -> None:
         """People live on for `dt` seconds until `now`, and the robot looks around."""
@@ -142,11 +148,22 @@ class Surroundings(Knowledge):
         """The robot has asked a person, or anybody; people of the world may answer."""
         self.people.ask(question, person, (self._pose.x, self._pose.y), self._now)
 
+    def _listen(self, text: str, who: str) -> None:
+        """With a recogniser, the robot only understands what it listens for, as with a microphone."""
+        if self._attention is None:
+            self.hear(text, who)
+            return
+        expected = self._attention.expected(self.ears.expected(self._now), bool(self.ears.asking), self._now)
+        if expected.anything or Grammar(expected).holds(text):
+            meant = self._attention.meant(Understood(text), self._now)
+            if meant is not None:
+                self.hear(meant.text, who)
+
     def _happen(self, kind: str, name: str, text: str) -> None:
         if kind == "speak":
             point = self.obstacles.point(name)
             if point is not None and self._pose.distance_to(point) <= self._hears:
-                self.hear(text, name)
+                self._listen(text, name)
             return
         if kind in ("come", "walk"):
             self.sight.watch(name, "person")

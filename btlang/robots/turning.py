@@ -33,6 +33,7 @@ def turned(
     bearing = here.bearing_to(aim) if aim is not None else 0.0
     if not isinstance(wanted, Gesture):
         return [_angles(body, step, bearing) for step in wanted]
+    wanted = wanted.towards(bearing)
     frames = [KeyFrame(frame.at, _angles(body, frame.joints, bearing), frame.hold) for frame in wanted.frames]
     if wanted.aim and aim is not None:
         at = wanted.stroke_frame

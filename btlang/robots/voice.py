@@ -6,21 +6,52 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 
 from btlang.robots.body import Body
+from btlang.robots.body import Voice as VoiceSettings
 from btlang.robots.robot import RobotError
 from btlang.robots.voice_file import engine_of
-from btlang.speech.engine import SpeechError, Utterance
+from btlang.speech.engine import Settings, SpeechError, Utterance
 from btlang.speech.visemes import SHAPES, shape_at
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from btlang.speech.engine import SpeechEngine
+
+class Synthesizer:
+    """The engine of a body's voice, in one language at a time. Raises MissionError (BT071) where it can't be used."""
+
+    def __init__(self, body: Body) -> None:
+        self._body = body
+        self._own = (body.voice or VoiceSettings(Settings())).settings.language
+        self.language = self._own
+        """Such as "en"."""
+        try:
+            self._engine = engine_of(body)
+        except SpeechError as problem:
+            from btlang.robots.body_file import unusable_robot
+
+            raise unusable_robot(problem) from None
+
+    def speak_in(self, language: str = "") -> None:
+        """Speaks in a language such as "es" from now on, by default in its own. Raises RobotError where it can't."""
+        wanted = language or self._own
+        if wanted == self.language:
+            return
+        try:
+            self._engine = engine_of(self._body, wanted)
+        except SpeechError as problem:
+            raise RobotError(str(problem)) from None
+        self.language = wanted
+
+    def speak(self, text: str) -> Utterance:
+        """The text as sound and times. Raises RobotError where the engine can't."""
+        try:
+            return self._engine.speak(text)
+        except SpeechError as problem:
+            raise RobotError(str(problem)) from None
 
 
 class Voice:
     """Speaks one text at a time, for as long as the engine of its body says. `move_joints` moves its mouth."""
 
     def __init__(self, body: Body, move_joints: Callable[[Mapping[str, float]], object] = lambda angles: None) -> None:
-        self._engine = make_engine(body) if body.voice is not None else None
+        self._synthesizer = Synthesizer(body) if body.voice is not None else None
         self._mouth = body.mouth
         joint = body.joint(body.mouth.joint) if body.mouth is not None else None
         self._joint, self._move_joints = joint, move_joints
@@ -36,12 +67,19 @@ class Voice:
         """True while it speaks, and before it begins."""
         return not self._ended
 
+    @property
+    def language(self) -> str:
+        """In which it speaks, such as "en"; "" where it doesn't."""
+        return "" if self._synthesizer is None else self._synthesizer.language
+
+    def speak_in(self, language: str = "") -> None:
+        """See Synthesizer."""
+        if self._synthesizer is not None:
+            self._synthesizer.speak_in(language)
+
     def utterance(self, text: str) -> Utterance:
         """The text as it would be said. Raises RobotError where the engine can't."""
-        try:
-            return Utterance(text, 0.0) if self._engine is None else self._engine.speak(text)
-        except SpeechError as problem:
-            raise RobotError(str(problem)) from None
+        return Utterance(text, 0.0) if self._synthesizer is None else self._synthesizer.speak(text)
 
     def say(self, text: str, after: float = 0.0) -> None:
         """Speaks after so many seconds, in place of what it is saying. Raises RobotError."""
@@ -83,13 +121,3 @@ class Voice:
             with suppress(RobotError):  # speech goes on where the jaw is silent
                 self._move_joints({self._joint.name: self._joint.low + SHAPES[shape] * width})
         self.show(shape)
-
-
-def make_engine(body: Body) -> SpeechEngine:
-    """That of a body. Raises MissionError (BT071) where it can't be used."""
-    try:
-        return engine_of(body)
-    except SpeechError as problem:
-        from btlang.robots.body_file import unusable_robot
-
-        raise unusable_robot(problem) from None

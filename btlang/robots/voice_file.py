@@ -51,18 +51,22 @@ def read_mouth(top: Table, body: Body) -> Mouth | None:
     return table.finish(Mouth(joint, display))
 
 
-def engine_of(body: Body) -> SpeechEngine:
-    """The engine that a body's voice names, one without sound where it names none. Raises SpeechError."""
+def engine_of(body: Body, language: str = "") -> SpeechEngine:
+    """The engine that a body's voice names, one without sound where it names none; by default in its own language.
+
+    Raises SpeechError.
+    """
     voice = body.voice or Voice(Settings())
+    settings = voice.settings.replace(language=language) if language else voice.settings
     if not voice.engine:
         from btlang.speech.estimate import Estimate
 
-        return Estimate(voice.settings)
+        return Estimate(settings)
     if voice.engine == ESPEAK:
         from btlang.speech.espeak import Espeak
 
-        return Espeak(voice.settings)
-    engine: SpeechEngine = _class_of(voice.engine, body.folder)(voice.settings)
+        return Espeak(settings)
+    engine: SpeechEngine = _class_of(voice.engine, body.folder)(settings)
     return engine
 
 

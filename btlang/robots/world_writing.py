@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 
 from btlang.record import Record
@@ -10,6 +9,7 @@ from btlang.robots.visits import WEEKDAYS, Visits
 from btlang.robots.world import Door, Fault, Person, Stop, World, WorldObject
 from btlang.robots.world_tables import ANYWHERE
 from btlang.text.time_of_day import USUAL_START, shown
+from btlang.text.toml_writing import toml_value
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -89,27 +89,6 @@ def to_toml(world: World) -> str:
 
 def _entry(key: str, value: Any) -> str:
     if not isinstance(value, list):
-        return f"{key} = {_toml(value)}\n"
-    rows = "".join(f"  {_toml(row)},\n" for row in value)
+        return f"{key} = {toml_value(value)}\n"
+    rows = "".join(f"  {toml_value(row)},\n" for row in value)
     return f"\n{key} = [\n{rows}]\n"
-
-
-def _toml(value: Any) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, int | float):
-        short = f"{value:.12g}"
-        return short if float(short) == value else repr(value)
-    if isinstance(value, str):
-        return _quoted(value)
-    if isinstance(value, list):
-        return f"[{', '.join(map(_toml, value))}]"
-    return f"{{ {', '.join(f'{_key(key)} = {_toml(each)}' for key, each in value.items())} }}"
-
-
-def _key(key: str) -> str:
-    return key if key.isidentifier() and key.isascii() else _quoted(key)
-
-
-def _quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

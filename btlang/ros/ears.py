@@ -5,20 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from rclpy.node import Node
+from std_msgs.msg import String
 
 from btlang.robots.ears import Ears
 from btlang.ros.available import optional_interface
 from btlang.ros.node import LATCHED
 from btlang.ros.subscription_cache import SubscriptionCache
+from btlang.speech.recogniser import Expected
 
-HEARD, ASKING = "heard", "asking"
+HEARD, ASKING, LISTENING = "heard", "asking", "listening"
 HEARD_TYPE, QUESTION_TYPE = "btlang_interfaces/msg/Heard", "btlang_interfaces/msg/Question"
+ANYTHING = "*"
+"""The line of the topic of what is listened for that stands for any words."""
 WORDLESS = "..."
 """The text of a question that has no words: the robot only listens."""
 
 
 class RosEars:
-    """`ears` are what was heard, from the topic or typed. The topic of questions says which one is open, and to whom.
+    """`ears` are what was heard, from the topic or typed. The topic of questions says which one is open, and to whom;
+    that of what is listened for has a phrase on each line.
 
     `emit` is told of both. Without btlang's interfaces it hears only what is typed.
     """
@@ -29,6 +34,8 @@ class RosEars:
         self._question = optional_interface(QUESTION_TYPE)
         self._publisher = node.create_publisher(self._question, ASKING, LATCHED) if self._question else None
         self._is_open = False
+        self._listening = node.create_publisher(String, LISTENING, LATCHED)
+        self._expected = Expected()
         heard = optional_interface(HEARD_TYPE)
         self._listens = heard is not None
         if self._listens:
@@ -36,7 +43,7 @@ class RosEars:
 
     def begin(self) -> None:
         """A run begins: nobody is asked anything."""
-        self.ears.asking = self.ears.answer = ""
+        self.ears.begin()
         self.step(0.0)
 
     def hear(self, text: str, who: str, now: float) -> None:
@@ -56,6 +63,12 @@ class RosEars:
             self.hear(message.text, message.who, now)
         if self._is_open and not self.ears.asking:
             self._publish("", "")
+        expected = self.ears.expected(now)
+        if expected != self._expected:
+            self._expected = expected
+            self._listening.publish(
+                String(data="\n".join((*expected.phrases, *([ANYTHING] if expected.anything else ()))))
+            )
 
     def _publish(self, who: str, text: str) -> None:
         self._is_open = bool(text)

@@ -24,7 +24,7 @@ from btlang.robots.latch import Latch
 from btlang.robots.protection import Protection
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError
 from btlang.robots.station import Station
-from btlang.robots.voice import make_engine
+from btlang.robots.voice import Synthesizer
 from btlang.robots.world import Place, World, Zone, said
 from btlang.robots.zones import Zones
 from btlang.ros.available import optional_interface
@@ -107,7 +107,7 @@ class RosRobot:
         )
         self._joints = ros_joints(node, subscriptions, body)
         self._gestures = Gestures(body, self._joints)
-        self._voice = RosSpeech(node, subscriptions, make_engine(body))
+        self._voice = RosSpeech(node, subscriptions, Synthesizer(body))
         self._services = Services(node, self._executor)
         self._services.add(_STOP, Trigger)
         self._services.add(_LOCALIZE, Empty)
@@ -220,6 +220,7 @@ class RosRobot:
         self._rest()
         self._ears.begin()
         self._zones.begin()
+        self._voice.speak_in()
         self._base.confirm_halt()
         self._voice.confirm(_HEARTBEAT)
         until = time.monotonic() + _LAST_WORDS
@@ -396,6 +397,7 @@ class RosRobot:
         self._began = None
         self._zones.begin()
         self._ears.begin()
+        self._voice.speak_in()
 
     def nearby_people(self, within: float) -> list[str]:
         """Names of people within so many metres, nearest first: those who walk as far as they are in view."""
@@ -599,6 +601,17 @@ class RosRobot:
             self._voice.say(text, after)
             self._last_said = text
             self._emit("say", text=text)
+
+    @property
+    def language(self) -> str:
+        """In which it speaks."""
+        return self._voice.language
+
+    def speak_in(self, language: str) -> None:
+        """What is said from now on is in this language, to the end of the run. Raises RobotError where it can't."""
+        if language != self._voice.language:
+            self._voice.speak_in(language)
+            self._emit("language", name=language)
 
     def utterance(self, text: str) -> Utterance:
         """What it would say. Raises RobotError."""

@@ -10,15 +10,16 @@ from rclpy.node import Node
 from std_msgs.msg import Bool, String
 
 from btlang.robots.robot import RobotError
+from btlang.robots.voice import Synthesizer
 from btlang.ros.awake import AWAKE
+from btlang.ros.node import LATCHED
 from btlang.ros.subscription_cache import SubscriptionCache
-from btlang.speech.engine import SpeechError
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.speech.engine import SpeechEngine, Utterance
+    from btlang.speech.engine import Utterance
 
-SPEECH, SPEAKING, PRINT = "speech", "speaking", "print"
+SPEECH, SPEAKING, PRINT, LANGUAGE = "speech", "speaking", "print", "language"
 _BEGINS = 0.5  # seconds of real time that it gets to begin
 _YOUNG = 2.0  # seconds in which a listener may not have found this node yet: what it misses then is sent again
 _LATEST = 5.0  # how many times as long as expected it may speak
@@ -29,12 +30,13 @@ class RosSpeech:
     speaks. Where nothing tells of its speaking, it takes as long as the engine says.
     """
 
-    def __init__(self, node: Node, subscriptions: SubscriptionCache, engine: SpeechEngine) -> None:
-        self._subscriptions, self._engine = subscriptions, engine
+    def __init__(self, node: Node, subscriptions: SubscriptionCache, synthesizer: Synthesizer) -> None:
+        self._subscriptions, self._synthesizer = subscriptions, synthesizer
         self.said: Utterance | None = None
         """What it says, or said last."""
         self._speech = node.create_publisher(String, SPEECH, 10)
         self._print = node.create_publisher(String, PRINT, 10)
+        self._language = node.create_publisher(String, LANGUAGE, LATCHED)
         self._made, self._risky = time.monotonic(), False
         self._age = self._since = self._began = 0.0
         self._waiting = ""  # what it is to say when `_age` is 0
@@ -46,10 +48,19 @@ class RosSpeech:
 
     def utterance(self, text: str) -> Utterance:
         """The text as it would be said. Raises RobotError where the engine can't."""
-        try:
-            return self._engine.speak(text)
-        except SpeechError as problem:
-            raise RobotError(str(problem)) from None
+        return self._synthesizer.speak(text)
+
+    @property
+    def language(self) -> str:
+        """In which it speaks."""
+        return self._synthesizer.language
+
+    def speak_in(self, language: str = "") -> None:
+        """See btlang.robots.voice.Synthesizer. A latched topic tells it, once another than its own was asked for."""
+        before = self.language
+        self._synthesizer.speak_in(language)
+        if self.language != before:
+            self._language.publish(String(data=self.language))
 
     @property
     def position(self) -> float:

@@ -353,6 +353,18 @@ class Pictured(InTheWorld):
     name: str
 
 
+class LanguageChosen(InTheWorld):
+    """From now on the robot speaks in the language `name`, such as "es"."""
+
+    tag = "language"
+    name: str
+
+    @property
+    def verb(self) -> str:
+        """What happens."""
+        return "speaks"
+
+
 class StrokePlanned(Event):
     """The gesture `name` begins while the robot speaks. Its stroke is `stroke` seconds behind the beginning of what is
     said, that of its word `word` seconds: the stroke is later where the body can't be so fast.
@@ -493,7 +505,7 @@ ROBOT_EVENTS: dict[str, type[Event]] = {
     for event in (
         Said, Printed, Chosen, NavigationStarted, Arrived, Bumped, Stuck, Stopped, Grasped, Released, Dropped,
         JointsMoved, Docked, Undocked, BatteryEmpty, FaultInjected, Heard, Asked, Seen, Came, Gone, Called, DoorMoved,
-        Switched, Given, Pictured, StrokePlanned, GestureStarted, PartChanged, Warned, Troubled,
+        Switched, Given, Pictured, LanguageChosen, StrokePlanned, GestureStarted, PartChanged, Warned, Troubled,
     )
 }  # fmt: skip
 """What robots report, by the kinds of btlang.robots.robot.Robot.on_event."""

@@ -95,6 +95,7 @@ class Api:
             self._route("/api/films/{name}", partial(self._shown, film, ()), "GET"),
             self._route("/api/trees/{name}", partial(self._shown, tree, ()), "GET"),
             self._route("/api/comparisons/{name}", partial(self._shown, comparison, ("with",)), "GET"),
+            self._route("/api/urdf", self._urdf, "GET"),
             self._route("/metrics", self._metrics, "GET"),
             Route("/openapi.json", lambda request: JsonResponse(document())),
             *page_routes(self.access),
@@ -287,6 +288,10 @@ class Api:
             raise AccessError(503, f"The robot '{link.name}' isn't up: its recordings are on its own computer.")
         return link
 
+    async def _urdf(self, request: Request) -> Response:
+        answer = await self._sent(request, messages.Urdf())
+        return Response(str(answer.data.get("urdf")), media_type="application/xml") if answer.ok else _answer(answer)
+
     async def _metrics(self, request: Request) -> Response:
         await self._who(request)
         return PlainTextResponse(metrics(self.robots.links.values(), len(self.sockets)))
@@ -316,8 +321,11 @@ class Api:
         return await self._of_library(request, messages.Delete(request.path_params["name"], kind.value))
 
     async def _of_library(self, request: Request, command: Command) -> Response:
+        return _answer(await self._sent(request, command))
+
+    async def _sent(self, request: Request, command: Command) -> Answer:
         robot = request.query_params.get("robot", "")
-        return _answer(await self.send(await self._who(request), robot, command, address_of(request)))
+        return await self.send(await self._who(request), robot, command, address_of(request))
 
     def _described(self, identity: Identity) -> dict[str, Any]:
         described = {"ok": True, "user": identity.user, "role": identity.role, "version": VERSION}

@@ -92,6 +92,7 @@ ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     ("GET", "/api/films/{name}"): ("One as data that a page plays.", None),
     ("GET", "/api/trees/{name}"): ("The tree of one as XML of BehaviorTree.CPP.", None),
     ("GET", "/api/comparisons/{name}"): ("Two as films, and what differs between them.", None),
+    ("GET", "/api/urdf"): ("The body of a robot as URDF, an XML file; not of one without links.", None),
     ("GET", "/metrics"): ("Figures for Prometheus.", None),
     ("GET", "/live"): ("Whether the server is alive; without log-in.", None),
     ("GET", "/ready"): ("Whether it takes requests; without log-in.", None),
@@ -113,7 +114,7 @@ def document() -> dict[str, Any]:
         if body is not None:
             described["requestBody"] = {"required": True, "content": {"application/json": {"schema": body}}}
         parameters = [_NAME] if "{name}" in path else []
-        parameters += [_ROBOT] if path.removesuffix("/{name}") in (*LIBRARY, *_RECORDED) else []
+        parameters += [_ROBOT] if path.removesuffix("/{name}") in (*LIBRARY, *_RECORDED, "/api/urdf") else []
         parameters += [_WITH] if path.startswith("/api/comparisons") else []
         if parameters:
             described["parameters"] = parameters

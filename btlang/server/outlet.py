@@ -16,11 +16,12 @@ _MOST = 2000
 """Messages that may wait, beside statuses. A client that reads so slowly has to subscribe again."""
 _MUCH = 4_000_000
 """Characters of answers and topics that may wait until a client has to read first."""
-STATES = ("asking", "components", "map", "robot", "scan", "things", "way")
+STATES = ("asking", "components", "joints", "map", "robot", "scan", "speech", "things", "way")
 """Kinds of messages of which only the newest one counts."""
 TOPICS = {
     "tree": ("run", "statuses"), "tasks": ("change",), "events": ("event",), "robot": ("robot", "asking"),
     "map": ("map", "things", "scan", "way"), "components": ("components",),
+    "body": ("joints", "speech"),
 }  # fmt: skip
 """What somebody may want to hear, with the kinds of messages of each. Whether a robot is up everybody hears."""
 _TOPIC = {kind: topic for topic, kinds in TOPICS.items() for kind in kinds}

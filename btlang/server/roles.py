@@ -25,6 +25,7 @@ class Role(StrEnum):
 _VIEWER = (
     messages.List, messages.Show, messages.Schedules, messages.Library, messages.Status, messages.Report,
     messages.EmergencyStop, messages.Components, messages.Picture, messages.Voice,
+    messages.Urdf,
 )  # fmt: skip
 _OPERATOR = (
     messages.Submit, messages.Cancel, messages.Kill, messages.Interrupt, messages.Resume, messages.Skip,

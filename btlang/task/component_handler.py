@@ -13,8 +13,9 @@ from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import Image
 from btlang.devices.png import png
 from btlang.robots.body_file import read_body
+from btlang.robots.motion.urdf import urdf
 from btlang.task import messages
-from btlang.task.checks import choice
+from btlang.task.checks import choice, refused
 from btlang.task.messages import Answer, wrong
 from btlang.text.escaping import one_line
 
@@ -62,6 +63,13 @@ class ComponentHandler:
         small = image.smaller(_WIDEST)
         data = {"png": base64.b64encode(png(small)).decode(), "width": small.width, "height": small.height}
         return Answer(True, f"A picture of {small.width} by {small.height} pixels.", data)
+
+    def urdf(self, command: messages.Urdf, person: str) -> Answer:
+        """The body. Raises MissionError."""
+        body = getattr(self._session.robot, "body", None)
+        if body is None or not any(joint.link for joint in body.joints):
+            raise refused("The robot", "has no links in its file, so there is no URDF of it")
+        return Answer(True, f"The body of the {one_line(body.name)}.", {"urdf": urdf(body)})
 
     def change(self, command: messages.ChangeComponent, person: str) -> Answer:
         """One of them. Raises MissionError."""

@@ -16,6 +16,7 @@ from btlang.run.json_log import as_json
 from btlang.run.robot_state import RobotState, Whereabouts, asked, rounded_scan
 from btlang.session import Run
 from btlang.task.allowance import Allowance
+from btlang.task.body_now import BodyNow
 from btlang.task.database import StoreError
 from btlang.task.map_now import MapNow
 from btlang.task.store import Store
@@ -68,6 +69,7 @@ class Feed:
         self._parts = parts()
         self._store, self._robot, self._words = store, robot, words
         self._map = None if world is None else MapNow(world)
+        self._body = BodyNow()
         self._watchers: list[_Watcher] = []
         self._current: _Watched | None = None
         self._state: RobotState | None = None
@@ -119,6 +121,7 @@ class Feed:
                 self._map.look(event.robot)
             if self._watchers:
                 self._take_way(asked(lambda: event.robot.way) or ())
+                self._body.look(event.robot, event.wall)
             if self._watchers and event.wall >= self._next_scan:
                 self._next_scan = event.wall + _SCANS
                 self._scan, self._scanned_from = _scan(event), None if event.state is None else event.state.place
@@ -185,6 +188,12 @@ class Feed:
         if self._way != watcher.way:
             watcher.way = self._way
             yield {"type": "way", "points": self._way}
+        if (joints := self._body.joints) != watcher.joints:
+            watcher.joints = joints
+            yield {"type": "joints", "positions": joints}
+        if (speech := self._body.speech) != watcher.speech:
+            watcher.speech = speech
+            yield {"type": "speech", **dict(zip(("text", "start", "end"), speech, strict=True))}
 
 
 class _Watcher:
@@ -202,6 +211,8 @@ class _Watcher:
         self.question = ""
         self.scan: list[float | None] = []
         self.way: list[list[float]] = []
+        self.joints: list[float | None] = []
+        self.speech = ("", 0, 0)
         self.run = ""
         self.codes = b""
 

@@ -91,6 +91,7 @@ class Handler:
             messages.Components: components.list, messages.ChangeComponent: components.change,
             messages.Picture: components.picture, messages.AnswerQuestion: world.answer,
             messages.InviteVisitor: world.invite, messages.Voice: VoiceHandler(session).sound,
+            messages.Urdf: components.urdf,
         }  # fmt: skip
 
     def do(self, command: Command, person: str) -> Answer:

@@ -271,6 +271,13 @@ class Voice(Command):
     changes = False
 
 
+class Urdf(Command):
+    """The body of the robot as URDF, the form of ROS 2. Refused if its joints have no links."""
+
+    tag = "urdf"
+    changes = False
+
+
 class ChangeComponent(Command):
     """Starts a component anew ("restart"), takes it from the robot file as that is by now ("load"), or out of the robot
     ("unload"): at once, or as soon as no running mission uses it.
@@ -305,7 +312,7 @@ COMMANDS: dict[str, type[Command]] = {
     for kind in (
         Submit, List, Show, Cancel, Kill, Interrupt, Resume, Skip, Reorder, Again, AddSchedule, RemoveSchedule,
         Schedules, Put, Delete, Library, Pause, Step, EmergencyStop, Release, Say, AnswerQuestion, InviteVisitor,
-        Down, Status, Report, Trail, Components, ChangeComponent, Picture, Voice,
+        Down, Status, Report, Trail, Components, ChangeComponent, Picture, Voice, Urdf,
     )
 }  # fmt: skip
 """By their names."""

@@ -65,7 +65,7 @@ def recent(made: dict[Key, Made], key: Key, make: Callable[[], Made]) -> Made:
 def _from_folder(state: tuple[Any, ...], make: Callable[[], Made]) -> Made:
     key, identity = (repr(part).encode(errors="surrogateescape") for part in (state, state[0]))
     try:
-        folder = _own_folder()
+        folder = own_folder()
     except OSError:
         return make()
     path = os.path.join(folder, f"{state[0][0]}-{crc32(identity):08x}")
@@ -77,7 +77,7 @@ def _from_folder(state: tuple[Any, ...], make: Callable[[], Made]) -> Made:
     return made
 
 
-def _own_folder() -> str:
+def own_folder() -> str:
     """The folder of the cache. Raises OSError where there is none that only the user can write to."""
     folder = user_dir("cache")
     if not os.path.isabs(folder):  # a user without a home

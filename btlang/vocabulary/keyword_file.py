@@ -244,8 +244,10 @@ class _Reader:
                     found[part.name] = self.slot(part.name, table.get(part.name, {}), near)
         if any(slot.type == PLACE for slot in found.values()):
             found |= {name: self.slot(name, table[name], near) for name in POINT if name in table and name not in found}
-        if not phrases:  # only said by its id, or by words of the language
-            found = {name: self.slot(name, table[name], near) for name in table}
+        for name, given in table.items():
+            unsaid = isinstance(given, dict) and "default" in given  # the function gets that each time
+            if not phrases or (unsaid and name not in found):  # or it is only said by its id
+                found[name] = self.slot(name, given, near)
         for name in [name for name in table if name not in found]:
             self.wrong(f"no phrase of '{near}' has a slot {{{name}}}", near)
         return tuple(found.values())

@@ -14,7 +14,7 @@ from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.nouns import ALL, Description
 from btlang.vocabulary.pattern import Form, Slot
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.value_type import ValueType
+from btlang.vocabulary.value_type import TEXT, WORLD, ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.word_tree import END, SLOTS
 
@@ -62,7 +62,8 @@ def add(root: TrieNode, form: Form, types: Mapping[str, str], meaning: Meaning) 
                     break
             else:
                 child = {}
-                edges.append((part.name, types[part.name], child))
+                at = 0 if types[part.name] == TEXT else len(edges)  # those behind are tried first: names win over texts
+                edges.insert(at, (part.name, types[part.name], child))
                 node = child
         else:
             node = node.setdefault(part, {})
@@ -95,7 +96,8 @@ def longest(
     lists: bool = True,
     found: tuple[SlotValue, ...] = (),
 ) -> Match | None:
-    """The longest phrase at a word; where two are equally long, the one with words in place of slots.
+    """The longest phrase at a word; where two are equally long, the one with words in place of slots, or with a name in
+    place of a text.
 
     `found` are the values that have led to the root. A slot of an entry also takes a list of values, unless `lists` is
     False. It ends before a phrase, also before one in the trie `names`, in which connectives are looked for too.
@@ -230,7 +232,10 @@ def reaches_beyond(root: TrieNode, text: Words, at: int, last: int, context: Rea
 
 
 def collisions(root: TrieNode, values: Values, other: TrieNode | None = None) -> Iterator[tuple[Meaning, Meaning]]:
-    """Pairs of different entries that some words match equally, of one trie or two; a slot counts as one value."""
+    """Pairs of different entries that some words match equally, of one trie or two; a slot counts as one value.
+
+    A name of a keyword file and any text are no such words: the name wins.
+    """
     pending = [(root, root if other is None else other)]
     seen: set[tuple[int, int]] = set()
     while pending:
@@ -254,8 +259,10 @@ def collisions(root: TrieNode, values: Values, other: TrieNode | None = None) ->
 
 
 def _overlap(one: ValueType, other: ValueType) -> bool:
-    if one.name == other.name or "text" in (one.kind, other.kind):
+    if one.name == other.name:
         return True
+    if TEXT in (one.kind, other.kind):
+        return not any(each.names and each.name not in WORLD for each in (one, other))
     if one.kind == other.kind == "names":
         return not {n.lower() for n in one.names}.isdisjoint(n.lower() for n in other.names)
     return one.kind == other.kind == "number"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from btlang.record import Record
 
+TEXT = "text"
 PLACE = "place"
 """The type of which a point is a value, too."""
 OBJECT = "object"

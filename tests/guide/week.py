@@ -1,4 +1,7 @@
-"""A week of the museum guide in simulation: `python -m tests.guide.week SEED [DAYS]` prints what became of it."""
+"""A week of the museum guide in simulation: `python -m tests.guide.week SEED [DAYS]` prints what became of it.
+
+One that is shorter than two days begins on Tuesday before the first tour: the museum is closed on Mondays.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +27,9 @@ from btlang.task.task import FINAL, State
 from btlang.text.source import Source
 
 GUIDE = Path(__file__).parents[2] / "examples" / "guide"
-MONDAY = datetime(2026, 3, 2, 9, 30, tzinfo=UTC).timestamp()
+MONDAY = datetime(2026, 3, 2, tzinfo=UTC).timestamp()
+OPENS = 9.5 * 3600.0
+TOUR = 10.45 * 3600.0  # some minutes before the first one
 DAY = 86_400.0
 PATIENCE = 600.0  # seconds after a question in which it has to be answered: it may come while the robot charges
 
@@ -75,6 +80,10 @@ def main(seed: int, days: float = 7.0) -> dict[str, Any]:
     robot = str(GUIDE / "robot.toml")
     connect = connector(robot)
     world = load_world(str(GUIDE / "world.toml"), connect.body).replace(seed=seed)
+    begins = MONDAY + OPENS
+    if days < 2.0:
+        world, begins = world.replace(clock=TOUR, weekday=1), MONDAY + DAY + TOUR
+    ends = begins + days * DAY
     observer = Observer(world)
     answers = tomllib.loads((GUIDE / "answers.toml").read_text(encoding="utf-8"))
     observer.answers = frozenset(read_marks(text)[0] for text in answers.values())
@@ -82,14 +91,14 @@ def main(seed: int, days: float = 7.0) -> dict[str, Any]:
     began = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         layer = furnished_layer(
-            connect, reader, folder=folder, speed="max", begins=MONDAY, keeps=8 * DAY,
+            connect, reader, folder=folder, speed="max", begins=begins, keeps=8 * DAY,
             trouble=lambda text: print(text, file=sys.stderr), sinks=lambda task, mission, run: [observer],
         )  # fmt: skip
         observer.now = layer.now
         with layer:
-            while layer.now() < MONDAY + days * DAY:
+            while layer.now() < ends:
                 time.sleep(0.01)
-            tasks = [task for task in layer.store.tasks(limit=10_000) if (task.due or 0) <= MONDAY + days * DAY]
+            tasks = [task for task in layer.store.tasks(limit=10_000) if (task.due or 0) <= ends - 600.0]
     states: dict[str, int] = {}
     for task in tasks:
         states[task.state] = states.get(task.state, 0) + 1

@@ -212,8 +212,8 @@ def test_writers_at_the_same_time(folder: Path) -> None:
         "from btlang.vocabulary import cache, load\n"
         f"cache.user_dir = lambda kind: {str(folder)!r}\n"
         "for _ in range(5):\n"
-        "    cache._write(cache.os.path.join(cache._own_folder(), 'words-x'), b'key', load.load_vocabulary())\n"
-        "    assert cache._loaded(cache.os.path.join(cache._own_folder(), 'words-x'), b'key') is not None\n"
+        "    cache._write(cache.os.path.join(cache.own_folder(), 'words-x'), b'key', load.load_vocabulary())\n"
+        "    assert cache._loaded(cache.os.path.join(cache.own_folder(), 'words-x'), b'key') is not None\n"
     )
     processes = [subprocess.Popen([sys.executable, "-c", code]) for _ in range(4)]
     assert [process.wait(60) for process in processes] == [0] * 4

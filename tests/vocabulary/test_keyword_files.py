@@ -92,6 +92,17 @@ def test_phrases_that_match_the_same_words(text: str, tmp_path: Path) -> None:
     assert {problem.code for problem in caught.value.diagnostics} == {"BT062"}
 
 
+def test_a_name_of_a_list_wins_over_a_text(tmp_path: Path) -> None:
+    color = '[[action]]\nphrase = "hop {color}"\nid = "HopColor"\n'
+    text = ACTION.replace("hop", "hop {text}")
+    for at, words in enumerate((color + text, text + color)):
+        file = tmp_path / f"words{at}.toml"
+        file.write_text(words, encoding="utf-8")
+        read = [parse_tree(f"hop {word}", keywords=[str(file)]).tree.root.id for word in ("blue", "high")]
+        assert read[0] == "HopColor"
+        assert read[1] != "HopColor"
+
+
 def test_words_that_yield_leave_their_phrases_to_others(tmp_path: Path) -> None:
     mild, strict = tmp_path / "mild.toml", tmp_path / "strict.toml"
     mild.write_text(f"yields = true\n{ACTION.replace('hop', 'hop {text}')}", encoding="utf-8")

@@ -78,7 +78,7 @@ def _times_too_fast(piece: Piece, limits: Limits) -> float:
     coming = state.velocity + state.acceleration * np.abs(state.acceleration) / (2 * limits.jerk)
     parts = (
         np.abs(state.velocity) / limits.speed,
-        np.abs(coming) / limits.speed,
+        np.sqrt(np.sqrt(np.abs(coming) / limits.speed)),  # most of it falls with the fourth power of the time
         np.sqrt(np.abs(state.acceleration) / limits.acceleration),
         np.cbrt(np.abs(jerk) / limits.jerk),
     )

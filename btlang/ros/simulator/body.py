@@ -1,7 +1,8 @@
-"""Arms, head, hands and voice: /joint_states, /joint_trajectory, /left_hand/..., /speech, /speaking, /print."""
+"""Arms, head, hands and voice: /joint_states, /joint_trajectory, /left_hand/..., /speech, /language, /print, ..."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from functools import partial
 from math import isfinite
@@ -16,8 +17,11 @@ from trajectory_msgs.msg import JointTrajectory
 
 from btlang.robots.robot import Hand, RobotError
 from btlang.robots.simulated import SimulatedRobot
+from btlang.ros.node import LATCHED
 from btlang.ros.simulator.call_queue import CallQueue
 from btlang.ros.simulator.publishing import COMMANDS, Every, Latched, Moment
+from btlang.ros.speech import LANGUAGE
+from btlang.text.output import show
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -50,6 +54,7 @@ class Body:
             (String, "print", self._print),
         ):
             node.create_subscription(kind, topic, partial(self._hand_over, act), COMMANDS)
+        node.create_subscription(String, LANGUAGE, partial(self._hand_over, self._speak_in), LATCHED)
 
     def publish(self, now: Moment) -> None:
         """Tells the state of joints, hands and voice."""
@@ -111,6 +116,12 @@ class Body:
         else:
             self._robot.silence()
         self._speaking.set(self._robot.speaking)
+
+    def _speak_in(self, message: String) -> None:
+        try:
+            self._robot.speak_in(message.data)
+        except RobotError as problem:
+            show(f"I can't speak {message.data!r}: {problem}", stream=sys.stderr)
 
     def _print(self, message: String) -> None:
         self._robot.print(message.data)

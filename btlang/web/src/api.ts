@@ -53,6 +53,13 @@ export async function request(method: string, path: string, body?: unknown, sign
   return data;
 }
 
+/** A text that isn't JSON. Throws RequestError. */
+export async function requestText(path: string): Promise<string> {
+  const answer = await fetch(path).catch((error) => { throw new RequestError(0, String(error)); });
+  if (!answer.ok) throw new RequestError(answer.status, (await answer.json().catch(() => ({}))).text ?? answer.statusText);
+  return answer.text();
+}
+
 export const post = (path: string, body: unknown): Promise<any> => request("POST", path, body);
 
 /** Who is logged in, null for nobody. Throws RequestError if the server doesn't answer. */

@@ -91,6 +91,12 @@ export class Robot {
   /** What it does between missions. */
   rules: Run | null = null;
   entries: Entry[] = [];
+  /** The positions of its joints in radians and metres, in the order of its URDF; [] if its body has no links. */
+  joints: (number | null)[] = [];
+  /** What it speaks now, "" for nothing, and the characters of the word of now. */
+  speech = { text: "", start: 0, end: 0 };
+  /** What it heard last. */
+  heard = "";
   /** Where it has been. */
   path: Point[] = [];
   /** Where it is going, as far as its navigation tells. */
@@ -105,7 +111,7 @@ export class Robot {
   constructor(readonly name: string) {}
 }
 
-export type Kind = "up" | "away" | "run" | "statuses" | "robot" | "map" | "things" | "asking" | "scan" | "way" | "components" | "event" | "change" | "offline";
+export type Kind = "up" | "away" | "run" | "statuses" | "robot" | "map" | "things" | "asking" | "scan" | "way" | "joints" | "speech" | "components" | "event" | "change" | "offline";
 export type Watcher = (robot: Robot, kind: Kind, news: News | null) => void;
 
 /** All robots by their names. Watchers are called after each message has been taken in. */
@@ -138,7 +144,8 @@ export class Fleet {
     const robot = this.get(news.robot);
     if (news.type === "up") {
       [robot.up, robot.fresh, robot.away] = [true, true, false];
-      [robot.things, robot.asking] = [[], ""];
+      [robot.things, robot.asking, robot.joints, robot.heard] = [[], "", [], ""];
+      robot.speech = { text: "", start: 0, end: 0 };
     } else if (news.type === "away") {
       [robot.up, robot.away] = [false, true];
       robot.state = null;
@@ -148,6 +155,8 @@ export class Fleet {
     else if (news.type === "asking") robot.asking = news["text"];
     else if (news.type === "scan") robot.scan = news["pose"] ? { ranges: news["ranges"], pose: news["pose"] } : null;
     else if (news.type === "way") robot.way = news["points"];
+    else if (news.type === "joints") robot.joints = news["positions"];
+    else if (news.type === "speech") robot.speech = { text: news["text"], start: news["start"], end: news["end"] };
     else if (news.type === "components") robot.parts = { components: news["components"], devices: news["devices"] };
     else if (news.type === "change") {
       if (news["state"] === "underway") robot.task = news["task"];
@@ -187,7 +196,7 @@ function begin(robot: Robot, news: News): void {
   robot.task = run.task;
   if (again || !run.task) return;
   robot.path = robot.path.slice(-1);
-  robot.goal = robot.says = "";
+  robot.goal = robot.says = robot.heard = "";
 }
 
 function note(robot: Robot, news: News): void {
@@ -195,6 +204,7 @@ function note(robot: Robot, news: News): void {
   if (event.event === "navigate") robot.goal = event.name;
   if (["arrive", "stop", "end"].includes(event.event)) [robot.goal, robot.way] = ["", []];
   if (event.event === "say") robot.says = event.text;
+  if (event.event === "hear") robot.heard = event.text;
   log(robot, { task: news["task"], wall: event.wall, event });
 }
 

@@ -10,7 +10,7 @@ import { language, languages, setLanguage, t } from "./texts";
 import { setTheme, theme, THEMES } from "./theme";
 import { address, type Open, type View } from "./view";
 
-const ALL = ["tree", "tasks", "events", "robot", "map", "components"];
+const ALL = ["tree", "tasks", "events", "robot", "map", "components", "body"];
 const TABS = { watch: "tab.watch", tasks: "tab.tasks", write: "tab.write", runs: "tab.runs" } as const;
 const LATEST = "btlang.robot";
 type Tab = keyof typeof TABS;

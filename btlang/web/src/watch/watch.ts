@@ -8,11 +8,14 @@ import { submitForm } from "../tasks/submit";
 import { t, type Key } from "../texts";
 import { TreeView, type TreeNode } from "../tree/tree_view";
 import type { Context, View } from "../view";
+import { Body } from "./body";
 import { Failure } from "./failure";
 import { LogView } from "./log";
 import { MapView } from "./map";
+import { Offers } from "./offers";
 import { Parts } from "./parts";
 import { Question } from "./question";
+import { Speech } from "./speech";
 import { Voice } from "./voice";
 
 const MOST_RUNNING = 12; // that are listed
@@ -31,7 +34,7 @@ class Watch implements View {
   private follow = h("button", { type: "button", "aria-pressed": "true", onclick: () => set(this.follow, { "aria-pressed": String(this.follow.getAttribute("aria-pressed") !== "true") }) }, t("watch.follow"));
   private pill = h("span", { class: "pill" });
   private title = h("h1", { dir: "auto" });
-  private says = h("p", { class: "says", dir: "auto", "aria-live": "polite" });
+  private speech = new Speech();
   private problem = h("p", { class: "problem", role: "alert" });
   private gone = h("p", { class: "gone", role: "status" });
   private controls = h("div", { class: "controls", role: "group", "aria-label": t("watch.controls") });
@@ -40,6 +43,8 @@ class Watch implements View {
   private map = new MapView(() => this.robot);
   private log = new LogView();
   private visitor = h("button", { type: "button", class: "visitor", hidden: true, onclick: () => void this.act("visitor", {}) }, t("visitor"));
+  private body: Body;
+  private offers: Offers;
   private question: Question;
   private voice: Voice;
   private parts: Parts;
@@ -51,6 +56,8 @@ class Watch implements View {
 
   constructor(private context: Context) {
     this.robot = context.fleet.get(context.robot);
+    this.body = new Body(context);
+    this.offers = new Offers(context);
     this.question = new Question(context);
     this.voice = new Voice(context);
     this.parts = new Parts(context);
@@ -60,12 +67,12 @@ class Watch implements View {
     this.element = h(
       "section",
       { class: "watch" },
-      h("div", { class: "head" }, h("div", { class: "now" }, this.pill, this.title), this.controls, this.problem, this.gone),
+      h("div", { class: "head" }, h("div", { class: "now" }, this.pill, this.title), this.controls, this.problem, this.gone, this.offers.element),
       h("div", { class: "stage card" }, this.failure.element, h("div", { class: "doing" }, this.running, this.follow), this.empty, this.tree.element),
       h(
         "div",
         { class: "side" },
-        h("div", { class: "card place" }, this.map.canvas, this.visitor, this.says, this.voice.element, this.question.element),
+        h("div", { class: "card place" }, this.body.element, this.map.canvas, h("div", { class: "beside" }, this.voice.element, this.visitor), this.speech.element, this.question.element),
         operates && h("details", { class: "card" }, h("summary", {}, t("submit.title")), submitForm(context)),
         this.parts.element,
         h("div", { class: "card events" }, h("h2", {}, t("log")), this.log.element),
@@ -78,6 +85,7 @@ class Watch implements View {
         this.failure.note(news!["task"], news!["event"]);
         this.voice.note(news!["event"]);
       }
+      if (kind === "up") this.body.clear();
       if (kind === "run" && news!["task"]) this.failure.clear();
       this.refresh();
     });
@@ -88,6 +96,7 @@ class Watch implements View {
     this.unwatch();
     this.queue.close();
     this.map.close();
+    this.body.close();
     this.parts.close();
     this.voice.close();
     this.tree.close();
@@ -103,7 +112,9 @@ class Watch implements View {
     fill(this.gone, robot.away && t("watch.gone"));
     this.tree.element.classList.toggle("stale", robot.away);
     fill(this.title, task ? called(task) : robot.name);
-    fill(this.says, robot.says && robot.says !== robot.asking && `“${robot.says}”`);
+    this.speech.show(robot);
+    this.body.show(robot, this.running.textContent ? [...this.running.children].map((each) => each.textContent).join(", ") : "");
+    this.offers.show(robot, task !== null);
     this.map.redraw();
     this.question.show(robot);
     this.parts.show(robot);

@@ -1,0 +1,125 @@
+"""What a robot hears with its microphone: it listens for what is expected, and asks where it isn't sure."""
+
+from __future__ import annotations
+
+import math
+
+from btlang.actions.conversation import answers, meaning_of
+from btlang.devices.kinds import Pressed, Reading, Sound
+from btlang.robots.ears_file import recogniser_of
+from btlang.robots.robot import RobotError
+from btlang.speech.attention import Attention
+from btlang.speech.listener import Listener
+from btlang.speech.recogniser import RATE, Expected
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.devices.device_set import DeviceSet
+    from btlang.robots.body import Body
+
+TALK = "talk"
+"""In the name of the button that is held while somebody speaks."""
+_ECHO = 0.3  # seconds after its own voice in which it hears nothing
+_PATIENCE = 8.0  # seconds in which "Did you say ...?" has to be answered
+
+
+class Hearing:
+    """The ears of a robot, from its first microphone. `step` is for the thread of the robot.
+
+    Raises RecogniserError where the body names a recogniser that can't be used. A body without a microphone hears
+    nothing.
+    """
+
+    def __init__(self, body: Body, robot: Any, devices: DeviceSet) -> None:
+        assert body.ears is not None
+        self._robot, self._ears, self._push = robot, robot.ears, body.ears.settings.push
+        self._attention = Attention(body.ears.wake, self._push)
+        self._listener: Listener | None = None
+        self._expected = Expected()
+        self._deaf_until, self._is_deaf = -math.inf, False
+        self._is_pushed = False
+        self._doubtful, self._asked_until = "", -math.inf
+        microphone = devices.first("microphone")
+        if microphone and any(microphone in loop.devices for loop in devices.loops):
+            self._listener = Listener(recogniser_of(body))
+            devices.follow(microphone, self._take)
+        for name, device in devices.devices.items():
+            if self._push and device.kind == "button" and TALK in name:
+                devices.follow(name, self._press)
+
+    @property
+    def problem(self) -> str:
+        """Why it hears nothing any more; "" while it does."""
+        return self._listener.problem if self._listener is not None else ""
+
+    def push(self, pushed: bool) -> None:
+        """Somebody holds the button, or lets go of it; from any thread."""
+        if self._is_pushed and not pushed and self._listener is not None:
+            self._listener.end()
+        self._is_pushed = pushed
+
+    def step(self) -> None:
+        """Looks at what was said, and at what is listened for now."""
+        if self._listener is None:
+            return
+        now = self._robot.time
+        self._listen_to_others(self._listener, now)
+        while (understood := self._listener.understood()) is not None:
+            meant = self._attention.meant(understood, now)
+            if meant is not None and not self._is_deaf:
+                self._hear(meant.text, meant.sure, now)
+        if self._doubtful and now > self._asked_until:
+            self._doubtful = ""
+        asking = bool(self._doubtful or self._ears.asking)
+        wanted = answers(("yes", "no"), self._robot.body) if self._doubtful else self._ears.expected(now)
+        expected = self._attention.expected(wanted, asking, now)
+        if expected != self._expected:
+            self._expected = expected
+            self._listener.expect(expected)
+
+    def close(self) -> None:
+        """Ends it. May be called twice."""
+        if self._listener is not None:
+            self._listener.close()
+
+    def _listen_to_others(self, listener: Listener, now: float) -> None:
+        """It does not hear itself."""
+        if self._robot.speaking:
+            self._deaf_until = now + _ECHO
+            if self._doubtful:
+                self._asked_until = now + _PATIENCE
+        was, self._is_deaf = self._is_deaf, now < self._deaf_until
+        if self._is_deaf != was:
+            listener.forget()
+
+    def _hear(self, text: str, sure: bool, now: float) -> None:
+        if self._doubtful:
+            meaning = meaning_of(text)
+            if sure and meaning in ("yes", "no"):
+                doubtful, self._doubtful = self._doubtful, ""
+                if meaning == "yes":
+                    self._robot.hear(doubtful)
+        elif sure:
+            self._robot.hear(text)
+        elif not self._robot.refuses:
+            self._ask(text, now)
+
+    def _ask(self, text: str, now: float) -> None:
+        try:
+            self._robot.say(f'Did you say "{text}"?')
+        except RobotError:  # without a voice nobody can be asked
+            return
+        self._doubtful, self._asked_until = text, now + _PATIENCE
+
+    def _take(self, reading: Reading) -> None:
+        """In the thread of the device."""
+        assert isinstance(reading, Sound)
+        if self._listener is None or self._is_deaf or (self._push and not self._is_pushed):
+            return
+        self._listener.hear(reading.samples if reading.rate == RATE else b"")
+
+    def _press(self, reading: Reading) -> None:
+        assert isinstance(reading, Pressed)
+        self.push(reading.pressed)

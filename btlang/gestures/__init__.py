@@ -1,0 +1,1 @@
+"""`btc gesture`: plays, checks, draws and records the gestures of a robot."""

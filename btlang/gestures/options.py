@@ -1,0 +1,32 @@
+"""The options of `btc gesture`, apart from what it does."""
+
+from __future__ import annotations
+
+import argparse
+
+from btlang.arguments import speed
+from btlang.robots.platforms import ROBOTS
+
+ACTS = ("play", "check", "picture", "record")
+
+
+def add_gesture_options(parser: argparse.ArgumentParser) -> None:
+    """Those of `btc gesture`."""
+    parser.usage = (
+        "btc gesture play NAME --robot FILE [--at TARGET] [--over PLATFORM] [--speed SPEED]\n"
+        "       btc gesture check FILE ... [--robot FILE]\n"
+        "       btc gesture picture NAME -o OUT --robot FILE\n"
+        "       btc gesture record NAME -o OUT --robot FILE"
+    )
+    parser.add_argument("act", choices=ACTS, metavar="ACT", help=", ".join(ACTS))
+    parser.add_argument("items", nargs="+", metavar="NAME", help="a gesture of the robot; for check, files")
+    parser.add_argument("--robot", default="", metavar="FILE", help="robot file, or the name of a robot")
+    parser.add_argument("--at", metavar="TARGET", help="what it is aimed at: a place, an object or a person")
+    parser.add_argument(
+        "-o", dest="out", metavar="OUT", help="what to write: .svg, .png or .gif, or the file of a gesture"
+    )
+    parser.add_argument("--over", choices=tuple(ROBOTS), help="what the robot runs on (default: as its file says)")
+    parser.add_argument(
+        "--speed", type=speed, default="real", metavar="SPEED", help="of the clock: 2, max (default: real)"
+    )
+    parser.add_argument("--world", metavar="FILE", help="world file (default: that of the robot)")

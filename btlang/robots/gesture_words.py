@@ -1,0 +1,145 @@
+"""The gestures of a robot as words: a keyword file that is made of them."""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+from collections.abc import Iterator, Mapping
+from functools import cache
+from zlib import crc32
+
+from btlang.backends.files import write_file
+from btlang.robots.body import Body
+from btlang.robots.data_file import as_mission_error
+from btlang.robots.gesture import Gesture
+from btlang.robots.gesture_file import TARGET, GestureError, phrase_forms
+from btlang.text.toml_writing import toml_key, toml_value
+from btlang.tree.catalogue import CATALOGUE
+from btlang.vocabulary.cache import own_folder
+from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.load import load_vocabulary
+from btlang.vocabulary.pattern import Form
+from btlang.vocabulary.word_tree import END, SLOTS
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+TOPIC = "gestures"
+"""Words of this topic are taken over by a gesture with their phrase."""
+_CALL = "btlang.actions.gestures:perform"
+_TARGETS = ("person", "object", "place")
+_POINT = {"x": "length", "y": "length"}
+
+
+def gesture_words(body: Body) -> str | None:
+    """The path of the keyword file, None for a body without gestures.
+
+    Raises MissionError (BT076) for a phrase that means something else already.
+    """
+    if not body.gestures:
+        return None
+    path = os.path.join(_folder(), f"gestures-{crc32(body.file.encode(errors='replace')):08x}.toml")
+    text = keyword_text(body)
+    try:
+        with open(path, encoding="utf-8") as file:
+            is_new = file.read() != text
+    except (OSError, UnicodeDecodeError):
+        is_new = True
+    if is_new:
+        write_file(path, text)
+    return path
+
+
+def keyword_text(body: Body) -> str:
+    """The text of the file. Raises as `gesture_words`."""
+    english = load_vocabulary()
+    entries, taken = [], list[str]()
+    try:
+        for gesture in body.gestures.values():
+            for node_id, phrases in _by_id(gesture, english).items():
+                taken += [node_id] if node_id in english.entries else []
+                entries.append(_entry(body, gesture, node_id, phrases))
+    except GestureError as error:
+        raise as_mission_error(error) from None
+    head = f"# The gestures of {toml_value(body.name)}, made of its robot file.\n"
+    return head + f"replaces = {toml_value(list(dict.fromkeys(taken)))}\n" + "".join(entries)
+
+
+def _entry(body: Body, gesture: Gesture, node_id: str, phrases: list[str]) -> str:
+    slots: dict[str, Any] = {"movement": {"type": "text", "default": gesture.name}}
+    is_aimed = any("{" in phrase for phrase in phrases)
+    plain = next((phrase for phrase in phrases if re.fullmatch(r"[\w ]+", phrase)), "")
+    values: dict[str, Any] = {
+        "phrase": phrases, "id": node_id, "call": _CALL, "needs": [*_parts(body, gesture), *["pose"] * is_aimed],
+        "topic": TOPIC, "help": gesture.help or f"Does the gesture {gesture.name}.", "example": plain,
+        "slots": slots | (_POINT if any("{place}" in phrase for phrase in phrases) else {}),
+    }  # fmt: skip
+    return "\n[[action]]\n" + "".join(f"{toml_key(key)} = {toml_value(value)}\n" for key, value in values.items())
+
+
+def _parts(body: Body, gesture: Gesture) -> list[str]:
+    """What it moves."""
+    both = [gesture, *([gesture.other] if gesture.other is not None else [])]
+    names = {name for each in both for frame in each.frames for name in frame.joints}
+    moved = (joint.part for joint in body.joints if joint.name in names)
+    return list(dict.fromkeys((*moved, *(each.aim for each in both if each.aim))))
+
+
+def _by_id(gesture: Gesture, english: Lexicon) -> Mapping[str, list[str]]:
+    """The phrases of a gesture by the ids of the words that they are: those of known gestures, else one that is new."""
+    found: dict[str, list[str]] = {}
+    for phrase in gesture.phrases:
+        for aimed in _aimed(phrase):
+            known = {_known(english, form, gesture) for form in phrase_forms(gesture.replace(phrases=(aimed,)))} - {""}
+            found.setdefault(next(iter(sorted(known)), _new_id(gesture.name, english)), []).append(aimed)
+    return found
+
+
+def _aimed(phrase: str) -> Iterator[str]:
+    """With each type of what it may be aimed at."""
+    slot = f"{{{TARGET}}}"
+    return (phrase.replace(slot, f"{{{kind}}}") for kind in (_TARGETS if slot in phrase else _TARGETS[:1]))
+
+
+def _known(english: Lexicon, form: Form, gesture: Gesture) -> str:
+    """The id of the word that has a form; "" for none. Raises GestureError for one that isn't that of a gesture."""
+    node: Any = english.trie
+    for part in form:
+        if isinstance(part, str):
+            node = node.get(part)
+        else:
+            node = next((child for name, _, child in node.get(SLOTS, ()) if name == part.name), None)
+        if node is None:
+            return ""
+    meaning: Meaning | None = node.get(END)
+    if meaning is None or (meaning.entry is not None and meaning.entry.yields and meaning.entry.topic != TOPIC):
+        return ""
+    if meaning.entry is None or meaning.entry.topic != TOPIC:
+        words = " ".join(part if isinstance(part, str) else f"{{{part.name}}}" for part in form)
+        says = f'"{words}" has another meaning already; choose another phrase'
+        raise GestureError(says, gesture.file or gesture.name)
+    return meaning.entry.id
+
+
+def _new_id(name: str, english: Lexicon) -> str:
+    camel = "".join(word[:1].upper() + word[1:] for word in re.findall(r"[A-Za-z0-9]+", name))
+    is_free = camel[:1].isalpha() and camel not in english.entries and camel not in CATALOGUE
+    return camel if is_free else f"Gesture{camel or crc32(name.encode())}"
+
+
+@cache
+def _folder() -> str:
+    """One that only the user writes to; for this process alone where there is none."""
+    try:
+        folder = os.path.join(own_folder(), "words")
+        os.makedirs(folder, 0o700, exist_ok=True)
+    except OSError:
+        _kept.append(tempfile.TemporaryDirectory(prefix="btlang-"))
+        return _kept[0].name
+    return folder
+
+
+_kept: list[tempfile.TemporaryDirectory[str]] = []  # until the process ends

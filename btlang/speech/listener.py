@@ -1,0 +1,74 @@
+"""Runs a recogniser in a thread of its own, which decodes while somebody speaks."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable, Sequence
+from queue import SimpleQueue
+
+from btlang.speech.recogniser import RATE, Expected, Understood
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.speech.recogniser import Recogniser
+
+_LONGEST = 5 * RATE * 2  # bytes of sound that wait for a slow recogniser
+_PIECE = RATE // 5  # bytes that are decoded at once: the tick never waits longer for the interpreter
+
+
+class Listener:
+    """From its making to `close`. All methods are for any thread, and return at once.
+
+    `guess` gets the words that the recogniser only guesses how to pronounce, in the thread of the recogniser.
+    """
+
+    def __init__(self, recogniser: Recogniser, guess: Callable[[Sequence[str]], object] = lambda words: None) -> None:
+        self._recogniser, self._guess = recogniser, guess
+        self._calls: SimpleQueue[Callable[[], object] | None] = SimpleQueue()
+        self._found: deque[Understood] = deque(maxlen=100)
+        self._waiting = 0
+        self.problem = ""
+        """Why it hears nothing any more; "" while it does."""
+        self._thread = threading.Thread(target=self._work, name="btlang ears", daemon=True)
+        self._thread.start()
+
+    def expect(self, expected: Expected) -> None:
+        """What is listened for from now on."""
+        self._calls.put(lambda: self._guess(self._recogniser.expect(expected)))
+
+    def hear(self, samples: bytes) -> None:
+        """The next samples; they are lost where five seconds of sound wait already."""
+        if self._waiting + len(samples) <= _LONGEST:
+            self._waiting += len(samples)
+            self._calls.put(lambda: self._hear(samples))
+
+    def end(self) -> None:
+        """Whoever speaks has let go of the button."""
+        self._calls.put(lambda: self._found.extend(self._recogniser.end()))
+
+    def forget(self) -> None:
+        """What was heard so far belongs to nothing that follows."""
+        self._calls.put(self._recogniser.forget)
+
+    def understood(self) -> Understood | None:
+        """The next sentence that was said, each once; None where there is none."""
+        return self._found.popleft() if self._found else None
+
+    def close(self) -> None:
+        """Ends it. May be called twice."""
+        self._calls.put(None)
+        self._thread.join(2.0)
+
+    def _hear(self, samples: bytes) -> None:
+        self._waiting -= len(samples)
+        for at in range(0, len(samples), _PIECE):
+            self._found.extend(self._recogniser.hear(samples[at : at + _PIECE]))
+
+    def _work(self) -> None:
+        while (call := self._calls.get()) is not None:
+            try:
+                call()
+            except Exception as problem:  # of a recogniser by somebody else, too
+                self.problem = f"{type(problem).__name__}: {problem}"
+                return

@@ -1,0 +1,199 @@
+"""Ears with a microphone: what is listened for, who is heard, and what is asked."""
+
+from __future__ import annotations
+
+import wave
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+import btlang
+from btlang.components import hearing
+from btlang.components.hearing import Hearing
+from btlang.devices.kinds import Sound
+from btlang.robots.body import Body, Ears
+from btlang.robots.robot import RobotError
+from btlang.speech.recogniser import RecogniserSettings, Understood
+
+ROBOT = """
+name = "listener"
+over = "devices"
+radius = 0.25
+[voice]
+text = 0.1
+character = 0.01
+[ears]
+within = 3.0
+engine = "pocketsphinx"
+[[device]]
+name = "microphone"
+kind = "microphone"
+driver = "sound"
+port = "{port}"
+"""
+PIECE = Sound(bytes(1600), 16_000)
+
+
+class Recogniser:
+    """In place of a thread with a recogniser: it understands what a test says."""
+
+    problem = ""
+
+    def __init__(self, recogniser: Any) -> None:
+        self.said: list[Understood] = []
+        self.expected: Any = None
+        self.heard = self.forgotten = self.ended = 0
+
+    def expect(self, expected: Any) -> None:
+        self.expected = expected
+
+    def hear(self, samples: bytes) -> None:
+        self.heard += 1
+
+    def end(self) -> None:
+        self.ended += 1
+
+    def forget(self) -> None:
+        self.forgotten += 1
+
+    def understood(self) -> Understood | None:
+        return self.said.pop(0) if self.said else None
+
+    def close(self) -> None:
+        pass
+
+
+class Rig:
+    """A robot with a microphone, whose clock the test drives."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, wake: str = "", push: bool = False) -> None:
+        monkeypatch.setattr(hearing, "Listener", Recogniser)
+        monkeypatch.setattr(hearing, "recogniser_of", lambda body: None)
+        from btlang.robots.ears import Ears as RobotEars
+
+        self.takes: dict[str, Callable[[Any], object]] = {}
+        self.ears, self.said, self.texts = RobotEars(), list[str](), list[str]()
+        body = Body("listener", 0.2, ears=Ears(3.0, "pocketsphinx", RecogniserSettings(push=push), wake))
+        self.robot = SimpleNamespace(
+            ears=self.ears, time=0.0, speaking=False, refuses=False, body=body, say=self.said.append, hear=self.hear
+        )
+        devices: Any = SimpleNamespace(
+            first=lambda kind: "microphone",
+            loops=[SimpleNamespace(devices={"microphone": None})],
+            devices={"talk button": SimpleNamespace(kind="button")},
+            follow=self.takes.__setitem__,
+        )
+        self.hearing = Hearing(body, self.robot, devices)
+        self.listener: Any = self.hearing._listener
+
+    def hear(self, text: str) -> None:
+        self.texts.append(text)
+        self.ears.hear(text, "", self.robot.time)
+
+    def step(self, seconds: float = 0.05, *said: Understood) -> None:
+        self.robot.time += seconds
+        self.listener.said += said
+        self.hearing.step()
+
+
+def test_it_listens_for_what_is_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig(monkeypatch)
+    assert rig.ears.news("stop", rig.robot.time) == []
+    rig.step()
+    assert rig.listener.expected.phrases == ("stop",)
+    rig.step(0.05, Understood("stop"))
+    assert [heard.text for heard in rig.ears.news("stop", rig.robot.time)] == ["stop"]
+    rig.step()
+    assert rig.ears.news("stop", rig.robot.time) == []
+    rig.step(6.0)
+    assert rig.listener.expected.phrases == ()
+
+
+def test_it_does_not_hear_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig(monkeypatch)
+    rig.takes["microphone"](PIECE)
+    assert rig.listener.heard == 1
+    rig.robot.speaking = True
+    rig.step()
+    rig.takes["microphone"](PIECE)
+    rig.step(0.05, Understood("stop"))
+    assert (rig.listener.heard, rig.listener.forgotten, rig.texts) == (1, 1, [])
+    rig.robot.speaking = False
+    rig.step(0.2)
+    rig.takes["microphone"](PIECE)
+    assert rig.listener.heard == 1
+    rig.step(0.2)
+    rig.takes["microphone"](PIECE)
+    assert rig.listener.heard == 2
+
+
+@pytest.mark.parametrize(("answer", "heard"), [("of course", ["tea"]), ("no thanks", []), (None, [])])
+def test_what_it_is_not_sure_of_is_asked(monkeypatch: pytest.MonkeyPatch, answer: str | None, heard: list[str]) -> None:
+    rig = Rig(monkeypatch)
+    rig.step(0.05, Understood("tea", sure=False))
+    assert rig.said == ['Did you say "tea"?']
+    rig.step()
+    assert {"yes", "no"} <= set(rig.listener.expected.phrases)
+    assert rig.listener.expected.mode == "open"
+    rig.step(0.05, Understood("yes", sure=False))
+    if answer is None:
+        rig.step(9.0)
+    else:
+        rig.step(0.05, Understood(answer))
+    assert rig.texts == heard
+    rig.step()
+    assert rig.listener.expected.phrases == ()
+
+
+def test_a_stopped_robot_asks_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig(monkeypatch)
+    rig.robot.refuses = True
+    rig.step(0.05, Understood("tea", sure=False))
+    assert (rig.said, rig.texts) == ([], [])
+
+
+def test_without_a_voice_it_hears_only_what_it_is_sure_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig(monkeypatch)
+
+    def say(text: str) -> None:
+        raise RobotError("the robot has no voice")
+
+    rig.robot.say = say
+    rig.step(0.05, Understood("tea", sure=False), Understood("coffee"))
+    assert rig.texts == ["coffee"]
+
+
+def test_push_to_talk(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig(monkeypatch, push=True)
+    rig.takes["microphone"](PIECE)
+    assert rig.listener.heard == 0
+    rig.hearing.push(True)
+    rig.takes["microphone"](PIECE)
+    assert (rig.listener.heard, rig.listener.ended) == (1, 0)
+    rig.hearing.push(False)
+    rig.takes["microphone"](PIECE)
+    assert (rig.listener.heard, rig.listener.ended) == (1, 1)
+
+
+def test_a_mission_hears_what_is_said_into_a_file(tmp_path: Path) -> None:
+    pytest.importorskip("pocketsphinx")
+    pytest.importorskip("espeakng_loader")
+    pytest.importorskip("av")
+    from tests.speech.sounds import VOICES, recorded
+
+    path = tmp_path / "said.wav"
+    with wave.open(str(path), "wb") as file:
+        file.setparams((1, 2, 16_000, 0, "NONE", ""))
+        file.writeframes(recorded("i am looking for the toilet", VOICES["test"][0])[:64_000])
+        file.writeframes(recorded("coffee please", VOICES["test"][0]))
+    (tmp_path / "robot.toml").write_text(ROBOT.format(port=path), encoding="utf-8")
+    mission = btlang.parse_tree("listen for coffee within 20 s")
+    with btlang.Session(robot=str(tmp_path / "robot.toml")) as session:
+        run = session.run(mission)
+        assert run.outcome is not None
+        assert run.outcome.succeeded, run.outcome.why()
+        assert session.robot.ears.answer == "coffee please"
+        assert [heard.text for heard in session.robot.ears.since(0)] == ["coffee please"]

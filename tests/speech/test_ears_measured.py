@@ -1,0 +1,57 @@
+"""How well the ears hear, on sentences and voices that they were not tuned on: the table of docs/ears.md."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.profiles import only_long
+from tests.speech.measuring import Count, count, everything, yes_or_no
+from tests.speech.sounds import LIGHT, VOICES, guide
+
+pytest.importorskip("pocketsphinx")
+
+ALL, SOME = VOICES["test"], VOICES["test"][::2]
+LOUD = (20.0, 15.0, 10.0, 5.0, 0.0)
+OWN = ("good", "yes", "no")
+
+
+def late(counted: Count) -> float:
+    """Seconds from the end of speech within which 95 of 100 were understood."""
+    return sorted(counted.late)[int(0.95 * len(counted.late))] if counted.late else 0.0
+
+
+@only_long
+@pytest.mark.parametrize("way", ["push", "wake"])
+def test_when_it_is_spoken_to(way: str) -> None:
+    sentences = count(("good",), guide(), ALL, LIGHT, way)
+    yes_no = count(("yes", "no"), yes_or_no(), ALL, LIGHT, way)
+    print(f"{way}: sentences {sentences.values} {sentences.part:.1f}%, late {late(sentences):.2f} s")
+    print(f"{way}: yes and no {yes_no.values} {yes_no.part:.1f}%, late {late(yes_no):.2f} s")
+    assert sentences.part >= 97.0
+    assert yes_no.part >= 99.0
+    assert max(late(sentences), late(yes_no)) < 0.5
+
+
+@only_long
+def test_when_it_listens_all_the_time() -> None:
+    own = count(OWN, everything(), ALL, LIGHT, "always")
+    foreign = count(("foreign",), everything(), ALL, LIGHT, "always")
+    print(f"always: own {own.values} {own.part:.1f}%, late {late(own):.2f} s")
+    print(f"always: foreign {foreign.values} {foreign.taken:.1f}%")
+    assert own.part >= 75.0
+    assert foreign.taken <= 10.0
+    assert late(own) < 0.5
+
+
+@only_long
+@pytest.mark.parametrize("decibels", LOUD)
+def test_in_noise(decibels: float) -> None:
+    pushed = count(("good",), guide(), SOME, decibels, "push")
+    yes_no = count(("yes", "no"), yes_or_no(), SOME, decibels, "push")
+    own = count(OWN, everything(), SOME, decibels, "always")
+    foreign = count(("foreign",), everything(), SOME, decibels, "always")
+    print(
+        f"{decibels:g} dB: push {pushed.part:.0f}%, yes and no {yes_no.part:.0f}%, "
+        f"always {own.part:.0f}%, foreign {foreign.taken:.0f}% {foreign.values}"
+    )
+    assert foreign.taken <= 10.0
