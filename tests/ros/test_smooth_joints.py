@@ -285,7 +285,7 @@ class Steady:
 def test_a_storm_of_movements_and_halts() -> None:
     """Whatever is asked for, nothing that is sent is refused, and no joint jumps."""
     random = default_rng(23)
-    for _ in range(amount(4, 100)):
+    for _ in range(amount(2, 100)):
         wire = Wire(int(random.integers(0, 4)))
         steady = Steady(wire)
         for _ in range(10):

@@ -6,8 +6,12 @@ import json
 import sys
 
 from btlang.cli import main
+from btlang.robots.gesture import Gesture
 from btlang.ros.simulator.simulator import Simulator
 from tests.ros.processes import Command
+from tests.speech.strokes import Way
+
+_AROUND = 1.0  # seconds around a word in which its stroke is looked for
 
 
 def watch() -> None:
@@ -36,6 +40,10 @@ class Look:
         self.said_at, self.text = float(found[3][0]), str(found[3][1])
         self.speaking, self.moving = bool(found[4]), bool(found[5])
 
+    def joint(self, name: str) -> float:
+        """Degrees."""
+        return self.joints[name]
+
 
 class WatchedSim(Command):
     """The robot, and what it did."""
@@ -46,6 +54,21 @@ class WatchedSim(Command):
     def looks(self) -> list[Look]:
         """All so far."""
         return [Look(line) for line in self.out.splitlines() if line.startswith('["look"') and line.endswith("]")]
+
+    def late(self, gesture: Gesture, text: str, word: float) -> float | None:
+        """Seconds by which the joints had the stroke of a gesture after a second of a text that it said; None where
+        they had it not, or geometry finds it.
+        """
+        [frame] = [frame for frame in gesture.frames if frame.at <= gesture.stroke <= frame.at + frame.hold]
+        if gesture.aim:
+            return None
+        looks = self.looks
+        at = next(look.said_at for look in looks if look.speaking and look.text == text) + word
+        way = Way(gesture.name, {name: float(angle) for name, angle in frame.joints.items()}, at)
+        for look in looks:
+            if abs(look.time - at) < _AROUND:
+                way.look(look)
+        return None if way.met is None else way.met - at - (0.0 if frame.hold == 0.0 else frame.at - gesture.stroke)
 
 
 if __name__ == "__main__":
