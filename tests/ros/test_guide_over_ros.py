@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import time
 from collections.abc import Callable, Iterator
@@ -14,6 +13,8 @@ import pytest
 import btlang
 from btlang.robots.body_file import load_body
 from btlang.robots.registry import Connector
+from btlang.robots.said_gestures import said_gesture
+from btlang.robots.voice_file import engine_of
 from btlang.run.events import Event, Said, StrokePlanned
 from btlang.session import Session
 from btlang.speech.marks import read_marks
@@ -108,9 +109,9 @@ def test_halted_in_the_stroke(watched: WatchedSim, how: str) -> None:
             plain = read_marks(text)[0]
 
             def bows(plain: str = plain) -> bool:
-                last = watched.looks[-1:]
-                return bool(last) and last[0].text == plain and last[0].joint("waist tilt") > 3.0
+                return watched.last.text == plain and 3.0 < watched.last.joint("waist tilt") < 20.0
 
+            wait_until(lambda: "look" in watched.out, "the first look")
             wait_until(bows, "the bow")
             if how == "halt":
                 going.stop()
@@ -118,7 +119,7 @@ def test_halted_in_the_stroke(watched: WatchedSim, how: str) -> None:
                 session.robot.stop()
                 going.stop()
             going.wait()
-            wait_until(lambda: not watched.looks[-1].moving, "rest")
+            wait_until(lambda: not watched.last.moving, "rest")
             silent, still = rests(watched.looks, plain)
             found.append(still - silent)
     print(f"{how}: arms rest {1000 * max(found):.0f} ms after the voice at most, {1000 * min(found):.0f} at least")
@@ -150,15 +151,12 @@ def test_the_whole_case_in_three_processes(
     wait_until(lambda: "Follow me!" in sim.out, "the welcome", 60.0)
     heard.publish(Heard(who="Ann", text="where is the cafe?"))
     wait_until(lambda: "You were wonderful. Goodbye!" in sim.out, "the end of the tour", TOUR)
-    wait_until(lambda: "done" in btc("task", "list", "--all", "--name", "btlang").out, "the end of the task", 30.0)
+    wait_until(lambda: "completed" in btc("task", "list", "--all", "--name", "btlang").out, "the end of the task", 30.0)
     body = load_body(str(GUIDE / "robot.toml"))
     texts = {look.text for look in sim.looks if look.speaking}
     assert any("cafe" in text for text in texts), texts
     tour = (GUIDE / "missions" / "short_tour.txt").read_text(encoding="utf-8")
     said = [line.split('"')[1] for line in tour.splitlines() if line.startswith("say")]
-    from btlang.robots.said_gestures import said_gesture
-    from btlang.robots.voice_file import engine_of
-
     found: dict[str, float | None] = {}
     for line in said:
         text, marks = read_marks(line)
@@ -169,5 +167,5 @@ def test_the_whole_case_in_three_processes(
                 word = engine_of(body).speak(text).time_of(mark.index)
                 found[mark.words] = sim.late(body.gestures[gesture.name], text, word)
     print({words: None if late is None else round(late, 3) for words, late in found.items()})
+    assert all(abs(late) < BUSY for late in found.values() if late is not None)
     assert sim.end(signal.SIGINT) == 130
-    assert os.environ

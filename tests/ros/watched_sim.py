@@ -11,6 +11,7 @@ from btlang.ros.simulator.simulator import Simulator
 from tests.ros.processes import Command
 from tests.speech.strokes import Way
 
+_LINE = 4000  # characters of two lines
 _AROUND = 1.0  # seconds around a word in which its stroke is looked for
 
 
@@ -42,7 +43,8 @@ class Look:
 
     def joint(self, name: str) -> float:
         """Degrees."""
-        return self.joints[name]
+        angle: float = self.joints[name]
+        return angle
 
 
 class WatchedSim(Command):
@@ -54,6 +56,12 @@ class WatchedSim(Command):
     def looks(self) -> list[Look]:
         """All so far."""
         return [Look(line) for line in self.out.splitlines() if line.startswith('["look"') and line.endswith("]")]
+
+    @property
+    def last(self) -> Look:
+        """The latest one; there has to be one."""
+        line = self.out[-_LINE:].rpartition("\n")[0].rpartition("\n")[2]
+        return Look(line)
 
     def late(self, gesture: Gesture, text: str, word: float) -> float | None:
         """Seconds by which the joints had the stroke of a gesture after a second of a text that it said; None where
