@@ -91,6 +91,7 @@ def test_strokes_of_all_commentaries(watched: WatchedSim) -> None:
             for event in (event for event in events if isinstance(event, StrokePlanned)):
                 late = watched.late(guide("").gestures[event.name], text, event.word)
                 if late is not None:
+                    print(f"{event.name}: {1000 * late:.0f} ms, {1000 * (event.stroke - event.word):.0f} planned")
                     found.append(abs(late))
                     promised.append(abs(event.stroke - event.word))
     p95 = sorted(found)[int(0.95 * len(found))]

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 _HANDS: tuple[Hand, Hand] = ("left", "right")
 _STEP = 0.1  # seconds of real time, between two steps, that count at most for the beginning of speech
+_EXACT = 1e-6
 _JOINTS, _SMOOTH_JOINTS = 20, 50  # states of them a second
 
 
@@ -59,7 +60,7 @@ class Body:
     def publish(self, now: Moment) -> None:
         """Tells the state of joints, hands and voice."""
         self._stepped = monotonic()
-        self._speaking.set(self._robot.speaking)
+        self._speaking.set(self._speaks)
         for hand, topic in self._holding.items():
             topic.set(self._robot.holding(hand) or "")
         if self._joints_due.is_due(now.seconds):
@@ -67,6 +68,12 @@ class Body:
             state.header.stamp = now.stamp
             state.position = [self._robot.joint(name) * self._si[name] for name in self._names.values()]
             self._joints.publish(state)
+
+    @property
+    def _speaks(self) -> bool:
+        """Whether it speaks, and has begun to."""
+        robot = self._robot
+        return robot.speaking and robot.said_at <= robot.time + _EXACT
 
     def _hand_over(self, act: Callable[[Any], None], message: Any) -> None:
         self._calls.post(lambda: act(message))
@@ -115,7 +122,7 @@ class Body:
             self._robot.say(message.data, since_step)
         else:
             self._robot.silence()
-        self._speaking.set(self._robot.speaking)
+        self._speaking.set(self._speaks)
 
     def _speak_in(self, message: String) -> None:
         try:
