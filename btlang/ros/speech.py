@@ -39,6 +39,7 @@ class RosSpeech:
         self._language = node.create_publisher(String, LANGUAGE, LATCHED)
         self._made, self._risky = time.monotonic(), False
         self._age = self._since = self._began = 0.0
+        self._usual = 0.0  # seconds that it took to begin the last time, which is what is expected
         self._waiting = ""  # what it is to say when `_age` is 0
         self._asked = self._heard = self._told = False
         self._node, self._clock = node, node.get_clock()
@@ -72,7 +73,7 @@ class RosSpeech:
         if not self._speech.get_subscription_count():
             raise RobotError(f"nobody listens to {self._speech.topic_name}")
         self.said = self.utterance(text)
-        self._asked, self._heard, self._age, self._began, self._since = True, False, -after, 0.0, AWAKE.now()
+        self._asked, self._heard, self._age, self._began, self._since = True, False, -after, self._usual, AWAKE.now()
         self._waiting = text
         self._cancel_timer()
         if after > 0.0:  # between two ticks
@@ -143,6 +144,7 @@ class RosSpeech:
             if self._told and self._asked and not self._heard and not self._waiting:
                 since = min(max(0.0, self._stepped - self._set_in), dt)
                 self._heard, self._began = True, max(0.0, self._age - since)
+                self._usual = min(self._began, _BEGINS)
         if self._asked and not self._waiting and AWAKE.now() - self._since > _BEGINS:
             self._asked = self._told if self._subscriptions.has(SPEAKING) else self._age < self._seconds
 
