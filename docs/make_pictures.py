@@ -1,5 +1,5 @@
-"""Makes the pictures that the README shows: `python docs/make_pictures.py [FOLDER]`, by default into docs/pictures. With
-`--page` it makes that of the page instead, in the browser of the tests.
+"""Makes the pictures that the README shows: `python docs/make_pictures.py [FOLDER]`, by default into docs/pictures.
+With `--page` it makes that of the page instead, in the browser of the tests.
 """
 
 from __future__ import annotations
