@@ -15,7 +15,7 @@ DOCS = Path(__file__).parent
 
 
 def make_pictures(folder: Path) -> None:
-    """Runs the mission of the README and draws its run and its tree."""
+    """Runs the mission of the README and draws its run and its tree, and the guide of the museum."""
     readme = (DOCS.parent / "README.md").read_text(encoding="utf-8")
     found = re.search(r"```mission tea\.txt\n(.*?)```", readme, re.DOTALL)
     assert found is not None, "the README has no mission tea.txt"
@@ -27,6 +27,12 @@ def make_pictures(folder: Path) -> None:
         assert main([*run, str(folder / "tea_run.svg"), "--tree-picture", str(folder / "tea_tree_after_run.svg")]) == 0
         assert main([*run, str(folder / "tea_run.gif")]) == 0
         assert main(["tree", str(mission), "--picture", str(folder / "tea_tree.svg")]) == 0
+    guide = DOCS.parent / "examples" / "guide"
+    robot = ["--robot", str(guide / "robot.toml")]
+    tour = ["run", str(guide / "missions" / "short_tour.txt"), *robot, "--speed", "max", "--quiet"]
+    assert main([*tour, "--picture", str(folder / "guide_tour.gif")]) == 0
+    assert main(["gesture", "picture", "bow", *robot, "-o", str(folder / "guide_bow.svg")]) == 0
+    assert main(["world", str(guide / "world.toml"), "--picture", str(folder / "guide_museum.svg")]) == 0
 
 
 def make_page_picture(folder: Path) -> None:
