@@ -7,6 +7,7 @@ import { t } from "../texts";
 import type { Context } from "../view";
 import { spoken } from "./speech";
 
+const GAP = 6; // pixels between the bubble and the body
 const SENTENCE = /[^.!?]*[.!?]*\s*/g;
 
 export class Body {
@@ -83,6 +84,6 @@ export class Body {
   private place(x: number, y: number): void {
     const { clientWidth: width } = this.element;
     this.bubble.style.left = `${Math.min(Math.max(x, width * 0.25), width * 0.75)}px`;
-    this.bubble.style.bottom = `calc(100% - ${Math.max(y - 8, 40)}px)`;
+    this.bubble.style.top = `${Math.max(y - this.bubble.offsetHeight - GAP, GAP)}px`;
   }
 }
