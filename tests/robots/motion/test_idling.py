@@ -47,7 +47,7 @@ def test_it_breathes_and_counts_as_standing_still() -> None:
     assert guide().idle.breathing == Breathing(WAIST, 0.8, 4.0)
     assert (tilts.min(), tilts.max()) == pytest.approx((-0.8, 0.8), abs=0.01)
     begins = np.flatnonzero(np.diff(tilts > 0)) * 0.05
-    assert np.diff(begins) == pytest.approx(2.0, abs=0.2)
+    assert np.diff(begins)[1:] == pytest.approx(2.0, abs=0.2)
     assert all(still)
     assert all(moved.joint(joint.name) == joint.rest for joint in guide().joints if joint.name != WAIST)
 
@@ -125,7 +125,8 @@ def test_it_looks_at_who_speaks_and_back(why: str) -> None:
     else:
         moved.guide("Ada", True)
     passing(moved, 2.0)
-    assert moved.joint(HEAD) == pytest.approx(26.6, abs=6.0 if why == "guide" else 0.1)
+    place = moved.pose.bearing_to(moved.locate("Ada"))  # she walks after it
+    assert moved.joint(HEAD) == pytest.approx(place, abs=10.0 if why == "guide" else 0.1)
     assert not moved.moving
     passing(moved, 4.0)
     assert moved.joint(HEAD) == pytest.approx(0.0, abs=1e-6)
@@ -188,7 +189,7 @@ def test_storms_over_idle_joints(seed: int) -> None:
     moved = SimulatedRobot(WORLD, body=body)
     moved.enable()
     for _ in range(30):
-        what = random.random()
+        what, halted = random.random(), False
         try:
             if what < 0.5:
                 gesture = random_gesture(body, random)
@@ -197,13 +198,14 @@ def test_storms_over_idle_joints(seed: int) -> None:
                 moved.hear("hello", "Ada")
             else:
                 moved.stop()
-                moved.step(PERIOD)
-                moved.enable()
+                halted = True
         except RobotError as error:
             assert "would touch" in str(error)
         for _ in range(int(random.exponential(100.0))):
             moved.step(PERIOD)
             positions.append([moved.joint(joint.name) for joint in body.joints])
+            if halted:
+                moved.enable()
     check_limits(np.array(positions), Limits.of(body.joints), seed)
     for position in positions[::2]:
         assert not oracle.collides(np.array(position)), (seed, position)
