@@ -55,7 +55,9 @@ class Sent(Record):
         last = len(self.way.position) - 1
         passed = min(max(0.0, (seconds - self.begins) / PERIOD), last)
         before = int(passed)
-        rows = (State(*(getattr(self.way, name)[row] for name in State.fields)) for row in (before, min(before + 1, last)))
+        rows = (
+            State(*(getattr(self.way, name)[row] for name in State.fields)) for row in (before, min(before + 1, last))
+        )
         one, other = rows
         return between(one, other, passed - before)
 
