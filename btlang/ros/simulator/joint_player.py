@@ -21,7 +21,7 @@ from btlang.ros.times import seconds_of
 _SILENCE = 0.5  # simulated and real seconds without a trajectory after which the joints brake
 _FAR_OFF = 10.0  # seconds before its beginning and after its end in which a trajectory may come
 _SAME, _SAME_SPEED = 0.001, 0.05  # seconds at the speed of a joint, and a share of that speed
-_CATCHES_UP = (0.05, 0.1, 0.2, 0.4, 0.8)  # seconds in which it may join what has begun already
+_CATCHES_UP = (0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2)  # seconds in which it may join what has begun already
 _TOLERANCE = 1.05  # of a limit
 
 
