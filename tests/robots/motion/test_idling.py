@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from functools import cache
 
 import numpy as np
@@ -190,17 +191,14 @@ def test_storms_over_idle_joints(seed: int) -> None:
     moved.enable()
     for _ in range(30):
         what, halted = random.random(), False
-        try:
-            if what < 0.5:
-                gesture = random_gesture(body, random)
-                moved._gestures._joints.play(gesture, None)  # type: ignore[attr-defined]
-            elif what < 0.8:
-                moved.hear("hello", "Ada")
-            else:
-                moved.stop()
-                halted = True
-        except RobotError as error:
-            assert "would touch" in str(error)
+        if what < 0.5:
+            with suppress(RobotError):  # the body would touch itself
+                moved._joints.play(random_gesture(body, random), None)  # type: ignore[attr-defined]
+        elif what < 0.8:
+            moved.hear("hello", "Ada")
+        else:
+            moved.stop()
+            halted = True
         for _ in range(int(random.exponential(100.0))):
             moved.step(PERIOD)
             positions.append([moved.joint(joint.name) for joint in body.joints])
