@@ -80,14 +80,13 @@ def copied(folder: str, chosen: Sequence[Example]) -> list[str]:
     Returns the paths written.
 
     Nothing is overwritten: raises MissionError (BT009) with every file that is there already, before any is written.
-    A world or part that is there with the same text stays.
+    A file that is there with the same text stays.
     """
     files = {os.path.join(folder, example.file): example.text.encode() for example in chosen}
     needed = [name for example in chosen for name in (example.world, *example.parts, example.test) if name]
-    shared = {os.path.join(folder, name): _data(name) for name in needed}
-    files |= shared
+    files |= {os.path.join(folder, name): _data(name) for name in needed}
     there = [path for path in files if os.path.lexists(path)]
-    kept = [path for path in there if path in shared and _same(path, files[path])]
+    kept = [path for path in there if _same(path, files[path])]
     problems = [
         unwritable(path, "it is there already, and nothing is overwritten") for path in there if path not in kept
     ]

@@ -122,6 +122,7 @@ def readings(line: str) -> list[str]:
 def folder(tmp_path: Path) -> Path:
     """A folder with the examples and the files that the pages show."""
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    shutil.copytree(ROOT / "examples" / "guide", tmp_path / "guide")
     for block in BLOCKS:
         if block.file:
             (tmp_path / block.file).write_text(block.text, encoding="utf-8")

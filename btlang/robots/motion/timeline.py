@@ -67,7 +67,7 @@ class Timeline:
 
     @property
     def plan(self) -> tuple[float, State]:
-        """What all joints do until they rest: samples from a second on, PERIOD apart. A new one whenever that changes."""
+        """What all joints do until they rest: samples from a second on, PERIOD apart. New whenever that changes."""
         with self._lock:
             return self._first * PERIOD, self._way
 

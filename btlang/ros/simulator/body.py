@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable
 from functools import partial
 from math import isfinite
+from time import monotonic
 from typing import Any
 
 from rclpy.node import Node
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from btlang.ros.simulator.joint_player import JointPlayer
 
 _HANDS: tuple[Hand, Hand] = ("left", "right")
+_STEP = 0.1  # seconds of real time, between two steps, that count at most for the beginning of speech
 _JOINTS, _SMOOTH_JOINTS = 20, 50  # states of them a second
 
 
@@ -36,6 +38,7 @@ class Body:
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue, player: JointPlayer | None) -> None:
         self._robot, self._player, self._logger = robot, player, node.get_logger()
         self._calls = calls
+        self._stepped = monotonic()
         self._names = {joint.name.replace(" ", "_"): joint.name for joint in robot.body.joints}
         self._si = {joint.name: joint.si for joint in robot.body.joints}
         hands = [hand for hand in _HANDS if robot.body.hand(hand) is not None]
@@ -55,6 +58,7 @@ class Body:
 
     def publish(self, now: Moment) -> None:
         """Tells the state of joints, hands and voice."""
+        self._stepped = monotonic()
         self._speaking.set(self._robot.speaking)
         for hand, topic in self._holding.items():
             topic.set(self._robot.holding(hand) or "")
@@ -106,7 +110,9 @@ class Body:
 
     def _say(self, message: String) -> None:
         if message.data:
-            self._robot.say(message.data)
+            self._robot.utterance(message.data)  # first: it takes its time, which isn't that of the voice
+            since_step = 0.0 if self._player is None else min(monotonic() - self._stepped, _STEP)
+            self._robot.say(message.data, since_step)
         else:
             self._robot.silence()
         self._speaking.set(self._robot.speaking)

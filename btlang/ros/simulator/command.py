@@ -25,6 +25,7 @@ PACKAGES = (
 )  # fmt: skip
 """The packages of messages that it needs beside rclpy."""
 _RATE, _SMOOTH_RATE = 20.0, 50.0
+_LATE = 0.1  # seconds of real time that are caught up with after a late step
 _UNCOMPILED = (
     "no /heard, /asking, /sightings, /follow and /hand_over: btlang's interfaces are not compiled"
     " (python -m btlang.ros.interfaces --own)"
@@ -82,7 +83,7 @@ def _simulate(options: argparse.Namespace, body: Body, world: World, came: Endin
         show(f"btlang sim-ros: ready at speed {speed:g} ({where}); Ctrl-C ends it")
         due = monotonic()
         while not came.numbers:
-            due = max(due + 1 / (rate * speed), monotonic())  # time after a late step is not caught up with
+            due = max(due + 1 / (rate * speed), monotonic() - _LATE)
             simulator.work(due - monotonic())
             simulator.step(1 / rate)
     return 128 + came.numbers[0]

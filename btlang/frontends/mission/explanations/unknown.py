@@ -187,7 +187,7 @@ def _misfit(
             example=_value_example(named[0], vocabulary),
         )
     if named:
-        known = [name for kind in named for name in vocabulary.values.names(kind.name)]
+        known = [name for kind in named for name in vocabulary.values.said_names(kind.name)]
         kinds = " or ".join(kind.name for kind in named)
         near = nearest(span.text.lower(), known)
         fix = (span, near[0]) if near else None
@@ -273,7 +273,7 @@ def _unknown_phrase(
     near = dict(inside) | dict(_nearest_phrases(tuple(text.words[at:end]), vocabulary, tuple(names))) | dict(inside)
     if not near:  # a value alone, in a list or where the other words are left out: `if Allice or Bob is near`
         values = [name for type in vocabulary.types.values() if type.kind == "names"
-                  for name in vocabulary.values.names(type.name)]  # fmt: skip
+                  for name in vocabulary.values.said_names(type.name)]  # fmt: skip
         value = nearest(text.words[at], values) if text.words[at].isalpha() else []
         fix = (text.span(at, at + 1), value[0]) if value else None
         advice = nearest_known(value) if value else "'btc words' lists what I know."
@@ -334,7 +334,7 @@ def _near_names(near: list[str], known: list[str]) -> str:
 
 
 def _value_example(kind: ValueType, vocabulary: Lexicon) -> str:
-    names = vocabulary.values.names(kind.name) if kind.kind == "names" else []
+    names = vocabulary.values.said_names(kind.name) if kind.kind == "names" else []
     return names[0] if names else kind.example
 
 

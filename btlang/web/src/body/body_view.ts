@@ -8,7 +8,7 @@ import { Room } from "./room";
 import { readUrdf } from "./urdf";
 
 const NEAR = 0.05, FAR = 60; // metres
-const EYE = { ahead: 2.3, left: 1.1, up: 1.7, looks: 0.85 }; // metres: where the camera is as seen from the robot, and the height that it looks at
+const EYE = { ahead: 2.9, left: 1.4, up: 1.8, looks: 0.95 }; // metres: where the camera is as seen from the robot, and the height that it looks at
 const LEAST = 0.5, MOST = 15; // metres between the camera and the robot
 const STEP = Math.PI / 24; // of a key
 const CALM = 1000; // milliseconds between two postures for somebody who wants little motion
@@ -58,6 +58,7 @@ export class BodyView {
     this.scene.add(new HemisphereLight(0xffffff, 0x999999, 1.9), sun, this.room.group, this.links.group);
     this.controls = new OrbitControls(this.camera, canvas);
     Object.assign(this.controls, { minDistance: LEAST, maxDistance: MOST, maxPolarAngle: Math.PI / 2, enablePan: false });
+    canvas.style.touchAction = "pan-y"; // a finger still scrolls the page
     this.controls.addEventListener("change", this.redraw);
     canvas.addEventListener("keydown", this.press);
     addEventListener("themechange", this.paint);

@@ -12,7 +12,12 @@ export class Links {
   private positions: number[];
 
   constructor(urdf: Urdf, material: Material) {
-    const groups = new Map([...urdf.links].map(([link, shapes]) => [link, new Group().add(...shapes.map((shape) => meshOf(shape, material)))]));
+    const groups = new Map<string, Group>();
+    for (const [link, shapes] of urdf.links) {
+      const group = new Group();
+      for (const shape of shapes) group.add(meshOf(shape, material));
+      groups.set(link, group);
+    }
     for (const joint of urdf.joints) {
       const frame = new Group().add(groups.get(joint.child)!);
       put(frame, joint.at, joint.turned);

@@ -1,7 +1,7 @@
 // What is around the body: the floor, the walls and boxes of the map, people and objects.
 import { BoxGeometry, CapsuleGeometry, CylinderGeometry, Group, InstancedMesh, MeshLambertMaterial, Object3D, PlaneGeometry, Mesh, type BufferGeometry } from "three";
 import type { Point, Robot, WorldMap } from "../fleet";
-import { objectsOf, peopleOf, type Standing } from "../watch/surroundings";
+import { objectsOf, peopleOf } from "../watch/surroundings";
 
 const FLOOR = 400; // metres
 const WALL = { height: 0.9, thickness: 0.05 }; // metres: low, so that one sees over them
@@ -15,12 +15,12 @@ type Place = [x: number, y: number, z: number, turned: number, length: number, w
 export class Room {
   readonly group = new Group();
   private floor = new MeshLambertMaterial();
-  private wall = new MeshLambertMaterial({ transparent: true, opacity: 0.45, depthWrite: false });
-  private box = new MeshLambertMaterial();
+  private wall = glassy();
+  private box = glassy();
   private person = new MeshLambertMaterial();
-  private object = new MeshLambertMaterial();
+  private object = glassy();
   private built = new Group();
-  private people = many(new CapsuleGeometry(1, 1, 6, 16).rotateX(Math.PI / 2), this.person, MOST);
+  private people = many(new CapsuleGeometry(PERSON.radius, PERSON.height - 2 * PERSON.radius, 6, 16).rotateX(Math.PI / 2), this.person, MOST);
   private objects = many(new CylinderGeometry(1, 1, 1, 20).rotateX(Math.PI / 2), this.object, MOST);
   private map: WorldMap | null = null;
 
@@ -40,12 +40,8 @@ export class Room {
       this.map = robot.map;
       this.build();
     }
-    const stand = ({ x, y, radius }: Standing, height: number): Place => [x, y, height / 2, 0, radius, radius, height];
-    fill(this.people, peopleOf(robot).map((each) => {
-      const thick = Math.min(each.radius, PERSON.radius);
-      return [each.x, each.y, PERSON.height / 2, 0, thick, thick, PERSON.height / 3]; // the capsule is three high
-    }));
-    fill(this.objects, objectsOf(robot).map((each) => stand(each, OBJECT)));
+    fill(this.people, peopleOf(robot).map(({ x, y }) => [x, y, PERSON.height / 2, 0, 1, 1, 1]));
+    fill(this.objects, objectsOf(robot).map(({ x, y, radius }) => [x, y, OBJECT / 2, 0, radius, radius, OBJECT]));
   }
 
   private build(): void {
@@ -59,6 +55,11 @@ export class Room {
       this.built.add(made);
     }
   }
+}
+
+/** The robot is seen through it. */
+function glassy(): MeshLambertMaterial {
+  return new MeshLambertMaterial({ transparent: true, opacity: 0.5, depthWrite: false });
 }
 
 function along([x, y]: Point, [endX, endY]: Point): Place {

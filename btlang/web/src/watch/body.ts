@@ -7,6 +7,7 @@ import { t } from "../texts";
 import type { Context } from "../view";
 import { spoken } from "./speech";
 
+const GAP = 6; // pixels between the bubble and the body
 const SENTENCE = /[^.!?]*[.!?]*\s*/g;
 
 export class Body {
@@ -29,16 +30,12 @@ export class Body {
     this.showBubble(robot);
   }
 
-  /** It may have another body by now. */
-  clear(): void {
+  /** Ends the picture; `show` begins another one. */
+  close(): void {
     this.turn++;
     this.view?.close();
     this.view = this.canvas = null;
     this.element.hidden = true;
-  }
-
-  close(): void {
-    this.clear();
   }
 
   private async begin(): Promise<void> {
@@ -81,8 +78,8 @@ export class Body {
   }
 
   private place(x: number, y: number): void {
-    const { clientWidth: width } = this.element;
-    this.bubble.style.left = `${Math.min(Math.max(x, width * 0.25), width * 0.75)}px`;
-    this.bubble.style.bottom = `calc(100% - ${Math.max(y - 8, 40)}px)`;
+    const half = this.bubble.offsetWidth / 2 + GAP;
+    this.bubble.style.left = `${Math.max(Math.min(x, this.element.clientWidth - half), half)}px`;
+    this.bubble.style.top = `${Math.max(y - this.bubble.offsetHeight - GAP, GAP)}px`;
   }
 }

@@ -9,9 +9,9 @@ import type { Context } from "../view";
 const MOST = 12; // that are offered
 
 export class Offers {
-  private list = h("div", { class: "missions" });
+  private list = h("div", { class: "choices" });
   private problem = h("p", { class: "problem", role: "alert" });
-  readonly element = h("div", { class: "offers", role: "group", "aria-label": t("offers"), hidden: true }, h("strong", { "aria-hidden": true }, t("offers")), this.list, this.problem);
+  readonly element = h("div", { class: "starts card", role: "group", "aria-label": t("offers"), hidden: true }, h("h2", { "aria-hidden": true }, t("offers")), this.list, this.problem);
   private names: string[] = [];
 
   constructor(private context: Context) {
@@ -33,10 +33,13 @@ export class Offers {
 
   private async begin(name: string): Promise<void> {
     fill(this.problem);
+    this.list.inert = true; // until it's begun: a second click would queue it twice
     try {
       await command(this.context, "submit", { name });
     } catch (error) {
       fill(this.problem, (error as Error).message);
+    } finally {
+      this.list.inert = false;
     }
   }
 }

@@ -14,7 +14,7 @@ export class Speech {
   private whole = h("span", { class: "aside", "aria-live": "polite" });
   private says = h("p", { class: "says", dir: "auto", hidden: true }, this.whole, this.words);
   private heard = h("p", { class: "says heard", dir: "auto", role: "status" });
-  readonly element = h("div", {}, this.says, this.heard);
+  readonly element = h("div", { class: "speech" }, this.says, this.heard);
   private shown = "";
 
   /** What is known of the robot by now. */

@@ -67,12 +67,12 @@ class Watch implements View {
     this.element = h(
       "section",
       { class: "watch" },
-      h("div", { class: "head" }, h("div", { class: "now" }, this.pill, this.title), this.controls, this.problem, this.gone),
-      h("div", { class: "stage card" }, this.failure.element, this.offers.element, h("div", { class: "doing" }, this.running, this.follow), this.empty, this.tree.element),
+      h("div", { class: "head" }, h("div", { class: "now" }, this.pill, this.title), this.controls, this.problem, this.gone, this.offers.element),
+      h("div", { class: "stage card" }, this.failure.element, h("div", { class: "doing" }, this.running, this.follow), this.empty, this.tree.element),
       h(
         "div",
         { class: "side" },
-        h("div", { class: "card place" }, this.body.element, this.map.canvas, this.visitor, this.speech.element, this.voice.element, this.question.element),
+        h("div", { class: "card place" }, this.body.element, this.map.canvas, h("div", { class: "beside" }, this.voice.element, this.visitor), this.speech.element, this.question.element),
         operates && h("details", { class: "card" }, h("summary", {}, t("submit.title")), submitForm(context)),
         this.parts.element,
         h("div", { class: "card events" }, h("h2", {}, t("log")), this.log.element),
@@ -85,7 +85,7 @@ class Watch implements View {
         this.failure.note(news!["task"], news!["event"]);
         this.voice.note(news!["event"]);
       }
-      if (kind === "up") this.body.clear();
+      if (kind === "up") this.body.close(); // it may have another body by now
       if (kind === "run" && news!["task"]) this.failure.clear();
       this.refresh();
     });

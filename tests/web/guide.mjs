@@ -1,0 +1,78 @@
+// A humanoid in 3D: it moves, speaks, and gives a tour after one click. Without WebGL the page says so. Its URDF is read.
+import assert from "node:assert/strict";
+import pixelmatch from "pixelmatch";
+import { PNG } from "pngjs";
+import { accessible, fits, logIn, submit, visit } from "./browser.mjs";
+
+const [base, password, reader] = process.argv.slice(2);
+const MOVED = 400; // pixels
+const LONG = 60_000; // milliseconds for what a busy computer draws
+const CANVAS = ".body canvas[aria-label]";
+
+await visit(base, async (page) => {
+  await reads(page);
+  await logIn(page, base, "olga", password);
+  await page.click(".robots a");
+  const canvas = await page.waitForSelector(CANVAS);
+  await page.waitForSelector(".choices button");
+  const look = async () => PNG.sync.read(await canvas.screenshot());
+  const until = async (act, what) => {
+    const before = await look();
+    await act();
+    for (const end = Date.now() + LONG; ; ) {
+      const now = await look();
+      if (pixelmatch(before.data, now.data, null, now.width, now.height, { threshold: 0.2 }) > MOVED) return;
+      assert.ok(Date.now() < end, what);
+    }
+  };
+  for (const end = Date.now() + LONG; new Set((await look()).data).size < 20; ) assert.ok(Date.now() < end, "nothing is drawn");
+  await until(() => submit(page, "raise both arms"), "it shows no gesture");
+  await until(() => canvas.press("ArrowLeft"), "the keys don't turn it");
+
+  await page.click(".choices button:text-is('tour')");
+  await page.waitForFunction(() => document.querySelector(".says mark")?.textContent && document.querySelector(".bubble:not([hidden]) mark"));
+  assert.match(await canvas.getAttribute("aria-label"), /in 3D: .*say/);
+  await page.waitForSelector(".now h1:has-text('tour')");
+  await accessible(page, "guide");
+  await page.setViewportSize({ width: 360, height: 740 });
+  await fits(page);
+
+  assert.ok(!(await canvas.evaluate((each) => each.getContext("webgl2").isContextLost())));
+  await page.click(".tabs a[href$='/tasks']");
+  await page.waitForSelector("ul.tasks .what:has-text('short_tour')");
+  assert.ok(await canvas.evaluate((each) => each.getContext("webgl2").isContextLost()), "it keeps the graphics card");
+}, {}, undefined, true);
+
+await visit(base, async (page) => {
+  await logIn(page, base, "vic", password);
+  await page.click(".robots a");
+  await page.waitForSelector(".body .empty:has-text('no WebGL')");
+  await page.waitForSelector("canvas.map");
+});
+
+/** What the page makes of URDF, and of what is none. */
+async function reads(page) {
+  await page.addScriptTag({ path: reader });
+  const read = (text) => page.evaluate((text) => {
+    try {
+      const found = globalThis.body.readUrdf(text);
+      return { ...found, links: Object.fromEntries(found.links), moving: globalThis.body.moving(found).map(({ name }) => name) };
+    } catch (error) {
+      return error.message;
+    }
+  }, text);
+  const joint = (name, parent, child, type = "revolute") => `<joint name="${name}" type="${type}"><parent link="${parent}"/><child link="${child}"/><origin xyz="0 0 1"/><axis xyz="0 1 0"/></joint>`;
+  const visual = '<visual><origin xyz="1 2 3" rpy="0 1.5 0"/><geometry><cylinder radius="0.1" length="0.4"/></geometry></visual><visual><geometry><mesh filename="arm.stl"/></geometry></visual>';
+  const body = (...parts) => `<robot name="r"><link name="a">${visual}</link><link name="b"/><link name="c"/>${parts.join("")}</robot>`;
+
+  const found = await read(body(joint("turn", "a", "b"), joint("bolt", "b", "c", "fixed")));
+  assert.deepEqual(found.links["a"], [{ kind: "cylinder", size: [0.1, 0.4], at: [1, 2, 3], turned: [0, 1.5, 0] }]);
+  assert.deepEqual([found.root, found.moving], ["a", ["turn"]]);
+  assert.deepEqual(found.joints[0], { name: "turn", kind: "turns", parent: "a", child: "b", at: [0, 0, 1], turned: [0, 0, 0], axis: [0, 1, 0] });
+  assert.match(await read("no XML <"), /no element 'robot'/);
+  assert.match(await read(body(joint("turn", "a", "nowhere"))), /on a link that isn't there/);
+  assert.match(await read(body(joint("turn", "a", "b"))), /no tree/);
+  assert.match(await read(body(joint("one", "b", "c"), joint("two", "c", "b"))), /no tree/);
+  assert.match(await read(body(joint("one", "a", "c"), joint("two", "b", "c"))), /on two joints/);
+  assert.match(await read(body().replace("0.1", "NaN")), /needs 1 numbers/);
+}
