@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from functools import cache
 
 import numpy as np
@@ -186,22 +187,18 @@ def test_storms_over_idle_joints(seed: int) -> None:
 
     body, random = restless(), np.random.default_rng(seed)
     oracle, positions = Pinocchio(body), []
-    refusals: list[str] = []
     moved = SimulatedRobot(WORLD, body=body)
     moved.enable()
     for _ in range(30):
         what, halted = random.random(), False
-        try:
-            if what < 0.5:
-                gesture = random_gesture(body, random)
-                moved._gestures._joints.play(gesture, None)  # type: ignore[attr-defined]
-            elif what < 0.8:
-                moved.hear("hello", "Ada")
-            else:
-                moved.stop()
-                halted = True
-        except RobotError as error:
-            refusals.append(str(error))
+        if what < 0.5:
+            with suppress(RobotError):  # the body would touch itself
+                moved._joints.play(random_gesture(body, random), None)  # type: ignore[attr-defined]
+        elif what < 0.8:
+            moved.hear("hello", "Ada")
+        else:
+            moved.stop()
+            halted = True
         for _ in range(int(random.exponential(100.0))):
             moved.step(PERIOD)
             positions.append([moved.joint(joint.name) for joint in body.joints])
@@ -210,4 +207,3 @@ def test_storms_over_idle_joints(seed: int) -> None:
     check_limits(np.array(positions), Limits.of(body.joints), seed)
     for position in positions[::2]:
         assert not oracle.collides(np.array(position)), (seed, position)
-    assert all("would touch" in refusal for refusal in refusals)
