@@ -23,7 +23,7 @@ VOICES = {
         Settings("en-us", "f1", 170, 40), Settings("en-gb-x-rp", "m2", 150, 45),
     ),
     "confirm": (
-        Settings("en-us", "m5", 165, 35), Settings("en-us", "f3", 145, 60), Settings("en-gb", "m4", 180, 50),
+        Settings("en-us", "m5", 165, 35), Settings("en-us", "f3", 145, 60), Settings("en", "m4", 180, 50),
         Settings("en-us-nyc", "", 155, 65), Settings("en-gb-scotland", "f5", 150, 45),
     ),
 }  # fmt: skip
