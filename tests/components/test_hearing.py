@@ -266,10 +266,11 @@ def test_a_robot_whose_recogniser_dies_goes_on(tmp_path: Path) -> None:
     (tmp_path / "broken_ears.py").write_text(RAISES, encoding="utf-8")
     robot = ROBOT.format(port=path).replace('"pocketsphinx"', '"broken_ears:Ears"')
     (tmp_path / "robot.toml").write_text(robot, encoding="utf-8")
-    rule = 'whenever somebody says stop, say "stopped". wait 1 second then check that you have heard stop, otherwise say "done"'
+    rule = 'whenever somebody says stop, say "stopped"'
+    mission = f'{rule}. wait 1 second then check that you have heard stop, otherwise say "done"'
     events = RecentEvents()
     with btlang.Session(robot=str(tmp_path / "robot.toml")) as session:
-        run = session.run(btlang.parse_tree(rule), sinks=[events])
+        run = session.run(btlang.parse_tree(mission), sinks=[events])
         assert run.outcome is not None
         assert run.outcome.succeeded, run.outcome.why()
     texts = [event.text for event in events.events() if isinstance(event, PartChanged)]
