@@ -1,4 +1,4 @@
-"""Makes the pictures that the README shows: `python docs/make_pictures.py [FOLDER]`, by default into docs/pictures. With
+"""Makes the pictures of README and docs: `python docs/make_pictures.py [FOLDER]`, by default into docs/pictures. With
 `--page` it makes that of the page instead, in the browser of the tests.
 """
 
@@ -15,7 +15,7 @@ DOCS = Path(__file__).parent
 
 
 def make_pictures(folder: Path) -> None:
-    """Runs the mission of the README and draws its run and its tree, and the guide of the museum."""
+    """Runs the mission of the README and draws its run and its tree, the guide of the museum, and the layers."""
     readme = (DOCS.parent / "README.md").read_text(encoding="utf-8")
     found = re.search(r"```mission tea\.txt\n(.*?)```", readme, re.DOTALL)
     assert found is not None, "the README has no mission tea.txt"
@@ -33,6 +33,10 @@ def make_pictures(folder: Path) -> None:
     assert main([*tour, "--picture", str(folder / "guide_tour.gif")]) == 0
     assert main(["gesture", "picture", "bow", *robot, "-o", str(folder / "guide_bow.svg")]) == 0
     assert main(["world", str(guide / "world.toml"), "--picture", str(folder / "guide_museum.svg")]) == 0
+    sys.path.insert(0, str(DOCS))
+    from framework_figure import draw_layers
+
+    (folder / "framework.svg").write_bytes(draw_layers())
 
 
 def make_page_picture(folder: Path) -> None:

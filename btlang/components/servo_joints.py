@@ -17,6 +17,7 @@ from btlang.robots.gesture import Gesture
 from btlang.robots.joints import joint_of
 from btlang.robots.motion.course import PERIOD
 from btlang.robots.motion.smooth_joints import SmoothJoints
+from btlang.robots.robot import RobotError
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -69,6 +70,23 @@ class ServoJoints:
         self._go_on()
         return made
 
+    @property
+    def planned(self) -> SmoothJoints:
+        """See btlang.robots.parts.IdlePart."""
+        return self._smooth
+
+    def idle(self, targets: Mapping[str, float], least: float) -> bool:
+        """See SmoothJoints; not where a servo is silent."""
+        try:
+            if not all(name in self._told and self._reached(name) for name in targets):
+                self._begin(targets)
+        except RobotError:
+            return False
+        found = self._smooth.idle(targets, least)
+        if found:
+            self._go_on()
+        return found
+
     def lead(self, wanted: Gesture | Sequence[Mapping[str, float]]) -> float:
         """See SmoothJoints."""
         return self._smooth.lead(wanted)
@@ -84,7 +102,7 @@ class ServoJoints:
 
     def step(self, dt: float) -> None:
         """Tells them again; what has arrived holds its place by itself."""
-        if not self._smooth.moving:
+        if self._smooth.timeline.rests():
             self._write()
             return
         for name in self._told:
@@ -101,8 +119,10 @@ class ServoJoints:
         wanted = frozenset(names)
         for name in wanted:
             self.angle(name)
-        if not self._smooth.moving:
-            self._smooth.timeline.put(np.array([self._measured(joint.name) for joint in self._body.joints]))
+        if self._smooth.timeline.rests():
+            wanted = frozenset(joint.name for joint in self._body.joints)
+        at = [self._measured(name) if name in wanted else self._smooth.angle(name) for name in self._smooth.angles]
+        self._smooth.timeline.put(np.array(at))
         self._lets_go = False
         self._told |= wanted
 
@@ -119,7 +139,7 @@ class ServoJoints:
 
     def _work(self) -> None:
         before = due = time.monotonic()
-        while self._smooth.moving:
+        while not self._smooth.timeline.rests():
             due = max(due + PERIOD, before)
             time.sleep(max(0.0, due - time.monotonic()))
             now = time.monotonic()
@@ -128,7 +148,7 @@ class ServoJoints:
             self._write()
 
     def _write(self) -> None:
-        at, let_go = self._smooth.angles, self._lets_go and not self._smooth.moving
+        at, let_go = self._smooth.angles, self._lets_go and self._smooth.timeline.rests()
         for name in self._told:
             target = JointTarget() if let_go else JointTarget(at[name], joint_of(self._body, name).speed)
             self._devices[name].write(name, target)

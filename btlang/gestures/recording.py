@@ -3,26 +3,19 @@
 from __future__ import annotations
 
 import sys
-import threading
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator
 
 from btlang.backends.files import write_file
-from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import DeviceError
-from btlang.devices.drivers import SIMULATED
-from btlang.devices.kinds import JointState, JointTarget
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.gestures.loose_joints import loose, servos_of
 from btlang.robots.body import Body
 from btlang.robots.data_file import as_mission_error
 from btlang.robots.gesture_file import GestureError, load_gestures
 from btlang.text.output import show
-from btlang.text.source import Source, Span
+from btlang.text.source import Source
 from btlang.text.toml_writing import toml_key, toml_value
 
 Pose = dict[str, float]
-_EACH = 0.1  # seconds between two commands that keep servos loose
 _LEAST = 0.5  # seconds between two poses
 _SMOOTH = 2.2  # times as long as at top speed, for a smooth start and end
 _HELP = "Enter takes the pose, 'end' writes the file."
@@ -32,15 +25,16 @@ _TYPED = "Type joints with their angles, such as: head tilt = -15, head turn = 2
 def record(name: str, path: str, body: Body, over: str) -> int:
     """Takes poses from standard input until it ends, and writes the gesture; returns the exit code.
 
-    Where the robot has servos, they are loose meanwhile. Raises MissionError (BT071 for devices that can't be used).
+    Where the robot has servos, they are loose meanwhile. Ctrl-C writes nothing. Raises MissionError (BT071 for devices
+    that can't be used, BT076 for poses of which no gesture can be made).
     """
-    hands = over == "devices" and any(each.kind == "joint" and each.driver != SIMULATED for each in body.devices)
-    if not hands:
+    if over != "devices" or not servos_of(body):
         show(f"The robot runs {over}, so nobody can move it by hand. {_TYPED}", sys.stderr)
         return _write(name, path, body, poses_of(sys.stdin, body, None))
     with loose(body) as read:
         show(f"The joints are loose: hold the robot, then move it. {_HELP}", sys.stderr)
-        return _write(name, path, body, poses_of(sys.stdin, body, read))
+        poses = list(poses_of(sys.stdin, body, read))
+    return _write(name, path, body, poses)
 
 
 def poses_of(lines: Iterable[str], body: Body, read: Callable[[], Pose] | None) -> Iterator[Pose]:
@@ -110,38 +104,3 @@ def _typed(line: str, body: Body) -> Pose:
             raise ValueError(f'"{name}" must be a number from {joint.low:g} to {joint.high:g}')
         pose[name] = angle
     return pose
-
-
-@contextmanager
-def loose(body: Body) -> Iterator[Callable[[], Pose]]:
-    """The servos of a body without torque, and what reads where they are. Raises MissionError (BT071)."""
-    servos = tuple(each for each in body.devices if each.kind == "joint" and each.driver != SIMULATED)
-    done = threading.Event()
-    try:
-        devices = DeviceSet(body.replace(devices=servos), None, _ignore)
-        devices.start()
-    except DeviceError as problem:
-        where = Span(Source("", body.file or body.name), 0, 0)
-        raise MissionError([diagnostic("BT071", where, reason=str(problem))]) from None
-
-    def keep() -> None:
-        while not done.wait(_EACH):
-            for servo in servos:
-                devices.readers[servo.name].write(servo.name, JointTarget(loose=True))
-
-    def read() -> Pose:
-        states = {servo.name: devices.readers[servo.name].read(servo.name) for servo in servos}
-        return {name: round(state.position, 1) for name, state in states.items() if isinstance(state, JointState)}
-
-    thread = threading.Thread(target=keep, name="loose joints", daemon=True)
-    thread.start()
-    try:
-        yield read
-    finally:
-        done.set()
-        thread.join()
-        devices.close()
-
-
-def _ignore(kind: str, data: Mapping[str, object]) -> None:
-    """Of devices that fall silent: reading says so."""

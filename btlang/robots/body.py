@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from math import pi
+from math import cbrt, pi, sqrt
 
 from btlang.record import Record
 from btlang.robots.gesture import BEARINGS, Gesture, Step, angle_of
@@ -81,6 +81,11 @@ class Joint(Record):
         """A centimetre or a degree from where it should be."""
         return 0.01 if self.slides else 1.0
 
+    def unhurried(self, way: float) -> float:
+        """Seconds in which it can go so far from rest to rest, on a polynomial of degree five within its limits."""
+        by_speed, by_force = 2.4 * way / self.speed, sqrt(6.4 * way / self.acceleration)
+        return max(by_speed, by_force, cbrt(66 * way / self.jerk))
+
 
 class Capsule(Record):
     """What is nearer than `radius` metres to a line between two points of a link, in its frame."""
@@ -155,6 +160,21 @@ class Mouth(Record):
 
     joint: str = ""
     display: str = ""
+
+
+class Breathing(Record):
+    """A `joint` goes so many degrees to both sides, once in so many seconds."""
+
+    joint: str
+    by: float
+    every: float
+
+
+class Idle(Record):
+    """What it does with joints that nothing else moves: see btlang.robots.idling."""
+
+    breathing: Breathing | None = None
+    look_at_speaker: bool = False
 
 
 class Ears(Record):
@@ -254,6 +274,7 @@ class Body(Record):
     schedules: str = ""
     gestures: Mapping[str, Gesture] = {}
     mouth: Mouth | None = None
+    idle: Idle = Idle()
 
     @property
     def folder(self) -> str:

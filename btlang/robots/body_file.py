@@ -17,6 +17,7 @@ from btlang.robots.body import (
     Device,
     Dock,
     HandPart,
+    Idle,
     Limits,
     Navigation,
     RosNode,
@@ -26,6 +27,7 @@ from btlang.robots.data_file import DataFileError, as_mission_error, load_data
 from btlang.robots.ears_file import read_ears
 from btlang.robots.gesture import Gesture, Step
 from btlang.robots.gesture_file import read_gestures
+from btlang.robots.idle_file import read_idle
 from btlang.robots.platforms import ROBOTS
 from btlang.robots.voice_file import read_mouth, read_voice
 from btlang.text.source import Source
@@ -132,13 +134,14 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
         schedules=problems.part(lambda: _beside(top, "schedules", file), ""), gestures=gestures,
     )  # fmt: skip
     mouth = problems.part(lambda: read_mouth(top, made), None)
+    idle = problems.part(lambda: read_idle(top, made), Idle())
     problems.part(lambda: top.finish(made), made)
     if not file:
         problems.found += [Problem(_FOREIGN, "component", index) for index in range(len(components))]
         real = (index for index, device in enumerate(devices) if device.driver != "simulated")
         problems.found += [Problem(_FOREIGN, "device", index, "driver") for index in real]
     problems.end()
-    complete: Body = made.replace(mouth=mouth)
+    complete: Body = made.replace(mouth=mouth, idle=idle)
     return complete
 
 

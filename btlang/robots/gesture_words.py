@@ -10,10 +10,14 @@ from functools import cache
 from zlib import crc32
 
 from btlang.backends.files import write_file
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import read_source
 from btlang.robots.body import Body
-from btlang.robots.data_file import as_mission_error
+from btlang.robots.data_file import DataFileError, as_mission_error, placed
 from btlang.robots.gesture import Gesture
 from btlang.robots.gesture_file import TARGET, GestureError, phrase_forms
+from btlang.text.source import Source
+from btlang.text.toml_table import Problem
 from btlang.text.toml_writing import toml_key, toml_value
 from btlang.tree.catalogue import CATALOGUE
 from btlang.vocabulary.cache import own_folder
@@ -21,6 +25,7 @@ from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import load_vocabulary
 from btlang.vocabulary.pattern import Form
+from btlang.vocabulary.shipped import shown_name
 from btlang.vocabulary.word_tree import END, SLOTS
 
 TYPE_CHECKING = False
@@ -50,6 +55,11 @@ def gesture_words(body: Body) -> str | None:
         is_new = True
     if is_new:
         write_file(path, text)
+        try:
+            load_vocabulary([path])
+        except MissionError as error:
+            os.unlink(path)  # so that it is new again
+            raise as_mission_error(_clash(body, path, error)) from None
     return path
 
 
@@ -64,8 +74,28 @@ def keyword_text(body: Body) -> str:
                 entries.append(_entry(body, gesture, node_id, phrases))
     except GestureError as error:
         raise as_mission_error(error) from None
-    head = f"# The gestures of {toml_value(body.name)}, made of its robot file.\n"
+    head = f"# The gestures of {toml_value(body.name)}, written from its robot file.\n"
     return head + f"replaces = {toml_value(list(dict.fromkeys(taken)))}\n" + "".join(entries)
+
+
+def _clash(body: Body, path: str, error: MissionError) -> DataFileError:
+    """The first phrase that can't be told from another word, where its gesture says it."""
+    values = dict(error.diagnostics[0].arguments)
+    one, other = values.get("first", ""), values.get("second", "")
+    if values.get("first_file") != shown_name(path):
+        one, other = other, one
+    for gesture in body.gestures.values():
+        for index, phrase in enumerate(gesture.phrases):
+            if one in _aimed(phrase):
+                return _refused(gesture, index, f'"{phrase}" and "{other}" can match the same words')
+    return GestureError(error.diagnostics[0].message, body.file)
+
+
+def _refused(gesture: Gesture, index: int, says: str) -> DataFileError:
+    """For one of its phrases."""
+    problem = Problem(f"{says}; choose another phrase", "phrase", index)
+    source = read_source(gesture.file) if gesture.file else Source("", gesture.name)
+    return next(placed([problem], source, source.name, GestureError))
 
 
 def _entry(body: Body, gesture: Gesture, node_id: str, phrases: list[str]) -> str:
@@ -91,9 +121,10 @@ def _parts(body: Body, gesture: Gesture) -> list[str]:
 def _by_id(gesture: Gesture, english: Lexicon) -> Mapping[str, list[str]]:
     """The phrases of a gesture by the ids of the words that they are: those of known gestures, else one that is new."""
     found: dict[str, list[str]] = {}
-    for phrase in gesture.phrases:
+    for index, phrase in enumerate(gesture.phrases):
         for aimed in _aimed(phrase):
-            known = {_known(english, form, gesture) for form in phrase_forms(gesture.replace(phrases=(aimed,)))} - {""}
+            all_forms = phrase_forms(gesture.replace(phrases=(aimed,)))
+            known = {_known(english, form, gesture, index) for form in all_forms} - {""}
             found.setdefault(next(iter(sorted(known)), _new_id(gesture.name, english)), []).append(aimed)
     return found
 
@@ -104,8 +135,8 @@ def _aimed(phrase: str) -> Iterator[str]:
     return (phrase.replace(slot, f"{{{kind}}}") for kind in (_TARGETS if slot in phrase else _TARGETS[:1]))
 
 
-def _known(english: Lexicon, form: Form, gesture: Gesture) -> str:
-    """The id of the word that has a form; "" for none. Raises GestureError for one that isn't that of a gesture."""
+def _known(english: Lexicon, form: Form, gesture: Gesture, index: int) -> str:
+    """The id of the word that has a form of a phrase; "" for none. Raises GestureError for one that isn't a gesture."""
     node: Any = english.trie
     for part in form:
         if isinstance(part, str):
@@ -119,8 +150,7 @@ def _known(english: Lexicon, form: Form, gesture: Gesture) -> str:
         return ""
     if meaning.entry is None or meaning.entry.topic != TOPIC:
         words = " ".join(part if isinstance(part, str) else f"{{{part.name}}}" for part in form)
-        says = f'"{words}" has another meaning already; choose another phrase'
-        raise GestureError(says, gesture.file or gesture.name)
+        raise _refused(gesture, index, f'"{words}" has another meaning already')
     return meaning.entry.id
 
 

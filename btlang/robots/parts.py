@@ -13,6 +13,7 @@ from btlang.robots.gesture import Gesture
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from btlang.robots.motion.smooth_joints import SmoothJoints
     from btlang.robots.scan import Array
     from btlang.speech.engine import Utterance
 
@@ -82,6 +83,15 @@ class SmoothPart(Protocol):
 
     def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[Operation, float]: ...
     def lead(self, wanted: Gesture | Sequence[Mapping[str, float]]) -> float: ...
+
+
+@runtime_checkable
+class IdlePart(Protocol):
+    """Planned joints that move where nothing else moves them; see btlang.robots.motion.smooth_joints."""
+
+    @property
+    def planned(self) -> SmoothJoints: ...
+    def idle(self, targets: Mapping[str, float], least: float) -> bool: ...
 
 
 class HandsPart(Protocol):

@@ -6,17 +6,18 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import ceil
 from typing import Any
 
-from btlang.robots.body import Body
+from btlang.robots.body import Body, Idle
 from btlang.robots.body_file import standard_body
 from btlang.robots.choices import Choices
 from btlang.robots.ears import Ears
 from btlang.robots.faults import Faults, describe
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.gesturing import Gestures
+from btlang.robots.idling import Idling
 from btlang.robots.latch import Latch
 from btlang.robots.navigation import NavigationGoal, Navigator
 from btlang.robots.obstacles import Obstacles
-from btlang.robots.parts import Parts
+from btlang.robots.parts import IdlePart, Parts
 from btlang.robots.power import stations
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, SensorSilent
 from btlang.robots.simulated_parts import simulated_parts
@@ -71,6 +72,9 @@ class SimulatedRobot:
         self._gestures = Gestures(body, self._joints)
         self.faults = Faults(world.faults)
         self._surroundings = Surroundings(world, self._obstacles, body, self._joints.angle, self._emit)
+        self._idling: Idling | None = None
+        if isinstance(self._joints, IdlePart) and body.idle != Idle():
+            self._idling = Idling(body, self._joints, self._surroundings.where, lambda: self.pose)
         self._navigator = Navigator(world, self._base, self._obstacles, self.faults, self._surroundings)
         self._choices = Choices()
         self._latch = Latch()
@@ -88,6 +92,8 @@ class SimulatedRobot:
             if stopped or self._latch.refuses:
                 self._rest()  # again: what was under way in this thread may have overwritten what `stop` did in another
             self._move_on(dt / pieces)
+        if self._idling is not None:
+            self._idling.step(dt)
         if self.on_step is not None:
             self.on_step(dt)
 
@@ -127,6 +133,8 @@ class SimulatedRobot:
         if self._latch.refuses:
             self._rest()  # again, as in `step`
         self._latch.open()
+        if self._idling is not None:
+            self._idling.on = True
 
     @property
     def refuses(self) -> bool:
@@ -136,6 +144,8 @@ class SimulatedRobot:
     def _rest(self) -> None:
         self._navigator.cancel("the robot was stopped")
         self._base.brake()
+        if self._idling is not None:
+            self._idling.halt()
         self._gestures.stop()
         self._joints.freeze()
         self._hands.stop()
@@ -339,6 +349,8 @@ class SimulatedRobot:
         if follow and not self._surroundings.sight.sees(known, self.pose):
             raise RobotError(f"I don't see {said(known)}")
         self._surroundings.people.follow(known, follow)
+        if self._idling is not None and follow:
+            self._idling.attend(known)
 
     def beside_door(self, name: str) -> list[Pose]:
         """Where it can stand to move a door, the nearer one first. Raises RobotError for an unknown door."""
@@ -586,5 +598,7 @@ class SimulatedRobot:
         self._stuck_told = self._base.stuck
 
     def _emit(self, event: str, **data: Any) -> None:
+        if self._idling is not None and event in ("hear", "ask"):
+            self._idling.attend(data["who"])
         if self.on_event is not None:
             self.on_event(event, data)

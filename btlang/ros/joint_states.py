@@ -11,7 +11,7 @@ from btlang.robots.joints import joint_of
 from btlang.robots.robot import SensorSilent
 from btlang.ros.subscription_cache import SubscriptionCache
 
-STATES = "joint_states"
+STATES, TRAJECTORY = "joint_states", "joint_trajectory"
 _SILENT = 2.0  # seconds without joint states
 
 

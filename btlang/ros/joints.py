@@ -14,10 +14,9 @@ from btlang.robots.joints import clipped, joint_of
 from btlang.robots.robot import RobotError
 from btlang.ros.awake import AWAKE
 from btlang.ros.commands import trajectory
-from btlang.ros.joint_states import JointStates, on_wire, shown
+from btlang.ros.joint_states import TRAJECTORY, JointStates, on_wire, shown
 from btlang.ros.subscription_cache import SubscriptionCache
 
-TRAJECTORY = "joint_trajectory"
 _STALLED = 5.0  # seconds in which a joint on its way gets no nearer
 _PROGRESS = 0.5  # of what is close enough counts as nearer
 

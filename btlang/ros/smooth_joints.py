@@ -22,8 +22,7 @@ from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.motion.timeline import Play
 from btlang.robots.robot import RobotError
 from btlang.ros.commands import Reach, motion
-from btlang.ros.joint_states import JointStates, on_wire, shown
-from btlang.ros.joints import TRAJECTORY
+from btlang.ros.joint_states import TRAJECTORY, JointStates, on_wire, shown
 from btlang.ros.subscription_cache import SubscriptionCache
 from btlang.ros.times import seconds_of, stamp
 
@@ -55,7 +54,9 @@ class Sent(Record):
         last = len(self.way.position) - 1
         passed = min(max(0.0, (seconds - self.begins) / PERIOD), last)
         before = int(passed)
-        rows = (State(*(getattr(self.way, name)[row] for name in State.fields)) for row in (before, min(before + 1, last)))
+        rows = (
+            State(*(getattr(self.way, name)[row] for name in State.fields)) for row in (before, min(before + 1, last))
+        )
         one, other = rows
         return between(one, other, passed - before)
 

@@ -263,7 +263,18 @@ def test_the_pictures_of_the_readme(tmp_path: Path, capsys: pytest.CaptureFixtur
     spec.loader.exec_module(module)
     module.make_pictures(tmp_path)
     made = sorted(path.name for path in tmp_path.iterdir())
-    assert made == ["tea_run.gif", "tea_run.svg", "tea_tree.svg", "tea_tree_after_run.svg"]
-    for name in made[1:]:
+    assert made == [
+        "framework.svg", "guide_bow.svg", "guide_museum.svg", "guide_tour.gif",
+        "tea_run.gif", "tea_run.svg", "tea_tree.svg", "tea_tree_after_run.svg",
+    ]  # fmt: skip
+    for name in (name for name in made if name.endswith(".svg")):
         size_of(tmp_path / name)
+    assert (tmp_path / "framework.svg").read_bytes() == (ROOT / "docs" / "pictures" / "framework.svg").read_bytes()
     assert (tmp_path / "tea_run.gif").stat().st_size < 1_000_000
+
+
+def test_the_modules_of_the_framework_exist(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "docs"))
+    figure = importlib.import_module("framework_figure")
+    modules = [name for *_, names, _ in figure.LAYERS for name in names] + [*figure.STOP]
+    assert [name for name in modules if not (ROOT / "btlang" / name).exists()] == []

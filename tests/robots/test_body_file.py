@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.robots.body import Capsule, RosNode
+from btlang.robots.body import Breathing, Capsule, Idle, RosNode
 from btlang.robots.body_file import BodyError, load_body, shipped_bodies, standard_body
 from btlang.vocabulary.shipped import BODIES
 
@@ -152,3 +152,32 @@ def test_links_that_do_not_fit_together_have_a_line(tmp_path: Path, text: str, l
         load_body(written(tmp_path, HEAD + text))
     assert says in str(caught.value)
     assert caught.value.line == line
+
+
+SMOOTH = "acceleration = 100\njerk = 1000\n"
+BREATHING = '[idle]\nbreathing = { joint = "neck", by = 2, every = 9 }\n'
+
+
+@pytest.mark.parametrize(
+    ("joint", "idle", "says"),
+    [
+        ("", BREATHING, 'robot.toml:9: only joints with an "acceleration" and a "jerk" can move'),
+        (SMOOTH, BREATHING.replace("neck", "tail"), 'robot.toml:12: "joint" must be one of "neck"'),
+        (SMOOTH, BREATHING.replace("= 2", "= 11"), 'robot.toml:12: "by" must be from 0.001 to 10, not 11'),
+        (SMOOTH, BREATHING.replace("= 2", "= 0"), 'robot.toml:12: "by" must be from 0.001 to 10, not 0'),
+        (SMOOTH, BREATHING.replace("= 9", "= 0.5"), 'robot.toml:12: "every" must be from 1 to 60, not 0.5'),
+        (SMOOTH, BREATHING.replace("= 2", "= 9"), 'the neck can\'t go so fast; "every" must be at least 86'),
+        (SMOOTH, "[idle]\nlook_at_speaker = true\n", '"look_at_speaker" needs the posture "look at"'),
+        (SMOOTH, "[idle]\ndance = true\n", 'unknown key "dance"'),
+        (SMOOTH, "[idle]\nlook_at_speaker = 1\n", '"look_at_speaker" must be true or false'),
+    ],
+)
+def test_what_is_wrong_with_idle_movements(tmp_path: Path, joint: str, idle: str, says: str) -> None:
+    with pytest.raises(BodyError) as caught:
+        load_body(written(tmp_path, HEAD + JOINT + joint + idle))
+    assert says in str(caught.value)
+
+
+def test_idle_movements(tmp_path: Path) -> None:
+    body = load_body(written(tmp_path, HEAD + JOINT + SMOOTH + BREATHING.replace("9", "30")))
+    assert body.idle == Idle(Breathing("neck", 2.0, 30.0))

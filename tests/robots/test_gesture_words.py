@@ -73,7 +73,21 @@ def test_words_and_check_know_it(robot: str, capsys: pytest.CaptureFixture[str])
 def test_a_phrase_that_means_something_else(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     robot = robot_file(tmp_path, 'gestures = ["gestures"]', halt='phrase = "stop"\n' + NOD)
     lines = printed(["robot", "check", robot], capsys, 2)
-    assert 'error BT076: This gesture can\'t be used: "stop" has another meaning already; choose another' in lines
+    assert (
+        'halt.toml:1:1: error BT076: This gesture can\'t be used: "stop" has another meaning already; choose another'
+        in lines
+    )
+
+
+def test_a_phrase_that_clashes_is_named_by_its_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = 'help = "Shows it."\nphrase = [\n  "exhibit {target}",\n  "show {target}",\n]\n' + POINT
+    robot = robot_file(tmp_path, 'gestures = ["gestures"]', show=text)
+    for arguments in (["robot", "check", robot], ["check", "--robot", robot, "-c", "stop"]) * 2:
+        lines = printed(arguments, capsys, 2)
+        assert (
+            'show.toml:4:1: error BT076: This gesture can\'t be used: "show {target}" and "print {text}" can' in lines
+        )
+        assert "/words/" not in lines
 
 
 def test_robots_without_gestures_have_no_more_words() -> None:

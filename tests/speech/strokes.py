@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, Protocol
 
 from btlang.actions.speech import say
 from btlang.record import Record
@@ -22,7 +22,15 @@ class Met(Record):
     planned: float
 
 
-class _Way:
+class Posed(Protocol):
+    """A robot, as far as it is looked at here."""
+
+    @property
+    def time(self) -> float: ...
+    def joint(self, name: str) -> float: ...
+
+
+class Way:
     """A gesture on its way: its joints have `targets` at the stroke, None where geometry finds them."""
 
     def __init__(self, name: str, targets: Mapping[str, float], at: float) -> None:
@@ -30,7 +38,7 @@ class _Way:
         self.met: float | None = None  # of a gesture with an aim what its course says
         self._nearest, self._over = _NEAR, False
 
-    def look(self, robot: SimulatedRobot) -> None:
+    def look(self, robot: Posed) -> None:
         """The stroke is where the joints are nearest to it for the first time."""
         off = max(abs(robot.joint(name) - target) for name, target in self.targets.items())
         self._over = self._over or (self.met is not None and off > _NEAR)
@@ -40,7 +48,7 @@ class _Way:
 
 def measured(robot: SimulatedRobot, text: str, period: float, beside: Callable[[], object] = lambda: None) -> list[Met]:
     """Says a text with a tick each `period`, and `beside` that; the strokes of its gestures."""
-    ways: list[_Way] = []
+    ways: list[Way] = []
     planned: list[Mapping[str, Any]] = []
     begin = robot.gesture
 
@@ -49,7 +57,7 @@ def measured(robot: SimulatedRobot, text: str, period: float, beside: Callable[[
         found = robot.body.gestures[name]
         [frame] = [frame for frame in found.frames if frame.at == found.stroke]
         targets = {} if found.aim else {joint: float(angle) for joint, angle in frame.joints.items()}
-        ways.append(_Way(name, targets, float(options["stroke_at"])))
+        ways.append(Way(name, targets, float(options["stroke_at"])))
         if found.aim:
             ways[-1].met = getattr(made, "stroke", None)
         return made

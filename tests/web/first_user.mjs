@@ -93,7 +93,7 @@ await visit(base, async (page) => {
   await page.keyboard.press("Control+End");
   await choose("wave");
   await command("Add after it");
-  await page.fill("dialog input", "say \"<script>alert(1)</script> \u202etea\"");
+  await page.fill("dialog input", "say \"\\<script>alert(1)\\</script> \u202etea\"");
   await page.click("dialog .primary");
   await untilText("alert(1)");
   await button("Undo").click();

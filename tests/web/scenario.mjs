@@ -18,7 +18,7 @@ await visit(base, async (page, context) => {
   await logIn(page, base, "olga", password);
   await page.click(".robots a");
   await page.waitForSelector(".watch");
-  await submit(page, 'say "مرحبا <script>alert(1)</script>" then go to the statue then wait 10 minutes');
+  await submit(page, 'say "مرحبا \\<script>alert(1)\\</script>" then go to the statue then wait 10 minutes');
   await page.waitForSelector(".node[data-status=RUNNING]");
   await page.waitForFunction(() => document.querySelector(".running").textContent.includes("statue"));
   assert.match(await page.textContent(".log"), /says “مرحبا <script>/);

@@ -128,7 +128,7 @@ await visit(base, async (page) => {
   await page.keyboard.insertText("wave then ndo");
   await until("ndo", ".messages");
   await look("write");
-  await replace(page, 'say "<script>alert(1)</script>\u202e" then wave');
+  await replace(page, 'say "\\<script>alert(1)\\</script>\u202e" then wave');
   await understood(page);
   const [name, picture] = await downloaded(page, "SVG");
   assert.match(name, /^tour-.*\.svg$/);

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -27,8 +27,13 @@ class SmoothJoints:
 
     @property
     def moving(self) -> bool:
-        """True while any joint is on its way, or will be."""
-        return not self.timeline.rests()
+        """True while any joint is on its way, or will be; but for what is idle."""
+        return not self.timeline.is_free()
+
+    @property
+    def planned(self) -> SmoothJoints:
+        """See btlang.robots.parts.IdlePart."""
+        return self
 
     def angle(self, name: str) -> float:
         """Raises RobotError for an unknown joint."""
@@ -48,7 +53,11 @@ class SmoothJoints:
             self._play(self._steps([wanted]), None)
 
     def at_target(self, names: tuple[str, ...]) -> bool:
-        """True when none of them is on its way."""
+        """True when none of them is on its way; but for what is idle."""
+        return self.timeline.is_free([self._names.index(name) for name in names])
+
+    def rests(self, names: Iterable[str]) -> bool:
+        """True when none of them moves."""
         return self.timeline.rests([self._names.index(name) for name in names])
 
     def freeze(self, names: tuple[str, ...] | None = None) -> None:
@@ -61,6 +70,17 @@ class SmoothJoints:
     def step(self, dt: float) -> None:
         """Moves on by `dt` seconds."""
         self.timeline.step(dt)
+
+    def idle(self, targets: Mapping[str, float], least: float) -> bool:
+        """Sets off to targets in so many seconds at least, and says whether it did: not where the body would touch
+        itself, or one of these joints moves. `moving` says nothing of it, and anything else takes over.
+        """
+        wanted = clipped(self._body, targets)
+        joints = [self._names.index(name) for name in wanted]
+        here, goal = self.timeline.state.position[joints], np.array(list(wanted.values()))
+        ways = zip(joints, np.abs(goal - here).tolist(), strict=True)
+        seconds = max(least, *(self._body.joints[k].unhurried(way) for k, way in ways))
+        return self.timeline.idle(joints, goal, seconds)
 
     def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[Play, float]:
         """Sets off to do a gesture or the steps of a posture, with its stroke in `room` seconds or as soon as it can.

@@ -9,7 +9,7 @@ from math import ceil, floor
 import numpy as np
 
 from btlang.robots.body import Body
-from btlang.robots.motion.course import PERIOD, Limits, Piece, State, between, samples
+from btlang.robots.motion.course import PERIOD, Limits, Piece, State, between, quintic, samples
 from btlang.robots.motion.guard import Guard
 from btlang.robots.motion.kinematics import Array, Kinematics
 from btlang.robots.motion.movements import resting
@@ -17,6 +17,8 @@ from btlang.robots.motion.planner import Course, Planner
 from btlang.robots.robot import RobotError
 
 _EXACT = 1e-6
+_SAME = 6  # digits of positions that are the same
+_MOST = 100  # idle movements that are known to be safe
 
 
 class Play:
@@ -53,6 +55,8 @@ class Timeline:
         self._first = 0  # the tick of the first sample
         self._ends = np.zeros(len(body.joints), dtype=int)  # the tick at which each joint rests
         self._plays: list[Play] = []
+        self._idle: frozenset[int] = frozenset()
+        self._may: dict[object, bool] = {}
         self._halts, self._halted = False, ""
         self._lock = threading.RLock()
 
@@ -63,7 +67,7 @@ class Timeline:
 
     @property
     def plan(self) -> tuple[float, State]:
-        """What all joints do until they rest: samples from a second on, PERIOD apart. A new one whenever that changes."""
+        """What all joints do until they rest: samples from a second on, PERIOD apart. New whenever that changes."""
         with self._lock:
             return self._first * PERIOD, self._way
 
@@ -82,11 +86,20 @@ class Timeline:
         ends = self._ends if joints is None else self._ends[list(joints)]
         return not len(ends) or self.seconds / PERIOD >= int(ends.max()) - _EXACT
 
+    def is_free(self, joints: Sequence[int] | None = None) -> bool:
+        """As `rests`, but for what is idle."""
+        if self.rests(joints):
+            return True
+        idle = self._idle
+        return bool(idle) and self.rests([k for k in joints or range(len(self._ends)) if k not in idle])
+
     def put(self, positions: Array) -> None:
-        """The body is there, at rest."""
+        """Those joints that rest are there, of positions of all."""
         with self._lock:
-            self._way, self._first = resting(positions[None]), self._tick
-            self._ends[:] = self._tick
+            still = self.seconds / PERIOD >= self._ends - _EXACT
+            way = self._between(self._tick - 1, int(self._ends.max()))
+            way.position[:, still] = positions[still]
+            self._way, self._first = way, self._tick - 1
 
     def step(self, dt: float) -> None:
         """So many seconds pass."""
@@ -118,6 +131,36 @@ class Timeline:
                     return made
                 problem = problem or found
             raise RobotError(problem or "the body can't move like that")
+
+    def idle(self, joints: Sequence[int], goal: Array, seconds: float) -> bool:
+        """Sets off to a goal, and says whether it did: not where the joints move, or the body would touch itself.
+
+        Anything else takes over what is idle.
+        """
+        with self._lock:
+            self._begin_halt()
+            if not self.rests(joints):
+                return False
+            tick = self._tick
+            here = self._sample(tick).of(joints).position
+            piece = quintic(resting(here), resting(goal), seconds)
+            way, ends = self._with(Course(joints, 0, [piece], 0.0), tick)
+            if not self._may_idle(way, joints, (tuple(joints), goal.round(_SAME).tobytes(), seconds)):
+                return False
+            self._take(way, ends, tick, joints)
+            self._idle |= set(joints)
+            return True
+
+    def _may_idle(self, way: State, joints: Sequence[int], what: object) -> bool:
+        """From a body at rest the same movement is asked for again and again."""
+        if not self.rests():
+            return not self._guard.problem(way, list(joints))
+        key = what, (way.position[0].round(_SAME) + 0.0).tobytes()  # and not -0.0
+        if key not in self._may:
+            if len(self._may) >= _MOST:
+                self._may.clear()
+            self._may[key] = not self._guard.problem(way, list(joints))
+        return self._may[key]
 
     def soonest(self, find: Callable[[Planner, State], float]) -> float:
         """What `find` makes of the state in which something new would begin, and the seconds until then."""
@@ -178,16 +221,19 @@ class Timeline:
         at = min(max(tick - self._first, 0), len(self._way.position) - 1)
         return State(*(getattr(self._way, name)[at] for name in State.fields))
 
+    def _between(self, tick: int, end: int) -> State:
+        """What all joints do from one tick to another, or at the first. A copy."""
+        rows = np.clip(np.arange(tick, max(tick, end) + 1) - self._first, 0, len(self._way.position) - 1)
+        return State(*(getattr(self._way, name)[rows] for name in State.fields))
+
     def _with(self, course: Course, tick: int) -> tuple[State, Array]:
         """What all joints do from a tick on where some take a course, and when each of them rests."""
         new, joints = samples(course.pieces), list(course.joints)
         ends = self._ends.copy()
         ends[joints] = tick + course.begins + len(new.position) - 1
-        count = max(int(ends.max()) - tick, 0) + 1
-        rows = np.clip(np.arange(tick, tick + count) - self._first, 0, len(self._way.position) - 1)
-        made = []
+        since, made = self._between(tick, int(ends.max())), []
         for name in State.fields:
-            values, old = getattr(new, name).copy(), getattr(self._way, name)[rows]
+            values, old = getattr(new, name).copy(), getattr(since, name)
             if name != "position":
                 values[-1] = 0.0
             old[course.begins : course.begins + len(values), joints] = values
@@ -199,6 +245,7 @@ class Timeline:
         before = self._sample(tick - 1)
         self._way = State(*(np.concatenate([getattr(before, name)[None], getattr(way, name)]) for name in State.fields))
         self._first, self._ends = tick - 1, ends
+        self._idle -= set(joints)
         for play in self._plays:
             play.joints -= set(joints)
             if not play.joints and not play.done:

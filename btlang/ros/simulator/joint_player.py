@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from math import inf
+from time import monotonic
 
 import numpy as np
 from trajectory_msgs.msg import JointTrajectory
@@ -19,9 +19,9 @@ from btlang.robots.robot import RobotError
 from btlang.ros.times import seconds_of
 
 _SILENCE = 0.5  # simulated and real seconds without a trajectory after which the joints brake
-_FAR_OFF = 10.0  # seconds from now beyond which a stamp is from another clock, or nonsense
+_FAR_OFF = 10.0  # seconds before its beginning and after its end in which a trajectory may come
 _SAME, _SAME_SPEED = 0.001, 0.05  # seconds at the speed of a joint, and a share of that speed
-_CATCHES_UP = (0.05, 0.1, 0.2, 0.4, 0.8)  # seconds in which it may join what has begun already
+_CATCHES_UP = (0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2)  # seconds in which it may join what has begun already
 _TOLERANCE = 1.05  # of a limit
 
 
@@ -47,10 +47,10 @@ class JointPlayer:
         stamp = seconds_of(message.header.stamp)
         now = self._timeline.seconds
         wait = min((stamp - each for each in self._clocks()), key=abs) if stamp else 0.0
-        if abs(wait) > _FAR_OFF:
+        if not -_FAR_OFF - times[-1] < wait < _FAR_OFF:
             raise RobotError(f"its stamp is {abs(wait):.0f} s from now")
         times = times + now + wait
-        self._told, self._told_really = (now, time.monotonic()) if stamp else (inf, inf)
+        self._told, self._told_really = (now, monotonic()) if stamp else (inf, inf)
         if others := set(self._playing) - set(joints):
             self._timeline.freeze(others)
         self._playing = joints
@@ -62,7 +62,7 @@ class JointPlayer:
 
     def watch(self) -> None:
         """Brakes where the sender has fallen silent; to be called before each step."""
-        quiet = self._timeline.seconds - self._told, time.monotonic() - self._told_really
+        quiet = self._timeline.seconds - self._told, monotonic() - self._told_really
         if min(quiet) > _SILENCE:
             self._timeline.freeze(self._playing)
             self._told = self._told_really = inf

@@ -68,7 +68,8 @@ class Simulator:
             joints.append(made.joints)
             return made
 
-        self.robot = SimulatedRobot(world, body=body, make_parts=make_parts)
+        quiet = body and body.replace(idle=bodies.Idle())  # over ROS, what moves isn't idle
+        self.robot = SimulatedRobot(world, body=quiet, make_parts=make_parts)
         if seed is not None:
             self.robot.seed_choices(seed)
         self._show = show

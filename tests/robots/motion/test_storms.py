@@ -38,7 +38,7 @@ def test_no_limit_is_passed_and_nothing_touched(seed: int) -> None:
         joints.step(PERIOD)
         positions.append(joints.timeline.state.position)
     assert not joints.moving, seed
-    _check_limits(np.array(positions), Limits.of(body.joints), seed)
+    check_limits(np.array(positions), Limits.of(body.joints), seed)
     for position in positions[::_LOOKS]:
         assert not oracle.collides(position), (seed, position)
     assert refused < _EVENTS / 2
@@ -70,7 +70,7 @@ def _something(joints: SmoothJoints, body: Body, random: Generator) -> None:
         joints.freeze()
 
 
-def _check_limits(positions: Array, limits: Limits, seed: int) -> None:
+def check_limits(positions: Array, limits: Limits, seed: int) -> None:
     """By differences, which are means over a moment, and so within the limits too."""
     assert (positions >= limits.low - 1e-3).all(), seed
     assert (positions <= limits.high + 1e-3).all(), seed

@@ -58,6 +58,7 @@ export class BodyView {
     this.scene.add(new HemisphereLight(0xffffff, 0x999999, 1.9), sun, this.room.group, this.links.group);
     this.controls = new OrbitControls(this.camera, canvas);
     Object.assign(this.controls, { minDistance: LEAST, maxDistance: MOST, maxPolarAngle: Math.PI / 2, enablePan: false });
+    canvas.style.touchAction = "pan-y"; // a finger still scrolls the page
     this.controls.addEventListener("change", this.redraw);
     canvas.addEventListener("keydown", this.press);
     addEventListener("themechange", this.paint);

@@ -30,16 +30,12 @@ export class Body {
     this.showBubble(robot);
   }
 
-  /** It may have another body by now. */
-  clear(): void {
+  /** Ends the picture; `show` begins another one. */
+  close(): void {
     this.turn++;
     this.view?.close();
     this.view = this.canvas = null;
     this.element.hidden = true;
-  }
-
-  close(): void {
-    this.clear();
   }
 
   private async begin(): Promise<void> {
@@ -82,8 +78,8 @@ export class Body {
   }
 
   private place(x: number, y: number): void {
-    const { clientWidth: width } = this.element;
-    this.bubble.style.left = `${Math.min(Math.max(x, width * 0.25), width * 0.75)}px`;
+    const half = this.bubble.offsetWidth / 2 + GAP;
+    this.bubble.style.left = `${Math.max(Math.min(x, this.element.clientWidth - half), half)}px`;
     this.bubble.style.top = `${Math.max(y - this.bubble.offsetHeight - GAP, GAP)}px`;
   }
 }

@@ -33,10 +33,13 @@ export class Offers {
 
   private async begin(name: string): Promise<void> {
     fill(this.problem);
+    this.list.inert = true; // until it's begun: a second click would queue it twice
     try {
       await command(this.context, "submit", { name });
     } catch (error) {
       fill(this.problem, (error as Error).message);
+    } finally {
+      this.list.inert = false;
     }
   }
 }

@@ -88,7 +88,7 @@ class Watch implements View {
         this.failure.note(news!["task"], news!["event"]);
         this.voice.note(news!["event"]);
       }
-      if (kind === "up") this.body.clear();
+      if (kind === "up") this.body.close(); // it may have another body by now
       if (kind === "run" && news!["task"]) this.failure.clear();
       this.refresh();
     });
