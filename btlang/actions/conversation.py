@@ -12,9 +12,10 @@ from btlang.actions.motion import Steps
 from btlang.actions.speech import say
 from btlang.actions.strokes import Presenting
 from btlang.actions.watch import Watch
-from btlang.engine.leaves.leaf import ActionFailed, Failed
+from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown
 from btlang.robots.body import Body
 from btlang.robots.capabilities import Conversing, Listening
+from btlang.robots.ears import Heard
 from btlang.robots.world import said
 from btlang.speech.grammar import plain
 from btlang.speech.marks import without_marks
@@ -68,14 +69,14 @@ def answer(robot: Listening) -> str:
 
 
 def has_heard(robot: Listening, text: str) -> bool:
-    """Whether somebody has said these words, maybe among others."""
+    """Whether somebody has said these words, maybe among others. Unknown where it wasn't heard by ears that fail."""
     robot.ears.news(text, robot.time)  # it listens for them
-    return any(holds(heard.text, text) for heard in robot.ears.since(0))
+    return _among(robot, robot.ears.since(0), text)
 
 
 def somebody_says(robot: Listening, text: str) -> bool:
-    """Whether somebody has said these words since this was asked last."""
-    return any(holds(heard.text, text) for heard in robot.ears.news(text, robot.time))
+    """Whether somebody has said these words since this was asked last. Unknown as in `has_heard`."""
+    return _among(robot, robot.ears.news(text, robot.time), text)
 
 
 def answers(texts: Iterable[str], body: Body) -> Expected:
@@ -104,13 +105,23 @@ def holds(heard: str, text: str) -> bool:
 
 
 def meaning_of(text: str) -> str:
-    """ "yes" or "no" for what means that, else the text."""
+    """ "yes" or "no" for what means that, else the text. The longest phrase counts: "I do" is yes, "I do not" isn't."""
     words = _words(text)
-    for forms in _answers().values():
-        for meaning, phrases in forms.items():
-            if any(words[: len(phrase.split())] == phrase.split() for phrase in phrases):
-                return meaning
-    return text
+    forms = [
+        (phrase.split(), meaning)
+        for each in _answers().values()
+        for meaning, phrases in each.items()
+        for phrase in phrases
+    ]
+    found = [(len(phrase), meaning) for phrase, meaning in forms if words[: len(phrase)] == phrase]
+    return max(found)[1] if found else text
+
+
+def _among(robot: Listening, heard: Iterable[Heard], text: str) -> bool:
+    found = any(holds(each.text, text) for each in heard)
+    if not found and robot.ears.problem:
+        raise Unknown(f"the ears don't work: {robot.ears.problem}")
+    return found
 
 
 @cache

@@ -65,7 +65,7 @@ class ComponentConnection:
         kinds = {name: device.kind for name, device in self.devices.devices.items()}
         self._gates = {name: Gate(reads, kinds[name], self.robot) for name, reads in self.devices.readers.items()}
         self.manager = Manager(body.components, self._host, self._tell, self._in_use)
-        self._hearing = Hearing(body, self.robot, self.devices) if body.ears and body.ears.engine else None
+        self._hearing = Hearing(body, self.robot, self.devices, self._tell) if body.ears and body.ears.engine else None
         self.robot.on_step = self._step
         self.manager.start()
         self.manager.wait(_UP)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import time
+from collections.abc import Callable, Mapping
 
 from btlang.actions.conversation import answers, meaning_of
 from btlang.devices.kinds import Pressed, Reading, Sound
@@ -22,49 +24,62 @@ if TYPE_CHECKING:
 TALK = "talk"
 """In the name of the button that is held while somebody speaks."""
 _ECHO = 0.3  # seconds after its own voice in which it hears nothing
+_HELD = 2.0  # seconds for which a button that isn't one of the robot counts as held: its connection may be lost
 _PATIENCE = 8.0  # seconds in which "Did you say ...?" has to be answered
 
 
 class Hearing:
     """The ears of a robot, from its first microphone. `step` is for the thread of the robot.
 
+    `tell` gets an event when they fail: see btlang.run.events.PartChanged. `clock` counts seconds for any thread.
+
     Raises RecogniserError where the body names a recogniser that can't be used. A body without a microphone hears
     nothing.
     """
 
-    def __init__(self, body: Body, robot: Any, devices: DeviceSet) -> None:
+    def __init__(
+        self,
+        body: Body,
+        robot: Any,
+        devices: DeviceSet,
+        tell: Callable[[str, Mapping[str, Any]], object],
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
         assert body.ears is not None
+        self._engine, self._tell, self._clock = body.ears.engine, tell, clock
         self._robot, self._ears, self._push = robot, robot.ears, body.ears.settings.push
         self._attention = Attention(body.ears.wake, self._push)
         self._listener: Listener | None = None
         self._expected = Expected()
         self._deaf_until, self._is_deaf = -math.inf, False
-        self._is_pushed = False
+        self._is_pushed, self._held_until, self._was_held = False, -math.inf, False
         self._doubtful, self._asked_until = "", -math.inf
         microphone = devices.first("microphone")
         if microphone and any(microphone in loop.devices for loop in devices.loops):
             self._listener = Listener(recogniser_of(body))
             devices.follow(microphone, self._take)
+            self._ears.talk = self.talk if self._push else None
         for name, device in devices.devices.items():
             if self._push and device.kind == "button" and TALK in name:
                 devices.follow(name, self._press)
 
-    @property
-    def problem(self) -> str:
-        """Why it hears nothing any more; "" while it does."""
-        return self._listener.problem if self._listener is not None else ""
-
     def push(self, pushed: bool) -> None:
         """Somebody holds the button, or lets go of it; from any thread."""
-        if self._is_pushed and not pushed and self._listener is not None:
-            self._listener.end()
         self._is_pushed = pushed
+        self._look_at_button()
+
+    def talk(self, held: bool) -> None:
+        """As `push`, for a button elsewhere: it has to be told again within 2 s while somebody holds it."""
+        self._held_until = self._clock() + _HELD if held else -math.inf
+        self._look_at_button()
 
     def step(self) -> None:
         """Looks at what was said, and at what is listened for now."""
         if self._listener is None:
             return
         now = self._robot.time
+        self._look_at_button()
+        self._report(self._listener.problem)
         self._listen_to_others(self._listener, now)
         while (understood := self._listener.understood()) is not None:
             meant = self._attention.meant(understood, now)
@@ -83,6 +98,20 @@ class Hearing:
         """Ends it. May be called twice."""
         if self._listener is not None:
             self._listener.close()
+
+    def _look_at_button(self) -> bool:
+        held = self._is_pushed or self._clock() < self._held_until
+        was, self._was_held = self._was_held, held
+        if was and not held and self._listener is not None:
+            self._listener.end()
+        return held
+
+    def _report(self, problem: str) -> None:
+        if problem != self._ears.problem:
+            self._ears.problem = problem
+            text = f"the ears don't work: {problem}" if problem else "the ears work"
+            state = "silent" if problem else "works"
+            self._tell("part", {"kind": "ears", "name": self._engine, "state": state, "text": text})
 
     def _listen_to_others(self, listener: Listener, now: float) -> None:
         """It does not hear itself."""
@@ -116,7 +145,7 @@ class Hearing:
     def _take(self, reading: Reading) -> None:
         """In the thread of the device."""
         assert isinstance(reading, Sound)
-        if self._listener is None or self._is_deaf or (self._push and not self._is_pushed):
+        if self._listener is None or self._is_deaf or (self._push and not self._look_at_button()):
             return
         self._listener.hear(reading.samples if reading.rate == RATE else b"")
 

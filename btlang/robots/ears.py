@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from math import inf
 
@@ -40,6 +40,10 @@ class Ears:
         """What answered the last question."""
         self.commands: Any = None
         """A btlang.robots.spoken.SpokenCommands: those that people may speak; None where there are none."""
+        self.problem = ""
+        """Why nothing is heard but what is typed; "" while the ears work."""
+        self.talk: Callable[[bool], object] | None = None
+        """Somebody holds, or lets go of, the button that isn't one of the robot; None where it needs none."""
         self.choices: tuple[str, ...] = ()
         """The answers that the mission asks about: "if the answer is tea"."""
 

@@ -394,9 +394,10 @@ class GestureStarted(InTheWorld):
 
 
 class PartChanged(Event):
-    """A component has another state (see btlang.components.life_cycle), or a device "works" or is "silent".
+    """A component has another state (see btlang.components.life_cycle), or a device or the ears are "silent" or not.
 
-    `kind` is "component" or "device"; `text` says it to people, "" for what they need not know.
+    `kind` is "component", "device" or "ears"; what isn't silent "works". `text` says it to people, "" for
+    what they need not know.
     """
 
     tag = "part"

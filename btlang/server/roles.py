@@ -30,7 +30,8 @@ _VIEWER = (
 _OPERATOR = (
     messages.Submit, messages.Cancel, messages.Kill, messages.Interrupt, messages.Resume, messages.Skip,
     messages.Reorder, messages.Again, messages.AddSchedule, messages.RemoveSchedule, messages.Pause, messages.Step,
-    messages.Release, messages.Say, messages.Trail, messages.AnswerQuestion, messages.InviteVisitor,
+    messages.Release, messages.Say, messages.Trail, messages.AnswerQuestion, messages.Talk,
+    messages.InviteVisitor,
 )  # fmt: skip
 _EDITOR = (messages.Put, messages.Delete)
 _ADMINISTRATOR = (messages.Down, messages.ChangeComponent)

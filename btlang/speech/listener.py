@@ -28,28 +28,34 @@ class Listener:
         self._calls: SimpleQueue[Callable[[], object] | None] = SimpleQueue()
         self._found: deque[Understood] = deque(maxlen=100)
         self._waiting = 0
-        self.problem = ""
-        """Why it hears nothing any more; "" while it does."""
+        self._broken = ""
+        self._is_late = False
         self._thread = threading.Thread(target=self._work, name="btlang ears", daemon=True)
         self._thread.start()
 
+    @property
+    def problem(self) -> str:
+        """Why it doesn't hear; "" while it does."""
+        return self._broken or ("five seconds of sound wait for it: it is too slow, or hangs" if self._is_late else "")
+
     def expect(self, expected: Expected) -> None:
         """What is listened for from now on."""
-        self._calls.put(lambda: self._guess(self._recogniser.expect(expected)))
+        self._put(lambda: self._guess(self._recogniser.expect(expected)))
 
     def hear(self, samples: bytes) -> None:
         """The next samples; they are lost where five seconds of sound wait already."""
-        if self._waiting + len(samples) <= _LONGEST:
+        self._is_late = self._waiting + len(samples) > _LONGEST
+        if not self._is_late:
             self._waiting += len(samples)
-            self._calls.put(lambda: self._hear(samples))
+            self._put(lambda: self._hear(samples))
 
     def end(self) -> None:
         """Whoever speaks has let go of the button."""
-        self._calls.put(lambda: self._found.extend(self._recogniser.end()))
+        self._put(lambda: self._found.extend(self._recogniser.end()))
 
     def forget(self) -> None:
         """What was heard so far belongs to nothing that follows."""
-        self._calls.put(self._recogniser.forget)
+        self._put(self._recogniser.forget)
 
     def understood(self) -> Understood | None:
         """The next sentence that was said, each once; None where there is none."""
@@ -60,6 +66,10 @@ class Listener:
         self._calls.put(None)
         self._thread.join(2.0)
 
+    def _put(self, call: Callable[[], object]) -> None:
+        if not self._broken:
+            self._calls.put(call)
+
     def _hear(self, samples: bytes) -> None:
         self._waiting -= len(samples)
         for at in range(0, len(samples), _PIECE):
@@ -69,6 +79,6 @@ class Listener:
         while (call := self._calls.get()) is not None:
             try:
                 call()
-            except Exception as problem:  # of a recogniser by somebody else, too
-                self.problem = f"{type(problem).__name__}: {problem}"
+            except BaseException as problem:  # of a recogniser by somebody else, too
+                self._broken = f"{type(problem).__name__}: {problem}"
                 return

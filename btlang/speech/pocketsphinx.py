@@ -45,7 +45,8 @@ class PocketSphinx:
         phones = f"{get_model_path()}/en-us/en-us-phone.lm.bin"
         self._sentences = Decoder(lm=None, loglevel="FATAL", bestpath=False, beam=1e-80, pbeam=1e-80, wbeam=1e-60)
         self._phones = Decoder(lm=None, loglevel="FATAL", allphone=phones, lw=2.0, beam=1e-20, pbeam=1e-20)
-        self._words: Any = None
+        # it takes a second, in which nothing else of the process runs: before the robot moves, not at a question
+        self._words = Decoder(loglevel="FATAL", fwdflat=False, bestpath=False, maxhmmpf=3000, maxwpf=5)
         self._push, self._endpointer = settings.push, self._new_endpointer()
         self._waiting = b""  # less than a frame of the endpointer
         self._spoken = bytearray()  # of the sentence under way
@@ -61,10 +62,6 @@ class PocketSphinx:
         if expected.phrases:
             self._sentences.add_jsgf_string("expected", self._grammar.jsgf)
             self._sentences.activate_search("expected")
-        if expected.anything and self._words is None:
-            from pocketsphinx import Decoder
-
-            self._words = Decoder(loglevel="FATAL", fwdflat=False, bestpath=False, maxhmmpf=3000, maxwpf=5)
         if spoken:
             self._decode(spoken)
         return lacking

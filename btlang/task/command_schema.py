@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from btlang.task.messages import COMMANDS, FIELD_TYPES, Command
+from btlang.task.field_types import FIELD_TYPES
+from btlang.task.messages import COMMANDS, Command
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

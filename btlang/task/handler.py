@@ -90,6 +90,7 @@ class Handler:
             messages.Status: self._status, messages.Report: self._report, messages.Trail: self._trail,
             messages.Components: components.list, messages.ChangeComponent: components.change,
             messages.Picture: components.picture, messages.AnswerQuestion: world.answer,
+            messages.Talk: world.talk,
             messages.InviteVisitor: world.invite, messages.Voice: VoiceHandler(session).sound,
             messages.Urdf: components.urdf,
         }  # fmt: skip

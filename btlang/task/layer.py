@@ -27,7 +27,7 @@ from btlang.task.missions import MissionReader
 from btlang.task.recordings import Recordings
 from btlang.task.store import open_store
 from btlang.task.task import MissionText, Task
-from btlang.task.world_handler import takes_visitors
+from btlang.task.world_handler import takes_talk, takes_visitors
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
@@ -188,6 +188,7 @@ class TaskLayer:
         return {
             "stopped": self.emergency.reason, "paused": self.executor.is_paused,
             "hindrance": self.executor.hindrance(), "visitors": takes_visitors(self.session),
+            "talks": takes_talk(self.session),
         }  # fmt: skip
 
     def _admitted(self, text: MissionText) -> Mission:

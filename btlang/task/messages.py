@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.record import Record
+from btlang.task.field_types import FIELD_TYPES
 from btlang.task.keepable import can_be_kept
 from btlang.task.task import Kind, Missed, Overlap, Restart
 from btlang.text.source import NOWHERE
@@ -228,6 +229,17 @@ class AnswerQuestion(Command):
     text: str
 
 
+class Talk(Command):
+    """Somebody holds a button while they speak to the robot's microphone, or lets go of it: `act` is "hold" or
+    "release". To be sent again each second while it is held: 2 s after the last one the robot listens no more. Refused
+    if its ears have no "push", or no microphone.
+    """
+
+    tag = "talk"
+    changes = False  # what is heard is in the recording; the audit trail needn't have it each second
+    act: str
+
+
 class InviteVisitor(Command):
     """Somebody comes to the robot, which must be in a simulated world: the next one who is to come, else a guest."""
 
@@ -311,8 +323,8 @@ COMMANDS: dict[str, type[Command]] = {
     kind.tag: kind
     for kind in (
         Submit, List, Show, Cancel, Kill, Interrupt, Resume, Skip, Reorder, Again, AddSchedule, RemoveSchedule,
-        Schedules, Put, Delete, Library, Pause, Step, EmergencyStop, Release, Say, AnswerQuestion, InviteVisitor,
-        Down, Status, Report, Trail, Components, ChangeComponent, Picture, Voice, Urdf,
+        Schedules, Put, Delete, Library, Pause, Step, EmergencyStop, Release, Say, AnswerQuestion, Talk,
+        InviteVisitor, Down, Status, Report, Trail, Components, ChangeComponent, Picture, Voice, Urdf,
     )
 }  # fmt: skip
 """By their names."""
@@ -363,19 +375,6 @@ def as_json(command: Command) -> dict[str, Any]:
         if field not in command.field_defaults or value != command.field_defaults[field]:
             written[field] = list(value) if isinstance(value, tuple) else value
     return written
-
-
-_NUMBER, _TEXT, _TEXTS = {"type": "number"}, {"type": "string"}, {"type": "array", "items": {"type": "string"}}
-FIELD_TYPES: dict[str, tuple[Any, dict[str, Any]]] = {
-    "str": (str, _TEXT),
-    "int": (int, {"type": "integer"}),
-    "int | None": (int | None, {"type": ["integer", "null"]}),
-    "float | None": (int | float | None, {"type": ["number", "null"]}),
-    "str | float | None": (str | int | float | None, {"type": ["string", "number", "null"]}),
-    "tuple[str, ...]": (list, _TEXTS),
-    "Mapping[str, Any]": (dict, {"type": "object"}),
-}
-"""By the annotations of the fields: what JSON gives for them, and how the schema describes that."""
 
 
 def _checked(kind: type[Command], field: str, value: Any) -> Any:

@@ -96,3 +96,11 @@ def test_a_rule_hears_what_is_said_since_it_looked_last() -> None:
                 session.robot.hear("Well, hello robot!", "Alice")
             prepared.tick()
     assert greeted == ["Good day", "Good day"]
+
+
+@pytest.mark.parametrize(
+    ("text", "meaning"),
+    [("I do", "yes"), ("I do not want that", "no"), ("Of course not!", "no"), ("why not", "yes"), ("tea", "tea")],
+)
+def test_the_longest_words_of_an_answer_say_what_it_means(text: str, meaning: str) -> None:
+    assert meaning_of(text) == meaning

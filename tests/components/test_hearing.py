@@ -11,11 +11,15 @@ from typing import Any
 import pytest
 
 import btlang
+from btlang.actions.conversation import has_heard, somebody_says
 from btlang.components import hearing
 from btlang.components.hearing import Hearing
 from btlang.devices.kinds import Sound
+from btlang.engine.leaves.leaf import Unknown
 from btlang.robots.body import Body, Ears
 from btlang.robots.robot import RobotError
+from btlang.run.events import PartChanged, Said
+from btlang.run.recent import RecentEvents
 from btlang.speech.recogniser import RecogniserSettings, Understood
 
 ROBOT = """
@@ -86,8 +90,13 @@ class Rig:
             devices={"talk button": SimpleNamespace(kind="button")},
             follow=self.takes.__setitem__,
         )
-        self.hearing = Hearing(body, self.robot, devices)
+        self.told: list[tuple[str, Any]] = []
+        self.clock = 0.0
+        self.hearing = Hearing(body, self.robot, devices, self.tell, lambda: self.clock)
         self.listener: Any = self.hearing._listener
+
+    def tell(self, kind: str, data: Any) -> None:
+        self.told.append((kind, data))
 
     def hear(self, text: str) -> None:
         self.texts.append(text)
@@ -176,6 +185,97 @@ def test_push_to_talk(monkeypatch: pytest.MonkeyPatch) -> None:
     rig.hearing.push(False)
     rig.takes["microphone"](PIECE)
     assert (rig.listener.heard, rig.listener.ended) == (1, 1)
+
+
+def test_a_button_in_a_page_counts_for_two_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig(monkeypatch, push=True)
+    assert rig.ears.talk is not None
+    for _ in range(3):
+        rig.ears.talk(True)
+        rig.clock += 1.9
+        rig.takes["microphone"](PIECE)
+    assert (rig.listener.heard, rig.listener.ended) == (3, 0)
+    rig.clock += 0.2
+    rig.takes["microphone"](PIECE)
+    assert (rig.listener.heard, rig.listener.ended) == (3, 1)
+    rig.ears.talk(True)
+    rig.clock += 2.1
+    rig.step()
+    assert rig.listener.ended == 2
+    rig.ears.talk(True)
+    rig.ears.talk(False)
+    rig.takes["microphone"](PIECE)
+    assert (rig.listener.heard, rig.listener.ended) == (3, 3)
+
+
+def test_ears_that_listen_all_the_time_need_no_button(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert Rig(monkeypatch, wake="hello robot").ears.talk is None
+
+
+def test_what_ears_that_fail_have_not_heard_is_not_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig(monkeypatch)
+    rig.step(0.05, Understood("tea"))
+    rig.listener.problem = "ValueError: no sound"
+    rig.step()
+    rig.step()
+    text = "the ears don't work: ValueError: no sound"
+    failed = {"kind": "ears", "name": "pocketsphinx", "state": "silent", "text": text}
+    assert rig.told == [("part", failed)]
+    assert has_heard(rig.robot, "tea")
+    with pytest.raises(Unknown, match="the ears don't work: ValueError: no sound"):
+        has_heard(rig.robot, "stop")
+    with pytest.raises(Unknown):
+        somebody_says(rig.robot, "stop")
+    rig.hear("stop")
+    rig.step()
+    assert somebody_says(rig.robot, "stop")
+    rig.listener.problem = ""
+    rig.step()
+    assert not somebody_says(rig.robot, "stop")
+    assert [data["state"] for _, data in rig.told] == ["silent", "works"]
+
+
+RAISES = """
+class Ears:
+    def __init__(self, settings):
+        self.heard = 0
+
+    def expect(self, expected):
+        return []
+
+    def hear(self, samples):
+        self.heard += 1
+        if self.heard > 3:
+            raise SystemExit("gone")
+        return []
+
+    def end(self):
+        return []
+
+    def forget(self):
+        pass
+"""
+
+
+def test_a_robot_whose_recogniser_dies_goes_on(tmp_path: Path) -> None:
+    pytest.importorskip("av")
+    path = tmp_path / "silence.wav"
+    with wave.open(str(path), "wb") as file:
+        file.setparams((1, 2, 16_000, 0, "NONE", ""))
+        file.writeframes(bytes(64_000))
+    (tmp_path / "broken_ears.py").write_text(RAISES, encoding="utf-8")
+    robot = ROBOT.format(port=path).replace('"pocketsphinx"', '"broken_ears:Ears"')
+    (tmp_path / "robot.toml").write_text(robot, encoding="utf-8")
+    rule = 'whenever somebody says stop, say "stopped"'
+    mission = f'{rule}. wait 1 second then check that you have heard stop, otherwise say "done"'
+    events = RecentEvents()
+    with btlang.Session(robot=str(tmp_path / "robot.toml")) as session:
+        run = session.run(btlang.parse_tree(mission), sinks=[events])
+        assert run.outcome is not None
+        assert run.outcome.succeeded, run.outcome.why()
+    texts = [event.text for event in events.events() if isinstance(event, PartChanged)]
+    assert texts[-1] == "the ears don't work: SystemExit: gone"
+    assert any(isinstance(event, Said) and event.text == "done" for event in events.events())
 
 
 def test_a_mission_hears_what_is_said_into_a_file(tmp_path: Path) -> None:

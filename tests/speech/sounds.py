@@ -22,6 +22,10 @@ VOICES = {
         Settings("en-us", "m1", 150, 50), Settings("en-us", "f4", 160, 50), Settings("en-us", "m7", 140, 60),
         Settings("en-us", "f1", 170, 40), Settings("en-gb-x-rp", "m2", 150, 45),
     ),
+    "confirm": (
+        Settings("en-us", "m5", 165, 35), Settings("en-us", "f3", 145, 60), Settings("en", "m4", 180, 50),
+        Settings("en-us-nyc", "", 155, 65), Settings("en-gb-scotland", "f5", 150, 45),
+    ),
 }  # fmt: skip
 LIGHT = 30.0
 """Decibels between speech and the noise of a quiet room."""

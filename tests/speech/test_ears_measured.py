@@ -44,6 +44,20 @@ def test_when_it_listens_all_the_time() -> None:
 
 
 @only_long
+def test_what_was_never_looked_at_before() -> None:
+    """Lists and voices that came last, measured as they are: nothing was changed for them."""
+    for voice in VOICES["confirm"]:
+        for way in ("push", "wake"):
+            sentences = count(("good",), guide(), (voice,), LIGHT, way, "confirm")
+            yes_no = count(("yes", "no"), yes_or_no(), (voice,), LIGHT, way, "confirm")
+            print(f"{voice.language} {voice.variant} {way}: {sentences.values}, yes and no {yes_no.values}")
+        own = count(OWN, everything(), (voice,), LIGHT, "always", "confirm")
+        foreign = count(("foreign",), everything(), (voice,), LIGHT, "always", "confirm")
+        print(f"{voice.language} {voice.variant} always: own {own.values}, foreign {foreign.values}, {late(own):.2f} s")
+        assert foreign.taken <= 10.0
+
+
+@only_long
 @pytest.mark.parametrize("decibels", LOUD)
 def test_in_noise(decibels: float) -> None:
     pushed = count(("good",), guide(), SOME, decibels, "push")

@@ -231,6 +231,16 @@ def test_an_answer_and_a_visitor(robot: TaskLayer, btc: Btc) -> None:
     assert btc("robot", "visitor") == (0, "A visitor comes.\n")
 
 
+def test_somebody_holds_the_button_to_talk(robot: TaskLayer) -> None:
+    assert "has no microphone that waits for a button" in refusal(robot, "talk", act="hold")
+    held: list[bool] = []
+    robot.session.robot.ears.talk = held.append
+    assert robot.handle({"command": "talk", "act": "hold"}, "ann").text == "The robot listens."
+    assert robot.handle({"command": "talk", "act": "release"}, "ann").ok
+    assert "'act' must be 'hold' or 'release', not 'on'" in refusal(robot, "talk", act="on")
+    assert held == [True, False]
+
+
 def test_values_that_the_mission_has_are_given(robot: TaskLayer, btc: Btc) -> None:
     mission = 'repeat twice: increase my visitors then print "{my visitors} for {guide}"'
     assert btc("task", "add", "-c", mission, "--set", "My Visitors=3", "--set", "guide=Ann")[0] == 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import wave
 from contextlib import closing
 from pathlib import Path
 
@@ -62,6 +63,20 @@ def test_components_devices_and_a_camera(tmp_path: Path) -> None:
     robot = robot_file(tmp_path, f"{machine()}\n{eye}{sonar}")
     with served("--robot", robot) as address:
         node(HERE / "parts.mjs", address, PASSWORD, str(tmp_path), folder=installed(HERE))
+
+
+@only_long
+def test_a_button_is_held_to_talk(page: Path, tmp_path: Path) -> None:
+    pytest.importorskip("av")
+    with wave.open(str(tmp_path / "silence.wav"), "wb") as file:
+        file.setparams((1, 2, 16_000, 0, "NONE", ""))
+        file.writeframes(bytes(32_000))
+    microphone = '[[device]]\nname = "microphone"\nkind = "microphone"\ndriver = "sound"\nport = "{}"\n'
+    ears = '[ears]\nwithin = 3.0\nengine = "pocketsphinx"\npush = true\n'
+    text = f'name = "listener"\nover = "devices"\nradius = 0.25\n{ears}{microphone}'
+    (tmp_path / "robot.toml").write_text(text.format(tmp_path / "silence.wav"))
+    with served("--robot", str(tmp_path / "robot.toml")) as address:
+        node(HERE / "talk.mjs", address, PASSWORD, folder=installed(HERE))
 
 
 @only_long

@@ -77,7 +77,7 @@ export class Robot {
   up = false;
   /** The server says that it can't reach it. */
   away = false;
-  state: { stopped: string; paused: boolean; hindrance: string; pose: [number, number, number] | null; battery: number | null; left: string | null; right: string | null; visitors?: boolean } | null = null;
+  state: { stopped: string; paused: boolean; hindrance: string; pose: [number, number, number] | null; battery: number | null; left: string | null; right: string | null; visitors?: boolean; talks?: boolean } | null = null;
   map: WorldMap | null = null;
   /** Those that may be elsewhere than the map has them. */
   things: Thing[] = [];

@@ -16,6 +16,7 @@ import { Offers } from "./offers";
 import { Parts } from "./parts";
 import { Question } from "./question";
 import { Speech } from "./speech";
+import { Talk } from "./talk";
 import { Voice } from "./voice";
 
 const MOST_RUNNING = 12; // that are listed
@@ -46,6 +47,7 @@ class Watch implements View {
   private body: Body;
   private offers: Offers;
   private question: Question;
+  private talk: Talk;
   private voice: Voice;
   private parts: Parts;
   private failure: Failure;
@@ -59,6 +61,7 @@ class Watch implements View {
     this.body = new Body(context);
     this.offers = new Offers(context);
     this.question = new Question(context);
+    this.talk = new Talk(context);
     this.voice = new Voice(context);
     this.parts = new Parts(context);
     this.failure = new Failure(context, (path) => this.select(path));
@@ -72,7 +75,7 @@ class Watch implements View {
       h(
         "div",
         { class: "side" },
-        h("div", { class: "card place" }, this.body.element, this.map.canvas, h("div", { class: "beside" }, this.voice.element, this.visitor), this.speech.element, this.question.element),
+        h("div", { class: "card place" }, this.body.element, this.map.canvas, h("div", { class: "beside" }, this.voice.element, this.visitor), this.speech.element, this.question.element, this.talk.element),
         operates && h("details", { class: "card" }, h("summary", {}, t("submit.title")), submitForm(context)),
         this.parts.element,
         h("div", { class: "card events" }, h("h2", {}, t("log")), this.log.element),
@@ -98,6 +101,7 @@ class Watch implements View {
     this.map.close();
     this.body.close();
     this.parts.close();
+    this.talk.close();
     this.voice.close();
     this.tree.close();
   }
@@ -117,6 +121,7 @@ class Watch implements View {
     this.offers.show(robot, task !== null);
     this.map.redraw();
     this.question.show(robot);
+    this.talk.show(robot);
     this.parts.show(robot);
     this.log.update(robot.entries);
     this.showControls();
