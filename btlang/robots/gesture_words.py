@@ -54,13 +54,22 @@ def gesture_words(body: Body) -> str | None:
     except (OSError, UnicodeDecodeError):
         is_new = True
     if is_new:
-        write_file(path, text)
-        try:
-            load_vocabulary([path])
-        except MissionError as error:
+        error = _problem(path, text)
+        if error is not None:
+            found = _clash(body, path, error)
             os.unlink(path)  # so that it is new again
-            raise as_mission_error(_clash(body, path, error)) from None
+            raise as_mission_error(found)
     return path
+
+
+def _problem(path: str, text: str) -> MissionError | None:
+    """Why a text can't be the keyword file there."""
+    write_file(path, text)
+    try:
+        load_vocabulary([path])
+    except MissionError as error:
+        return error
+    return None
 
 
 def keyword_text(body: Body) -> str:
@@ -85,9 +94,11 @@ def _clash(body: Body, path: str, error: MissionError) -> DataFileError:
     if values.get("first_file") != shown_name(path):
         one, other = other, one
     for gesture in body.gestures.values():
-        for index, phrase in enumerate(gesture.phrases):
-            if one in _aimed(phrase):
-                return _refused(gesture, index, f'"{phrase}" and "{other}" can match the same words')
+        if any(one in _aimed(phrase) for phrase in gesture.phrases):
+            alone = (body.replace(gestures={"": gesture.replace(phrases=(phrase,))}) for phrase in gesture.phrases)
+            wrong = (index for index, each in enumerate(alone) if _problem(path, keyword_text(each)) is not None)
+            index = next(wrong, 0)
+            return _refused(gesture, index, f'"{gesture.phrases[index]}" and "{other}" can match the same words')
     return GestureError(error.diagnostics[0].message, body.file)
 
 
