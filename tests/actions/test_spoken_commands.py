@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import btlang
+from btlang.actions.conversation import meaning_of
 from btlang.robots.robot import RobotError
 from btlang.robots.spoken import SpokenCommands, choices
 from btlang.run.bus import INLINE
