@@ -10,6 +10,9 @@ import pytest
 
 import btlang
 from btlang.cli import main
+from btlang.maps.data_text import ForeignFileError, read_data
+from btlang.text.json_text import load_json
+from btlang.text.source import Source
 
 WORLD = (Path(btlang.__file__).parent / "robots" / "worlds" / "default.toml").read_text(encoding="utf-8")
 XML = '<root BTCPP_format="4"><BehaviorTree ID="M">{}</BehaviorTree></root>'
@@ -106,5 +109,10 @@ def test_nested_json_where_a_deep_tree_has_raised_the_limit_of_recursion() -> No
     try:
         with pytest.raises(btlang.MissionError, match="nested too deep"):
             btlang.parse_tree('{"format":1,"trees":' + '{"a":[' * 200_000)
+        with pytest.raises(ForeignFileError, match="nested too deep"):
+            read_data(Source("[" * 200_000, "points.json"))
+        for text in ("[" * 200_000, b'{"a":' * 200_000):
+            with pytest.raises(ValueError, match="nested too deep"):
+                load_json(text)
     finally:
         sys.setrecursionlimit(before)

@@ -11,6 +11,7 @@ from btlang.devices.kinds import Command, Reading
 from btlang.engine.leaves.leaf import ActionFailed, Unknown, reason_of
 from btlang.record import Record
 from btlang.robots.geometry import Pose
+from btlang.text.json_text import load_json
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -34,10 +35,7 @@ def packed(message: object) -> bytes:
 
 def unpacked(data: bytes) -> Any:
     """The message again; tuples are lists. Raises ValueError for what is no message."""
-    try:
-        return json.loads(data, object_hook=_record)
-    except RecursionError:
-        raise ValueError("it is nested too deeply") from None
+    return load_json(data, _record)
 
 
 def refused(problem: BaseException) -> dict[str, Any]:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
-
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.data_file import DataFileError
+from btlang.text.json_text import NestedTooDeep, load_json
 from btlang.text.source import NOWHERE, Source
 
 TYPE_CHECKING = False
@@ -29,8 +28,8 @@ def read_data(source: Source) -> Any:
     Raises ForeignFileError for what isn't such a text, MissionError (BT087) where PyYAML isn't installed.
     """
     try:
-        return json.loads(source.text)
-    except RecursionError:
+        return load_json(source.text)
+    except NestedTooDeep:
         raise ForeignFileError("it is nested too deep", source.name, None, source) from None
     except ValueError:  # no JSON, or a number that is too long
         if source.name.lower().endswith(".json"):

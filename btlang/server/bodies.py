@@ -9,6 +9,7 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import Response
 
 from btlang.server.access import AccessError
+from btlang.text.json_text import load_json
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -51,8 +52,8 @@ async def json_object(request: Request) -> dict[str, Any]:
 def read_object(text: bytes | str) -> dict[str, Any]:
     """Raises AccessError (400)."""
     try:
-        data = json.loads(text)
-    except (ValueError, RecursionError):
+        data = load_json(text)
+    except ValueError:
         raise AccessError(400, "That isn't JSON.") from None
     if not isinstance(data, dict):
         raise AccessError(400, "That isn't a JSON object.")

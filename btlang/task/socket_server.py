@@ -19,6 +19,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.robots.sockets import socket_folder
 from btlang.task.messages import Answer, EmergencyStop
 from btlang.task.paths import socket_path
+from btlang.text.json_text import load_json
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
@@ -166,8 +167,8 @@ class SocketServer:
 
 def _read(line: bytes) -> object:
     try:
-        return json.loads(line)
-    except (ValueError, RecursionError):
+        return load_json(line)
+    except ValueError:
         return _UNREADABLE
 
 

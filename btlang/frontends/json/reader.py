@@ -6,6 +6,7 @@ import re
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.text.json_text import NestedTooDeep, load_json
 from btlang.text.source import Source, Span
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
@@ -16,8 +17,6 @@ if TYPE_CHECKING:
 
 FORMAT = 1
 PORT_KEYS = ("name", "direction", "type", "default", "text")
-_DEEPEST = 100  # brackets in each other: nodes are a list
-_MARKS = re.compile(r'"(?:[^"\\]|\\.)*+"?|[\[{]|[\]}]', re.DOTALL)  # a text that does not end is read once, too
 
 
 def read_json(text: str | Source, main: str = "") -> Tree:
@@ -29,10 +28,11 @@ def read_json(text: str | Source, main: str = "") -> Tree:
 
     source = Source(text) if isinstance(text, str) else text
     try:
-        _check_depth(source.text)
-        tree = _tree(json.loads(source.text), _Places(source))
+        tree = _tree(load_json(source.text), _Places(source))
     except json.JSONDecodeError as error:
         at, reason = error.pos, f"it is not JSON: {error.msg}"
+    except NestedTooDeep as error:
+        at, reason = 0, str(error)
     except ValueError:
         at, reason = 0, "a number is too long"
     except _Wrong as error:
@@ -59,16 +59,6 @@ def _chosen(tree: Tree, main: str, source: Source) -> Tree:
 
 class _Wrong(Exception):
     """The document does not hold a tree; the message says where and why."""
-
-
-def _check_depth(text: str) -> None:
-    """Python's reader would recurse, in C: where an engine has raised the limit of recursion, it would crash."""
-    depth = 0
-    for found in _MARKS.finditer(text):
-        mark = found[0]
-        depth += (mark in "[{") - (mark in "]}")
-        if depth > _DEEPEST:
-            raise _Wrong("it is nested too deep")
 
 
 class _Places:

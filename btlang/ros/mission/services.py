@@ -13,6 +13,7 @@ from std_srvs.srv import Trigger
 
 from btlang.task import messages
 from btlang.task.messages import Answer, Command
+from btlang.text.json_text import load_json
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -49,8 +50,8 @@ def _of_a_task(kind: type[Command], handle: Handle, request: Any, response: Any)
 
 def _any(handle: Handle, request: Any, response: Any) -> Any:
     try:
-        data = json.loads(request.command)
-    except (ValueError, RecursionError):
+        data = load_json(request.command)
+    except ValueError:
         return _filled(response, Answer(False, "That isn't JSON.", {}, "BT198"))
     return _filled(response, handle(data))
 
