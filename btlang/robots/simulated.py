@@ -71,8 +71,8 @@ class SimulatedRobot:
         self._joints, self._hands, self._voice = parts.joints, parts.hands, parts.voice
         self._gestures = Gestures(body, self._joints)
         self.faults = Faults(world.faults)
+        self._idling: Idling | None = None  # first: what is around it reports at once what it sees
         self._surroundings = Surroundings(world, self._obstacles, body, self._joints.angle, self._emit)
-        self._idling: Idling | None = None
         if isinstance(self._joints, IdlePart) and body.idle != Idle():
             self._idling = Idling(body, self._joints, self._surroundings.where, lambda: self.pose)
         self._navigator = Navigator(world, self._base, self._obstacles, self.faults, self._surroundings)

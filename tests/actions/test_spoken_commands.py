@@ -14,7 +14,7 @@ from btlang.run.world_input import WorldInput
 from btlang.session import Run
 from btlang.speech.grammar import Grammar
 
-OBEY = btlang.parse_tree("do what somebody says")
+OBEY = btlang.parse_tree("obey what somebody says")
 
 
 def run(mission: btlang.Mission, *answers: str) -> Run:
@@ -51,7 +51,7 @@ COMMANDS = SpokenCommands(OBEY.vocabulary, btlang.Session().robot.body)
     "text",
     [
         "open the staff zone", "go to the kitchen then go to the lab", "repeat forever: turn left", "say hello",
-        "go to the moon", "do what somebody says", "raise your right arm", "clear the map", "ask Alice \"Hm?\"", "",
+        "go to the moon", "obey what somebody says", "raise your right arm", "clear the map", "ask Alice \"Hm?\"", "",
         "<root/>", "{}", "if bumped, stop", "open the lab door", "do \"GoTo\" with place \"kitchen\"; turn left",
     ],
 )  # fmt: skip
