@@ -153,7 +153,7 @@ port = "loopback"
 def installed(folder: Path) -> Path:
     """A folder with all three projects, built and unpacked as pip does it."""
     place = folder / "site"
-    for kind, name in (("component", "tea"), ("device", "sonar"), ("robot", "rover")):
+    for kind, name in (("component", "tea"), ("device", "sonar"), ("robot", "buggy")):
         make_project(kind, name)
         done = python("-m", "hatchling", "build", "-t", "wheel", "-d", str(folder / "wheels"), cwd=folder / name)
         assert done.returncode == 0, done.stderr
@@ -171,7 +171,7 @@ def test_packages_work_elsewhere(installed: Path, folder: Path) -> None:
     words = ("-m", "btlang", "run", "--speed", "max", "--robot")
     done = python(*words, "robot.toml", "-c", "run the tea", path=installed, cwd=elsewhere)
     assert done.returncode == 0, done.stderr
-    done = python(*words, "rover", "-c", "go to the shelf", path=installed, cwd=elsewhere)
+    done = python(*words, "buggy", "-c", "go to the shelf", path=installed, cwd=elsewhere)
     assert done.returncode == 0, done.stderr
     missing = python(*words, "rovr", "-c", "wave", path=installed, cwd=elsewhere)
     assert missing.returncode == 2
@@ -190,11 +190,11 @@ def test_an_installed_robot_is_brought_up(installed: Path, short: str) -> None:
 
 
 def bring_up(interpreter: str, path: str, folder: str) -> None:
-    """Brings the robot "rover" up, gives it work in its own world, and takes it down."""
+    """Brings the robot "buggy" up, gives it work in its own world, and takes it down."""
     environment = {**os.environ, "PYTHONPATH": path, "XDG_RUNTIME_DIR": folder, "XDG_DATA_HOME": folder}
     btc = [interpreter, "-m", "btlang"]
     up = subprocess.Popen(
-        [*btc, "robot", "up", "--robot", "rover", "--speed", "max"],
+        [*btc, "robot", "up", "--robot", "buggy", "--speed", "max"],
         cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
     )  # fmt: skip
     try:
@@ -213,9 +213,9 @@ def bring_up(interpreter: str, path: str, folder: str) -> None:
 @only_long
 def test_a_fresh_environment(folder: Path, short: str) -> None:
     """pip builds and installs the robot where btlang and what it needs are seen, as on another computer."""
-    make_project("robot", "rover")
+    make_project("robot", "buggy")
     done = python(
-        "-m", "pip", "wheel", "-q", "--no-deps", "--no-build-isolation", "-w", "wheels", "./rover", cwd=folder
+        "-m", "pip", "wheel", "-q", "--no-deps", "--no-build-isolation", "-w", "wheels", "./buggy", cwd=folder
     )
     assert done.returncode == 0, done.stderr
     fresh = folder / "fresh"
