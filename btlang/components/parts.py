@@ -7,9 +7,10 @@ from math import inf
 
 from btlang.components.base import DeviceBase
 from btlang.components.safety import Guard, Safety
+from btlang.components.servos import servo_angle
 from btlang.devices.device_set import DeviceSet, Reads, reader
 from btlang.devices.driver import DeviceError
-from btlang.devices.kinds import Charge, Grip, GripTarget, JointState, JointTarget, Play, Scan, Shown
+from btlang.devices.kinds import Charge, Grip, GripTarget, JointTarget, Play, Scan, Shown
 from btlang.robots.body import Body
 from btlang.robots.geometry import Pose
 from btlang.robots.hands import Hands
@@ -163,9 +164,7 @@ class DeviceJoints:
 
     def angle(self, name: str) -> float:
         """Raises RobotError for an unknown joint, and DeviceSilent."""
-        reading = reader(self._devices, joint_of(self._body, name).name, name).read(name)
-        assert isinstance(reading, JointState)
-        return reading.position
+        return servo_angle(self._body, self._devices, name)
 
     def move(self, targets: Mapping[str, float]) -> None:
         """Sets off towards the targets, clipped to the joints' limits. Raises RobotError."""

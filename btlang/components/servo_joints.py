@@ -8,9 +8,10 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from btlang.devices.device_set import Reads, reader
+from btlang.components.servos import servo_angle
+from btlang.devices.device_set import Reads
 from btlang.devices.driver import DeviceError
-from btlang.devices.kinds import JointState, JointTarget
+from btlang.devices.kinds import JointTarget
 from btlang.devices.loop import DeviceLoop
 from btlang.robots.body import Body
 from btlang.robots.gesture import Gesture
@@ -52,9 +53,7 @@ class ServoJoints:
 
     def angle(self, name: str) -> float:
         """As its servo measures it. Raises RobotError for an unknown joint, and DeviceSilent."""
-        reading = reader(self._devices, joint_of(self._body, name).name, name).read(name)
-        assert isinstance(reading, JointState)
-        return reading.position
+        return servo_angle(self._body, self._devices, name)
 
     def move(self, targets: Mapping[str, float]) -> None:
         """See SmoothJoints."""

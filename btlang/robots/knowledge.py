@@ -18,20 +18,14 @@ from btlang.run.robot_state import Whereabouts
 class Knowledge:
     """The places, objects, people, doors and zones of a world, and who comes besides; names are in any case.
 
-    `find` and `tell` are those of Sight. Raises RobotError for unknown names. Poses are those of the robot.
+    Raises RobotError for unknown names. Poses are those of the robot.
     """
 
-    def __init__(
-        self,
-        world: World,
-        obstacles: Obstacles,
-        find: Callable[[str, Pose], Point | None],
-        tell: Callable[[str], object],
-    ) -> None:
+    def __init__(self, world: World, obstacles: Obstacles, sight: Sight) -> None:
         self.world = self._given_world = world
         self.obstacles = obstacles
         self.zones = Zones(world.zones)
-        self.sight = Sight(world, obstacles, find, tell)
+        self.sight = sight
         self._given_to: dict[str, str] = {}
 
     def name_places(self, places: Iterable[Place]) -> None:

@@ -11,6 +11,7 @@ from btlang.robots.knowledge import Knowledge
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.people import People
 from btlang.robots.robot import RobotError
+from btlang.robots.sight import Sight
 from btlang.robots.view import View
 from btlang.robots.world import World, WorldObject, said
 from btlang.run.robot_state import Whereabouts
@@ -37,7 +38,8 @@ class Surroundings(Knowledge):
         joint: Callable[[str], float],
         emit: Callable[..., object],
     ) -> None:
-        super().__init__(world, obstacles, View(obstacles, body, joint).point, lambda name: emit("see", name=name))
+        view = View(obstacles, body, joint)
+        super().__init__(world, obstacles, Sight(world, obstacles, view.point, lambda name: emit("see", name=name)))
         self._emit = emit
         self._radius = body.radius
         self._switched: dict[str, bool] = {}

@@ -13,6 +13,7 @@ from btlang.robots.navigation import stand_off
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.planning import Planner
 from btlang.robots.robot import Hand, RobotError
+from btlang.robots.sight import Sight
 from btlang.robots.station import Station
 from btlang.robots.world import OBJECT_RADIUS, PERSON_RADIUS, Person, Thing, World, WorldObject
 from btlang.run.robot_state import Whereabouts
@@ -30,7 +31,8 @@ class Places(Knowledge):
     """
 
     def __init__(self, world: World, body: Body, tell: Callable[[str], object] = lambda name: None) -> None:
-        super().__init__(world, Obstacles(world), lambda name, pose: self._in_view.get(name), tell)
+        obstacles = Obstacles(world)
+        super().__init__(world, obstacles, Sight(world, obstacles, lambda name, pose: self._in_view.get(name), tell))
         self._body = body
         self._in_view: dict[str, Point] = {}
         self._planner: Planner | None = None
