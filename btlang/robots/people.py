@@ -237,7 +237,7 @@ class People:
     def _enter(self, walker: Walker) -> None:
         if not walker.present:
             walker.present, walker.gone = True, False
-            if walker.person.comes or walker.person.visits or walker.person.name not in self._world.names.people:
+            if walker.person.comes_later or walker.person.name not in self._world.names.people:
                 self._tell("come", walker.person.name, "")
 
     def _look(self, now: float, robot: Other) -> None:

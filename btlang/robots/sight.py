@@ -36,7 +36,7 @@ class Sight:
         for person in world.people:
             if person.moves:
                 self.watched[person.name] = None
-                if person.known and not person.comes:
+                if person.known and not person.comes_later:
                     self._last[person.name] = (person.x, person.y), -_FRESH
 
     def watch(self, name: str, kind: str) -> None:

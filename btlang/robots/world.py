@@ -127,9 +127,14 @@ class Person(Thing):
         return wears(self.wears, parts) and parts.get("gesture", "") in ("", self.gesture.lower())
 
     @property
+    def comes_later(self) -> bool:
+        """Whether he or she isn't there at the start."""
+        return bool(self.comes or self.visits)
+
+    @property
     def moves(self) -> bool:
         """Whether he or she is ever somewhere else by himself or herself."""
-        return bool(self.walks or self.wanders or self.visits or self.comes or self.leaves < NEVER)
+        return bool(self.walks or self.wanders or self.comes_later or self.leaves < NEVER)
 
 
 class Zone(Record):

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from btlang.robots.robot import RobotError
 from btlang.robots.visits import Visits
 from btlang.robots.world_file import WorldError, load_world
 from btlang.text.source import Source
@@ -56,6 +57,12 @@ def test_a_crowd_comes_on_its_day_and_not_on_the_next() -> None:
     while life.robot.time < until:
         life.robot.step(60.0)
     assert len(life.kinds("come")) == 3
+
+
+def test_nobody_knows_where_somebody_is_who_has_not_come_yet() -> None:
+    life = Life(load_world(Source(CROWD, "world.toml")))
+    with pytest.raises(RobotError, match="haven't seen the guest 1"):
+        life.robot.locate("guest 1")
 
 
 def test_somebody_of_a_crowd_asks_the_robot() -> None:
