@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Iterable
-from functools import cache
+from functools import cache, lru_cache
 from importlib.resources import files
 from typing import Protocol
 
@@ -98,22 +98,18 @@ def answers(texts: Iterable[str], body: Body) -> Expected:
 
 def holds(heard: str, text: str) -> bool:
     """Whether what was heard has the words of a text in their order, or means the same yes or no."""
-    words, wanted = _words(heard), _words(text)
-    found = any(words[at : at + len(wanted)] == wanted for at in range(len(words) - len(wanted) + 1))
     meaning = meaning_of(text)
-    return meaning_of(heard) == meaning if meaning in MEANINGS else found
+    if meaning in MEANINGS:
+        return meaning_of(heard) == meaning
+    words, wanted = _words(heard), _words(text)
+    return any(words[at : at + len(wanted)] == wanted for at in range(len(words) - len(wanted) + 1))
 
 
+@lru_cache(maxsize=256)
 def meaning_of(text: str) -> str:
     """ "yes" or "no" for what means that, else the text. The longest phrase counts: "I do" is yes, "I do not" isn't."""
     words = _words(text)
-    forms = [
-        (phrase.split(), meaning)
-        for each in _answers().values()
-        for meaning, phrases in each.items()
-        for phrase in phrases
-    ]
-    found = [(len(phrase), meaning) for phrase, meaning in forms if words[: len(phrase)] == phrase]
+    found = [(len(phrase), meaning) for phrase, meaning in _forms() if words[: len(phrase)] == phrase]
     return max(found)[1] if found else text
 
 
@@ -122,6 +118,13 @@ def _among(robot: Listening, heard: Iterable[Heard], text: str) -> bool:
     if not found and robot.ears.problem:
         raise Unknown(f"the ears don't work: {robot.ears.problem}")
     return found
+
+
+@cache
+def _forms() -> list[tuple[list[str], str]]:
+    """The words of what means yes or no, in all languages."""
+    meanings = (each for by_language in _answers().values() for each in by_language.items())
+    return [(phrase.split(), meaning) for meaning, phrases in meanings for phrase in phrases]
 
 
 @cache

@@ -6,7 +6,7 @@ import math
 import time
 from collections.abc import Callable, Mapping
 
-from btlang.actions.conversation import answers, meaning_of
+from btlang.actions.conversation import MEANINGS, answers, meaning_of
 from btlang.devices.kinds import Pressed, Reading, Sound
 from btlang.robots.ears_file import recogniser_of
 from btlang.robots.robot import RobotError
@@ -88,7 +88,7 @@ class Hearing:
         if self._doubtful and now > self._asked_until:
             self._doubtful = ""
         asking = bool(self._doubtful or self._ears.asking)
-        wanted = answers(("yes", "no"), self._robot.body) if self._doubtful else self._ears.expected(now)
+        wanted = answers(MEANINGS, self._robot.body) if self._doubtful else self._ears.expected(now)
         expected = self._attention.expected(wanted, asking, now)
         if expected != self._expected:
             self._expected = expected
@@ -126,7 +126,7 @@ class Hearing:
     def _hear(self, text: str, sure: bool, now: float) -> None:
         if self._doubtful:
             meaning = meaning_of(text)
-            if sure and meaning in ("yes", "no"):
+            if sure and meaning in MEANINGS:
                 doubtful, self._doubtful = self._doubtful, ""
                 if meaning == "yes":
                     self._robot.hear(doubtful)

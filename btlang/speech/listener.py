@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from queue import SimpleQueue
 
 from btlang.speech.recogniser import RATE, Expected, Understood
@@ -18,13 +18,10 @@ _PIECE = RATE // 5  # bytes that are decoded at once: the tick never waits longe
 
 
 class Listener:
-    """From its making to `close`. All methods are for any thread, and return at once.
+    """From its making to `close`. All methods are for any thread, and return at once."""
 
-    `guess` gets the words that the recogniser only guesses how to pronounce, in the thread of the recogniser.
-    """
-
-    def __init__(self, recogniser: Recogniser, guess: Callable[[Sequence[str]], object] = lambda words: None) -> None:
-        self._recogniser, self._guess = recogniser, guess
+    def __init__(self, recogniser: Recogniser) -> None:
+        self._recogniser = recogniser
         self._calls: SimpleQueue[Callable[[], object] | None] = SimpleQueue()
         self._found: deque[Understood] = deque(maxlen=100)
         self._waiting = 0
@@ -40,7 +37,7 @@ class Listener:
 
     def expect(self, expected: Expected) -> None:
         """What is listened for from now on."""
-        self._put(lambda: self._guess(self._recogniser.expect(expected)))
+        self._put(lambda: self._recogniser.expect(expected))
 
     def hear(self, samples: bytes) -> None:
         """The next samples; they are lost where five seconds of sound wait already."""

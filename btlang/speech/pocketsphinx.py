@@ -53,18 +53,18 @@ class PocketSphinx:
         self._known: dict[str, str] = {}
         self._expected, self._grammar = Expected(), Grammar(Expected())
 
-    def expect(self, expected: Expected) -> Sequence[str]:
+    def expect(self, expected: Expected) -> None:
         """See Recogniser."""
         spoken = bytes(self._spoken)
         self._stop()
         self._expected, self._grammar = expected, Grammar(expected)
-        lacking = [word for word in self._grammar.words if self._learn(word)]
+        for word in self._grammar.words:
+            self._learn(word)
         if expected.phrases:
             self._sentences.add_jsgf_string("expected", self._grammar.jsgf)
             self._sentences.activate_search("expected")
         if spoken:
             self._decode(spoken)
-        return lacking
 
     def hear(self, samples: bytes) -> Sequence[Understood]:
         """See Recogniser."""
@@ -130,10 +130,10 @@ class PocketSphinx:
     def _phones_of(self, word: str) -> list[str]:
         return (self._sentences.lookup_word(word) or "").split()
 
-    def _learn(self, word: str) -> bool:
-        """Whether the dictionary lacks a word, which is pronounced by its letters then."""
+    def _learn(self, word: str) -> None:
+        """How a word is pronounced: one that the dictionary lacks by its letters."""
         if word in self._known:
-            return False
+            return
         phones = self._sentences.lookup_word(word)
         self._known[word] = phones or guessed(word)
         if phones is None:
@@ -142,7 +142,6 @@ class PocketSphinx:
             name = f"{word}({9 - number})"
             self._known[name] = other
             self._sentences.add_word(name, other, False)
-        return phones is None
 
     def _active(self) -> list[Any]:
         decoders = [self._sentences, self._phones] if self._expected.phrases else []

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
         No call may take longer than a few hundredths of a second. Raises RecogniserError where it can't be used.
         """
 
-        def expect(self, expected: Expected) -> Sequence[str]:
-            """What is listened for from now on, in a sentence under way too. Returns the words that it has to guess."""
+        def expect(self, expected: Expected) -> None:
+            """What is listened for from now on, in a sentence under way too."""
 
         def hear(self, samples: bytes) -> Sequence[Understood]:
             """The next samples, 16 bits signed, mono, 16 kHz. Returns the sentences that have ended in them."""
