@@ -74,10 +74,10 @@ def test_a_condition_without_words_stays_one(parser: str) -> None:
     """Told by a tag, or by where else it stands: `IsOk` is asked by the node around it."""
     text = str(parse_tree(KINDS).to("english"))
     assert text.splitlines() == [
-        'check test "OnAir"',
-        'check test "OnAir" called "still" or wave',
+        "check test on air",
+        'check test on air called "still" or wave',
         'do "OpenGripper"',
-        'if test "IsOk", check test "IsOk" otherwise wave',
+        "if test is ok, check test is ok otherwise wave",
     ]
     again = parse_tree(text, parser=parser)
     assert again.to("english") == text

@@ -46,15 +46,16 @@ class Lifter:
         self._natural = natural
         self._known = known
         self.refused: set[str] = set()
-        heads = [ast.Definition(name, known.parameters(name), ast.Nothing(NOWHERE), NOWHERE, NOWHERE)
-                 for name in sorted(known.names)]  # fmt: skip
+        bodies = {loop.name for loop in known.loops.values()}
+        names = [name for name, _ in tree.subtrees if name not in bodies]
+        heads = [ast.Definition(name, known.parameters(name), ast.Nothing(NOWHERE), NOWHERE, NOWHERE,
+                                name not in known.names) for name in names]  # fmt: skip
         self.printer = Printer(PRINTERS, vocabulary, heads, "clear")
         self._node_kinds = {model.id: model.kind for model in tree.models}
+        self._outputs = _outputs(tree)
         self._comments = comments
         self._conditions: set[str] = set()  # the names that stand for conditions
         self._loops: dict[str, Candidate] = {}
-        bodies = {loop.name for loop in known.loops.values()}
-        names = [name for name, _ in tree.subtrees if name not in bodies]
         self._checked = Checked(Scope(names, vocabulary.types), known.around(""))
 
     def definition(self, name: str, root: Node) -> ast.Definition:
@@ -129,7 +130,7 @@ class Lifter:
             made: ast.Ast = ast.Check(condition, NOWHERE)
         else:
             items = tuple(child.command for child in children)
-            made = ast.Exact(node.id, node.ports, node.name, items, False, NOWHERE)
+            made = ast.Exact(node.id, node.ports, node.name, items, False, NOWHERE, self._given(node))
         assert self._checked.says(made, node)
         return made
 
@@ -224,9 +225,14 @@ class Lifter:
             return None
         if not known and node.id in self._vocabulary.nodes and not _asks(node):
             return None
-        made = ast.Exact(node.id, node.ports, node.name, (), True, NOWHERE)
+        made = ast.Exact(node.id, node.ports, node.name, (), True, NOWHERE, self._given(node))
         assert self._checked.says(made, node)
         return made
+
+    def _given(self, node: Node) -> tuple[str, ...]:
+        """The ports of a leaf that its model says it gives values to."""
+        outputs = self._outputs.get(node.id, ()) if not node.children else ()
+        return tuple(name for name, _ in node.ports if name in outputs)
 
     def _is_condition(self, node: Node, children: tuple[Candidate, ...]) -> bool:
         if node.children:
@@ -270,6 +276,13 @@ def _first_line(said: ast.Ast) -> ast.Ast:
     """The statement that stands first where all of it are lines."""
     is_chain = isinstance(said, ast.Chain) and said.operator == "sequence"
     return ast.parts(said)[0] if is_chain else said
+
+
+def _outputs(tree: Tree) -> dict[str, set[str]]:
+    found: dict[str, set[str]] = {}
+    for model in tree.models:
+        found.setdefault(model.id, set()).update(port.name for port in model.ports if port.direction == "output")
+    return found
 
 
 def _asks(node: Node) -> bool:
