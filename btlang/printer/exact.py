@@ -20,6 +20,7 @@ from btlang.vocabulary.trie import longest
 
 _BARE = re.compile(r"-?\d+(\.\d+)?|\{[A-Za-z_][A-Za-z0-9_]*\}")
 _KEY = re.compile(r"\{[A-Za-z_][A-Za-z0-9_]*\}")
+_IDENTIFIER = re.compile(r"(?=\w*_|\w+[A-Z])[A-Za-z_]\w*", re.ASCII)
 _WORDS = re.compile(r"[a-z][a-z0-9]*(_[a-z][a-z0-9]*)*")
 # A text as pieces: what double quotes can hold, marks that would end it, and what no quotes can hold.
 _PIECE = re.compile(r'(?P<plain>[^"“”„«»\x00-\x1f\x7f\ufeff]+)|(?P<marks>["“”„«»]+)|(?P<odd>.)', re.DOTALL)
@@ -88,7 +89,8 @@ def _ports(role: str, ports: Mapping[str, str], printer: Printer) -> str:
     """`with width 0.05, speed 2`; the word again where a name behind a comma would be read as a command."""
     vocabulary, said = printer.vocabulary, ""
     for name, text in ports.items():
-        key = name.replace("_", " ") if _is_words(name, vocabulary) else quoted(name, vocabulary)
+        key = name if _IDENTIFIER.fullmatch(name) else quoted(name, vocabulary)
+        key = name.replace("_", " ") if _is_words(name, vocabulary) else key
         value = text if _BARE.fullmatch(text) else quoted(text, vocabulary)
         begin = split(Source(f"{key} {value}"), vocabulary.orthography)
         is_free = said and is_port(

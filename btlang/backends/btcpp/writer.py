@@ -7,10 +7,9 @@ from btlang.backends.btcpp.models import Uses, model_part
 from btlang.backends.btcpp.names import tree_ids
 from btlang.backends.btcpp.typed import typed
 from btlang.frontends.btcpp.dialect import told_by_shapes
-from btlang.frontends.btcpp.file import SPOKEN_NAME
 from btlang.frontends.btcpp.models import why_no_port
 from btlang.frontends.btcpp.origin import Element, Markup, TreeOrigin, XmlOrigin
-from btlang.frontends.btcpp.spelling import MAIN_TREE, SPELL, spelled_3
+from btlang.frontends.btcpp.spelling import MAIN_TREE, SPELL, SPOKEN_NAME, spelled_3
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 

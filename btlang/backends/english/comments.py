@@ -56,4 +56,4 @@ def _lines(texts: Iterable[str]) -> Iterator[str]:
     for text in texts:
         if text.startswith(_OPEN):
             lines = text.removeprefix(_OPEN).removesuffix(_CLOSE).split("\n")
-            yield from filter(None, (" ".join(line.split()) for line in lines))
+            yield from (" ".join(line.split()) for line in lines if any(map(str.isalpha, line)))  # no rulers

@@ -11,7 +11,7 @@ from btlang.frontends.btcpp.models import ModelReader, among
 from btlang.frontends.btcpp.nodes import NodeReader
 from btlang.frontends.btcpp.origin import Element, Markup, TreeOrigin
 from btlang.frontends.btcpp.scan import Document, Note
-from btlang.frontends.btcpp.spelling import MODEL
+from btlang.frontends.btcpp.spelling import MODEL, SPOKEN_NAME
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree.model import NodeModel
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from btlang.frontends.btcpp.spelling import Pairs
 
 _PARTS = ("BehaviorTree", MODEL, "include")
-SPOKEN_NAME = "_name"
-"""The attribute of a BehaviorTree with the name that its tree has in English, where that can be no ID."""
 
 
 class TreeHead(Record):

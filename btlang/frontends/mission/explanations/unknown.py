@@ -265,7 +265,8 @@ def _unknown_phrase(
         rest = text.span(at + 1, meant.last).text
         whole = text.span(at, meant.last)
         return diagnostic("BT010", span, fix=(whole, rest), kind=kind, words=span.text, help=nearest_known([rest]))
-    near_node = near_commands(text.words[at + 1 : end], vocabulary) if is_node else []
+    is_lower = span.text[1:] == span.text[1:].lower()
+    near_node = near_commands(text.words[at + 1 : end], vocabulary) if is_node and is_lower else []
     if near_node and near_node[0] not in vocabulary.nodes.values():  # `do wavee`
         return diagnostic("BT010", span, fix=(span, near_node[0]), kind=kind, words=span.text,
                           help=nearest_known(near_node[:3]))  # fmt: skip
