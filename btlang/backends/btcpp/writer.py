@@ -14,7 +14,7 @@ from btlang.frontends.btcpp.kept import Kept, kept_in
 from btlang.frontends.btcpp.models import why_no_port
 from btlang.frontends.btcpp.origin import Element, Markup, TreeOrigin, XmlOrigin
 from btlang.frontends.btcpp.spelling import MAIN_TREE, SPELL, spelled_3
-from btlang.frontends.mission.comments import FOOT, comments_by_line, line_of
+from btlang.frontends.mission.comments import FOOT, HEAD, comments_by_line, line_of
 from btlang.text.source import Source
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
@@ -47,6 +47,7 @@ class _Writer:
         self._origin = _own_origin(tree, dialect)
         self._uses: Uses | None = None
         self._comments: dict[str, dict[int, tuple[str, ...]]] = {}
+        self._head: tuple[str, ...] = ()
         self._foot: tuple[str, ...] = ()
         self._kept = kept_in(tree.origin.text) if isinstance(tree.origin, Source) else Kept()
         if self._origin is None:
@@ -58,7 +59,7 @@ class _Writer:
             self._ids = tree_ids(tree, self._uses.ids, dialect)
             if dialect == 4:
                 self._tree = typed(tree, self._uses.port_types)
-            self._find_comments()
+            self._find_comments(tree.origin)
         else:
             kinds = {model.id: model.kind for model in tree.models}
             self._kind = lambda node_id: kinds.get(node_id, "")  # any other tag is told by the origin
@@ -67,7 +68,7 @@ class _Writer:
 
     def write(self) -> str:
         markers, origin = self._markers, self._origin
-        head: tuple[str, ...] = (_DECLARATION,)
+        head: tuple[str, ...] = (_DECLARATION, *self._head)
         foot: tuple[str, ...] = ()
         if origin is not None:
             head, foot = origin.head, origin.foot
@@ -107,7 +108,10 @@ class _Writer:
     def _items(self) -> tuple[Element | Markup | str, ...]:
         """The main tree, the others in their order, the models; with the comments of a mission."""
         models = self._models()
-        return (self._tree.name, *(name for name, _ in self._tree.subtrees), *models, *map(Markup, self._foot))
+        found: list[Element | Markup | str] = [self._tree.name]
+        for name, _ in self._tree.subtrees:
+            found += (*map(Markup, self._comments.get(name, {}).pop(0, ())), name)
+        return (*found, *models, *map(Markup, self._foot))
 
     def _models(self) -> list[Element]:
         """Those that the mission keeps as they stood in its file, and further ones of what it uses."""
@@ -125,13 +129,12 @@ class _Writer:
         named = (("ID", written),) if spoken == written else (("ID", written), (SPOKEN_NAME, spoken))
         return (*named, *dict(self._kept.trees).get(written, ()))
 
-    def _find_comments(self) -> None:
+    def _find_comments(self, source: object) -> None:
         """The comments of a mission, each before the node of its statement."""
-        source = self._tree.origin
         if not isinstance(source, Source) or "#" not in source.text:
             return
-        comments = comments_by_line(source, self._vocabulary.orthography, self._tree.walk())
-        self._foot = _marked(comments.pop(FOOT, ()))
+        comments = comments_by_line(source, self._vocabulary.orthography, self._tree)
+        self._head, self._foot = _marked(comments.pop(HEAD, ())), _marked(comments.pop(FOOT, ()))
         for name, root in ((self._tree.name, self._tree.root), *self._tree.subtrees):
             before: dict[int, tuple[str, ...]] = {}
             for number, node in enumerate(Tree(root).walk()):

@@ -105,7 +105,8 @@ def kept_in(text: str) -> Kept:
             parts.append(part)
             models += reader.read(at)
         elif part.tag == "BehaviorTree":
-            trees[attributes.pop("ID", "")] = tuple(attributes.items())
+            name = attributes.pop("ID", "")
+            trees[name] = tuple(attributes.items())
         else:
             found[part.tag] = part.attributes
     file = dict(found.get(_FILE, ()))
