@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import os
 import re
-import tempfile
 from collections.abc import Iterator, Mapping
 from functools import cache
 from zlib import crc32
 
-from btlang.backends.files import write_file
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.robots.body import Body
@@ -30,6 +28,7 @@ from btlang.vocabulary.word_tree import END, SLOTS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from tempfile import TemporaryDirectory
     from typing import Any
 
 TOPIC = "gestures"
@@ -64,6 +63,8 @@ def gesture_words(body: Body) -> str | None:
 
 def _problem(path: str, text: str) -> MissionError | None:
     """Why a text can't be the keyword file there."""
+    from btlang.backends.files import write_file  # only a file that is new is written
+
     write_file(path, text)
     try:
         load_vocabulary([path])
@@ -178,9 +179,11 @@ def _folder() -> str:
         folder = os.path.join(own_folder(), "words")
         os.makedirs(folder, 0o700, exist_ok=True)
     except OSError:
-        _kept.append(tempfile.TemporaryDirectory(prefix="btlang-"))
+        from tempfile import TemporaryDirectory  # it costs more than all the rest here
+
+        _kept.append(TemporaryDirectory(prefix="btlang-"))
         return _kept[0].name
     return folder
 
 
-_kept: list[tempfile.TemporaryDirectory[str]] = []  # until the process ends
+_kept: list[TemporaryDirectory[str]] = []  # until the process ends
