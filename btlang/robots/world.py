@@ -265,6 +265,10 @@ class World(Record):
         """Every place where a robot can charge."""
         return self.docks if self.dock is None else (self.dock, *self.docks)
 
+    def docks_from(self, pose: Pose) -> tuple[Place, ...]:
+        """Those of `all_docks`, the nearest to a pose first."""
+        return tuple(sorted(self.all_docks, key=lambda dock: pose.distance_to((dock.x, dock.y))))
+
     @property
     def names(self) -> WorldNames:
         """All names of the world."""
