@@ -301,5 +301,5 @@ class World(Record):
         }
         for person, shown in zip(self.people, found["people"], strict=True):
             shown["walks"] = [(stop.x, stop.y) for stop in person.walks]
-        docks = [dock.as_dict() for dock in self.all_docks]
-        return {"walls": self.walls, "dock": docks[0] if docks else None, "docks": docks, **found}
+        dock = next((dock.as_dict() for dock in self.all_docks), None)
+        return {"walls": self.walls, "dock": dock, **found}
