@@ -22,7 +22,7 @@ from btlang.vocabulary.cache import own_folder
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import load_vocabulary
-from btlang.vocabulary.pattern import Form
+from btlang.vocabulary.pattern import Form, spelled
 from btlang.vocabulary.shipped import shown_name
 from btlang.vocabulary.word_tree import END, SLOTS
 
@@ -161,8 +161,7 @@ def _known(english: Lexicon, form: Form, gesture: Gesture, index: int) -> str:
     if meaning is None or (meaning.entry is not None and meaning.entry.yields and meaning.entry.topic != TOPIC):
         return ""
     if meaning.entry is None or meaning.entry.topic != TOPIC:
-        words = " ".join(part if isinstance(part, str) else f"{{{part.name}}}" for part in form)
-        raise _refused(gesture, index, f'"{words}" has another meaning already')
+        raise _refused(gesture, index, f'"{spelled(form)}" has another meaning already')
     return meaning.entry.id
 
 

@@ -16,6 +16,7 @@ from btlang.robots.motion.movements import resting
 from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.motion.timeline import Timeline
 from btlang.robots.robot import RobotError
+from btlang.ros.joint_states import on_wire
 from btlang.ros.times import seconds_of
 
 _SILENCE = 0.5  # simulated and real seconds without a trajectory after which the joints brake
@@ -35,7 +36,7 @@ class JointPlayer:
     def __init__(self, body: Body, joints: SmoothJoints, clocks: Callable[[], list[float]]) -> None:
         self._body, self._clocks = body, clocks
         self._timeline: Timeline = joints.timeline
-        self._names = [joint.name.replace(" ", "_") for joint in body.joints]
+        self._names = [on_wire(joint.name) for joint in body.joints]
         self._limits = Limits.of(body.joints)
         self._si = np.array([joint.si for joint in body.joints])
         self._playing: list[int] = []
