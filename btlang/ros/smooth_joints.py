@@ -222,7 +222,7 @@ class RosSmoothJoints:
         if rests:
             self._seed()
         told = {self._names.index(name) for name in names}
-        self._told = tuple(sorted(told if rests else told.union(self._told)))
+        self._told = tuple(sorted(told if told and rests else told.union(self._told)))
         self._near = self._now()
 
     def _seed(self) -> None:
