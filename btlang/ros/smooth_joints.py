@@ -54,11 +54,7 @@ class Sent(Record):
         last = len(self.way.position) - 1
         passed = min(max(0.0, (seconds - self.begins) / PERIOD), last)
         before = int(passed)
-        rows = (
-            State(*(getattr(self.way, name)[row] for name in State.fields)) for row in (before, min(before + 1, last))
-        )
-        one, other = rows
-        return between(one, other, passed - before)
+        return between(self.way.rows(before), self.way.rows(min(before + 1, last)), passed - before)
 
 
 class Played:
@@ -290,8 +286,7 @@ class RosSmoothJoints:
         if way is self._way:
             return
         self._way = way
-        later = State(*(getattr(way, name)[1:] for name in State.fields))  # the first one is what was before
-        self._publish(self._origin + begins + PERIOD, later)
+        self._publish(self._origin + begins + PERIOD, way.rows(slice(1, None)))  # the first one is what was before
 
     def _publish(self, begins: float, way: State) -> None:
         if not self._told:

@@ -99,8 +99,7 @@ class JointPlayer:
         if (off <= _SAME * limits.speed).all() and (faster <= _SAME_SPEED * limits.speed).all():
             return at
         for within in _CATCHES_UP:
-            goal = at(np.array([tick + within]))
-            goal = State(*(getattr(goal, name)[0] for name in State.fields))
+            goal = at(np.array([tick + within])).rows(0)
             piece = to_state(now, goal, limits, within)
             if piece is not None and piece.seconds <= within + 1e-6:
                 return _first(piece, tick, at)
@@ -122,5 +121,5 @@ def _on(times: Array, way: State, seconds: Array) -> State:
     if len(times) == 1:
         return resting(np.repeat(way.position, len(seconds), axis=0))
     before = np.clip(np.searchsorted(times, seconds, side="right") - 1, 0, len(times) - 2)
-    start, end = (State(*(getattr(way, name)[rows] for name in State.fields)) for rows in (before, before + 1))
+    start, end = way.rows(before), way.rows(before + 1)
     return on_quintic(start, end, (times[before + 1] - times[before])[:, None], seconds - times[before])
