@@ -18,6 +18,7 @@ from btlang.robots.joints import joint_of
 from btlang.robots.motion.braking import braking
 from btlang.robots.motion.course import PERIOD, Limits, Piece, State, between, samples
 from btlang.robots.motion.kinematics import Array
+from btlang.robots.motion.movements import staying
 from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.motion.timeline import Play
 from btlang.robots.robot import RobotError
@@ -222,8 +223,12 @@ class RosSmoothJoints:
         self._near = self._now()
 
     def _seed(self) -> None:
-        self._smooth.timeline.put(np.array([self._measured(index) for index in range(len(self._names))]))
+        self._smooth.timeline.put(self._here())
         self._way = self._smooth.timeline.plan[1]
+
+    def _here(self) -> Array:
+        """Of all joints; where one is silent, as planned."""
+        return np.array([self._measured(index) for index in range(len(self._names))])
 
     def _measured(self, index: int) -> float:
         try:
@@ -262,14 +267,7 @@ class RosSmoothJoints:
     def _stay(self, reason: str) -> None:
         timeline = self._smooth.timeline
         timeline.halt(reason)
-        here = np.array([self._measured(index) for index in range(len(self._names))])
-        still = State(here[None], 0 * here[None], 0 * here[None])
-        timeline.follow(
-            range(len(self._names)),
-            lambda times: State(*(np.repeat(getattr(still, name), len(times), axis=0) for name in State.fields)),
-            timeline.seconds,
-            timeline.seconds,
-        )
+        timeline.follow(range(len(self._names)), staying(self._here()), timeline.seconds, timeline.seconds)
 
     def _brake(self) -> None:
         """Sends how all joints come to rest from what they do, as it was sent last. From any thread."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Protocol
 
@@ -78,6 +78,11 @@ class KeyFrames:
 def resting(position: Array) -> State:
     """At rest there."""
     return State(position, np.zeros_like(position), np.zeros_like(position))
+
+
+def staying(position: Array) -> Callable[[Array], State]:
+    """At rest there at each of some times."""
+    return lambda times: resting(np.repeat(position[None], len(times), axis=0))
 
 
 def frames_of(gesture: Gesture, names: Sequence[str], settled: Array) -> Frames:

@@ -12,7 +12,7 @@ from trajectory_msgs.msg import JointTrajectory
 from btlang.robots.body import Body
 from btlang.robots.motion.course import PERIOD, Limits, Piece, State, on_quintic, to_state
 from btlang.robots.motion.kinematics import Array
-from btlang.robots.motion.movements import resting
+from btlang.robots.motion.movements import staying
 from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.motion.timeline import Timeline
 from btlang.robots.robot import RobotError
@@ -119,7 +119,7 @@ def _first(piece: Piece, begins: float, at: Callable[[Array], State]) -> Callabl
 def _on(times: Array, way: State, seconds: Array) -> State:
     """Where they are at some seconds; before and after the points they rest."""
     if len(times) == 1:
-        return resting(np.repeat(way.position, len(seconds), axis=0))
+        return staying(way.position[0])(seconds)
     before = np.clip(np.searchsorted(times, seconds, side="right") - 1, 0, len(times) - 2)
     start, end = way.rows(before), way.rows(before + 1)
     return on_quintic(start, end, (times[before + 1] - times[before])[:, None], seconds - times[before])
