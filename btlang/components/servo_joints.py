@@ -47,7 +47,7 @@ class ServoJoints:
     def moving(self) -> bool:
         """True while any joint is on its way, as far as that is known."""
         try:
-            return self._smooth.moving or not all(map(self._reached, self._told))
+            return self._smooth.moving or not self._have_reached(self._told)
         except DeviceError:
             return False
 
@@ -77,7 +77,7 @@ class ServoJoints:
     def idle(self, targets: Mapping[str, float], least: float) -> bool:
         """See SmoothJoints; not where a servo is silent."""
         try:
-            if not all(name in self._told and self._reached(name) for name in targets):
+            if not (self._told.issuperset(targets) and self._have_reached(targets)):
                 self._begin(targets)
         except RobotError:
             return False
@@ -92,7 +92,7 @@ class ServoJoints:
 
     def at_target(self, names: tuple[str, ...]) -> bool:
         """True when none of them is on its way. Raises DeviceSilent."""
-        return self._smooth.at_target(names) and all(self._reached(name) for name in names if name in self._told)
+        return self._smooth.at_target(names) and self._have_reached(name for name in names if name in self._told)
 
     def freeze(self, names: tuple[str, ...] | None = None) -> None:
         """They come to rest, and stay there; None: all of them, which takes no lock."""
@@ -154,5 +154,7 @@ class ServoJoints:
         if let_go:
             self._told, self._lets_go = frozenset(), False
 
-    def _reached(self, name: str) -> bool:
-        return abs(self.angle(name) - self._smooth.angle(name)) <= joint_of(self._body, name).close_enough
+    def _have_reached(self, names: Iterable[str]) -> bool:
+        """Raises DeviceSilent where one of them is."""
+        planned = self._smooth.angles
+        return all(abs(self.angle(name) - planned[name]) <= joint_of(self._body, name).close_enough for name in names)
