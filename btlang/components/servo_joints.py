@@ -14,7 +14,7 @@ from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import JointTarget
 from btlang.devices.loop import DeviceLoop
 from btlang.robots.body import Body
-from btlang.robots.gesture import Gesture
+from btlang.robots.gesture import Gesture, joints_of
 from btlang.robots.joints import joint_of
 from btlang.robots.motion.course import PERIOD
 from btlang.robots.motion.smooth_joints import SmoothJoints
@@ -63,8 +63,7 @@ class ServoJoints:
 
     def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[Operation, float]:
         """See SmoothJoints."""
-        steps = [frame.joints for frame in wanted.frames] if isinstance(wanted, Gesture) else wanted
-        self._begin({name for step in steps for name in step})
+        self._begin(joints_of(wanted))
         made = self._smooth.play(wanted, room)
         self._go_on()
         return made

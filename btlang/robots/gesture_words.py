@@ -12,7 +12,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.robots.body import Body
 from btlang.robots.data_file import DataFileError, as_mission_error, placed
-from btlang.robots.gesture import Gesture
+from btlang.robots.gesture import Gesture, joints_of
 from btlang.robots.gesture_file import TARGET, GestureError, phrase_forms
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem
@@ -125,7 +125,7 @@ def _entry(body: Body, gesture: Gesture, node_id: str, phrases: list[str]) -> st
 def _parts(body: Body, gesture: Gesture) -> list[str]:
     """What it moves."""
     both = [gesture, *([gesture.other] if gesture.other is not None else [])]
-    names = {name for each in both for frame in each.frames for name in frame.joints}
+    names = {name for each in both for name in joints_of(each)}
     moved = (joint.part for joint in body.joints if joint.name in names)
     return list(dict.fromkeys((*moved, *(each.aim for each in both if each.aim))))
 

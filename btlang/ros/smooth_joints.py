@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from math import inf
 
@@ -13,7 +13,7 @@ from trajectory_msgs.msg import JointTrajectory
 
 from btlang.record import Record
 from btlang.robots.body import Body
-from btlang.robots.gesture import Gesture
+from btlang.robots.gesture import Gesture, joints_of
 from btlang.robots.joints import joint_of
 from btlang.robots.motion.braking import braking
 from btlang.robots.motion.course import PERIOD, Limits, Piece, State, between, samples
@@ -129,8 +129,7 @@ class RosSmoothJoints:
 
     def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[Played, float]:
         """See SmoothJoints; `room` counts from the latest step on."""
-        steps = [frame.joints for frame in wanted.frames] if isinstance(wanted, Gesture) else wanted
-        self._begin({name: 0.0 for step in steps for name in step})
+        self._begin(joints_of(wanted))
         play, slower = self._smooth.play(wanted, None if room is None else room - self._passed)
         made = Played(self, play, self._names)
         self._played.append(made)
@@ -210,7 +209,7 @@ class RosSmoothJoints:
         elif passed < -_STAMPED:  # a simulation has begun again
             self._origin += passed
 
-    def _begin(self, names: Mapping[str, float]) -> None:
+    def _begin(self, names: Collection[str]) -> None:
         """Raises RobotError where one of them is silent. From rest, they begin where they are."""
         for name in names:
             self.angle(name)
