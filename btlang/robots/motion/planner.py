@@ -37,7 +37,7 @@ class Planner:
         """
         joints = movement.joints
         limits, start = self._limits.some(joints), state(0).of(joints)
-        for rests in (False, True):
+        for rests in (False, True) if movement.flows else (True,):
             course = self._direct(movement, limits, lambda ticks: state(ticks).of(joints), rests, room)
             if course is not None:
                 yield course
