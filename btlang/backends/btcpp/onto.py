@@ -6,6 +6,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping
 from difflib import SequenceMatcher
 
+from btlang.backends.btcpp.markup import sound_comment
 from btlang.backends.btcpp.models import Uses
 from btlang.backends.btcpp.names import tree_ids
 from btlang.backends.btcpp.rewriting import Rewriter
@@ -217,7 +218,9 @@ class _Onto:
                 self._change_comment(said, changed[id(said)])
         if come:
             written = raw.get(tuple(come))
-            self._text.add_comments(node, [written] if written else [f"<!-- {_sound(text)} -->" for text in come])
+            self._text.add_comments(
+                node, [written] if written else [f"<!-- {sound_comment(text)} -->" for text in come]
+            )
 
     def _change_comment(self, said: _Said, lines: Mapping[int, str | None]) -> None:
         if len(lines) == len(said.lines) and not any(lines.values()):
@@ -234,7 +237,7 @@ class _Onto:
             text = lines.get(at, line)
             if text is not None:
                 inner = line.strip()
-                kept.append(line if at not in lines else line.replace(inner, _sound(text)))
+                kept.append(line if at not in lines else line.replace(inner, sound_comment(text)))
             at += 1
         inner = "\n".join(kept)
         self._text.change(start, end, f"<!--{inner}-->")
@@ -290,11 +293,6 @@ def _taken(counter: Counter[str], text: str) -> bool:
         return False
     counter[text] -= 1
     return True
-
-
-def _sound(text: str) -> str:
-    """As a comment may hold it: XML forbids two hyphens in it."""
-    return text.replace("--", "- -").removesuffix("-")
 
 
 def _apart(root: Node) -> Node:

@@ -13,7 +13,7 @@ from btlang.tree.node import Node
 FOOT = math.inf
 """In place of a line: behind all statements."""
 KEPT = "#:"
-"""Begins a comment with what is kept of an XML file, for programs (see btlang.backends.btcpp.kept)."""
+"""Begins a comment with what is kept of an XML file, for programs (see btlang.frontends.btcpp.kept)."""
 
 
 def line_of(node: Node) -> int:
