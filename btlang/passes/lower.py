@@ -44,7 +44,7 @@ def lower_names(compilation: Compilation) -> Iterator[Diagnostic]:
     root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, scope).node
     exact = [node for body in ast.bodies(mission) for node in compilation.syntax(body) if isinstance(node, ast.Exact)]
     models = _models(exact, compilation.vocabulary)
-    compilation.tree = Tree(root, tuple(scope.bodies), mission.name, models)
+    compilation.tree = Tree(root, tuple(scope.bodies), mission.name, models, mission.span.source)
 
 
 def _models(exact: Sequence[ast.Exact], vocabulary: Lexicon) -> tuple[NodeModel, ...]:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from btlang.backends.btcpp.markup import Markers
 from btlang.backends.english.comments import Comments, comments_of
 from btlang.backends.english.editors import without_editors
 from btlang.backends.english.lift import Lifter
 from btlang.backends.english.names import Names, Refused
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.frontends.btcpp.kept import marked, parts_of
+from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission
 from btlang.passes.order import used_first
@@ -36,9 +39,8 @@ def to_english(
 ) -> str:
     """A mission that compiles to an equal tree: natural words where the language has them, else nodes by their ids.
 
-    Attributes of editors are left out.
-    It begins with what it `needs` and the `facts`, whose places it may name. Raises MissionError (BT142) for a tree
-    that no text can say, such as one with a line end in the name of a subtree.
+    Attributes of editors are left out. It begins with what it `needs` and the `facts`, whose places it may name. Raises
+    MissionError (BT142) for a tree that no text can say, such as one with a line end in the name of a subtree.
     """
     tree = without_editors(tree)
     names = [name for name, _ in tree.subtrees] + [name for node in tree.walk() for name, _ in node.ports]
@@ -50,9 +52,8 @@ def to_english(
     comments, refused = comments_of(tree), Refused()
     for level in _LEVELS:
         mission, printer = _mission(tree, words, level, refused, comments)
-        text = "".join(
-            f"{line}\n" for line in _lines(mission.replace(facts=tuple(facts), needs=needs), printer, comments)
-        )
+        said = _lines(mission.replace(facts=tuple(facts), needs=needs), printer, comments)
+        text = "".join(f"{line}\n" for line in (*said, *_kept(tree)))
         try:
             again = lower_mission(read_mission(Source(text), vocabulary).mission, vocabulary)
         except MissionError as error:
@@ -91,6 +92,13 @@ def _lines(mission: Program, printer: Printer, comments: Comments) -> Iterator[s
     yield from (f"# {line}" for line in comments.head)
     yield from mission_lines(mission, printer, WIDTH)
     yield from (f"# {line}" for line in comments.foot)
+
+
+def _kept(tree: Tree) -> Iterator[str]:
+    """Comments with what English doesn't say of an XML file."""
+    if isinstance(tree.origin, XmlOrigin):
+        markers = Markers()
+        yield from marked(line for part in parts_of(tree.origin) for line in markers.part(part, 0))
 
 
 def _mission(

@@ -11,7 +11,7 @@ from btlang.frontends.btcpp.models import ModelReader, among
 from btlang.frontends.btcpp.nodes import NodeReader
 from btlang.frontends.btcpp.origin import Element, Markup, TreeOrigin
 from btlang.frontends.btcpp.scan import Document, Note
-from btlang.frontends.btcpp.spelling import MODEL, SPOKEN_NAME
+from btlang.frontends.btcpp.spelling import MODEL
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree.model import NodeModel
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from btlang.frontends.btcpp.spelling import Pairs
 
 _PARTS = ("BehaviorTree", MODEL, "include")
+SPOKEN_NAME = "_name"
+"""The attribute of a BehaviorTree with the name that its tree has in English, where that can be no ID."""
 
 
 class TreeHead(Record):
@@ -136,16 +138,16 @@ class XmlFile:
             self.trees.append((head.name, root))
             self.uses[head.name] = reader.uses[::-1]
             reader.uses.clear()
-            before: dict[int, tuple[str, ...]] = {}
-            inside: dict[int, tuple[str, ...]] = {}
-            for at in range(first, end) if self.notes else ():
-                if told := self.notes.before(at):
-                    before[at - first] = tuple(note.text for note in told)
-                if told := self.notes.inside(at):
-                    inside[at - first] = tuple(note.text for note in told)
-            after = tuple(note.text for note in self.notes.inside(head.index))
+            notes = self.notes
+            before, inside, heading, behind = (
+                {at - first: tuple(note.text for note in told) for at in range(first, end) if (told := find(at))}
+                if notes
+                else {}
+                for find in (notes.before, notes.inside, notes.heading, notes.behind)
+            )
+            after = tuple(note.text for note in notes.inside(head.index))
             attributes = tuple(document.attributes(head.index).items())
-            self.origins[head.name] = TreeOrigin(attributes, tags, before, inside, after)
+            self.origins[head.name] = TreeOrigin(attributes, tags, before, inside, heading, behind, after)
         self.problems += reader.problems
 
     def items(self) -> tuple[Element | Markup | str, ...]:

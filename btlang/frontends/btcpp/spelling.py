@@ -37,26 +37,23 @@ _, _SUBTREE_PLUS = CATALOGUE[SUBTREE].tags_3
 SHARED = "__shared_blackboard"
 AUTOREMAP_3 = "__autoremap"
 AUTOREMAP = "_autoremap"
-CONDITIONS_4 = frozenset((
-    "_skipIf", "_failureIf", "_successIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post",
-))  # fmt: skip
-"""The attributes of pre- and postconditions."""
-SPOKEN_NAME = "_name"
-"""The attribute of a BehaviorTree with the name that its tree has in English, where that can be no ID."""
 TRUE = frozenset(("1", "true", "TRUE", "True"))
 
+_MEANT = frozenset((
+    AUTOREMAP, AUTOREMAP_3, SHARED,
+    "_skipIf", "_failureIf", "_successIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post",
+))  # fmt: skip
 _NAME = re.compile(r"[^\W\d][\w.\-]*")  # of the names that XML allows, those without a colon
+
+
+def is_editors(attribute: str) -> bool:
+    """Whether an attribute tells editors something, such as `_uid`, and the robot nothing."""
+    return attribute[:1] == "_" and attribute not in _MEANT
 
 
 def is_xml_name(text: str) -> bool:
     """Whether a text can be a tag or the name of an attribute."""
     return _NAME.fullmatch(text) is not None
-
-
-def is_editors(attribute: str) -> bool:
-    """Whether only editors such as Groot2 use an attribute: `_uid`, `_fullpath`, `_description`, `_collapsed`."""
-    meant = attribute in CONDITIONS_4 or attribute in (AUTOREMAP, SHARED, AUTOREMAP_3, SPOKEN_NAME)
-    return attribute[:1] == "_" and not meant
 
 
 def is_reference(text: str) -> bool:
