@@ -48,10 +48,11 @@ def lower_names(compilation: Compilation) -> Iterator[Diagnostic]:
 
 
 def _models(exact: Sequence[ast.Exact], vocabulary: Lexicon) -> tuple[NodeModel, ...]:
-    """What a mission says of leaves by their ids: that they are conditions, and the ports that they give values to."""
+    """What a mission says of leaves by their ids: what they are, and the ports that they give values to."""
+    known = {node.id for node in exact if node.items} | vocabulary.nodes.keys()
     outputs: dict[str, dict[str, None]] = {}
     for node in exact:
-        if node.is_condition or (node.outputs and not node.items and vocabulary.entry(node.id) is None):
+        if node.is_condition or (node.id not in known and vocabulary.entry(node.id) is None):
             outputs.setdefault(node.id, {}).update(dict.fromkeys(node.outputs))
     conditions = {node.id for node in exact if node.is_condition}
     return tuple(
@@ -59,7 +60,6 @@ def _models(exact: Sequence[ast.Exact], vocabulary: Lexicon) -> tuple[NodeModel,
             "Condition" if node_id in conditions else "Action", node_id, tuple(PortModel(p, "output") for p in ports)
         )
         for node_id, ports in outputs.items()
-        if node_id != SUBTREE
     )
 
 

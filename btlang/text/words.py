@@ -2,8 +2,8 @@
 
 A word is kept in lower case; quoted text keeps its case behind a leading `"`; a unit is a word of its own
 ("2m" is `2`, `m`), and so is each punctuation mark but the colon of a time of day (`18:30`). Articles leave no word,
-only a note of where they stood, and the mark of a list item (`- `, `1. `) leaves nothing. `Orthography` holds what
-languages differ in.
+only a note of where they stood, and the mark of a list item (`- `, `1. `) leaves nothing. A line that ends in a comma
+goes on in the next one where that is indented more. `Orthography` holds what languages differ in.
 """
 
 from __future__ import annotations
@@ -183,8 +183,10 @@ def split(source: Source, orthography: Orthography) -> Words:
                 result.articles[len(words)] = (start, end)
                 continue
         elif kind == _LINE:
-            end_line(start)
-            indent, is_item = _indent(word[1:])
+            below = _indent(word[1:])
+            if not (words and words[-1] == "," and len(words) > first and below[0] > indent and not below[1]):
+                end_line(start)
+                indent, is_item = below
             continue
         elif kind == _STOP:
             if len(words) == first or words[-1] == END_OF_STATEMENT:

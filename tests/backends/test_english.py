@@ -17,6 +17,7 @@ from btlang.passes import lower_mission
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.two_readings import two_readings
 from btlang.text.source import Source
+from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree
 from tests.backends.any_tree import trees
@@ -37,8 +38,11 @@ def test_any_tree_is_said_and_read_back(tree: Tree) -> None:
         mission = read_mission(Source(text), vocabulary, parser).mission
         again = lower_mission(mission, vocabulary)
         assert plain(again) == plain(without_editors(tree))
-        for models in (tree.models, (*tree.models, *again.models)):
+        for models in (tree.models, (*tree.models, *again.models), again.models):
             assert to_english(again.replace(models=models), vocabulary) == text
+        told = {model.id for model in tree.models if model.kind == "Condition"}
+        conditions = {model.id for model in again.models if model.kind == "Condition"} - told
+        assert all(id in ("IsOk", "CheckDoor") or vocabulary.entry(id) or CATALOGUE[id].kind for id in conditions)
         assert not list(two_readings(Compilation(vocabulary, mission, again)))
 
 
@@ -182,3 +186,22 @@ def test_the_older_ways_are_still_read(parser: str) -> None:
         ("do open box with c 2, then wave 3 times", "do open box with c 2, wave 3 times"),
     ]:
         assert parse_tree(older, parser=parser).tree == parse_tree(now, parser=parser).tree
+
+
+def test_no_long_lines() -> None:
+    """A line that would be too long goes on below a comma, also the head of a block and a condition."""
+    ports = " ".join(f'the_name_of_port_{number}="a text, and more {number}"' for number in range(9))
+    for xml in (
+        f"<OpenBox {ports}/>",
+        f"<Sequence><Wave/><RateController {ports}><Sequence><OpenBox {ports}/><Wave/></Sequence></RateController>"
+        "</Sequence>",
+        f'<IfThenElse><Condition ID="LidOpen" {ports}/><Action ID="OpenBox" {ports}/><Wave/></IfThenElse>',
+        f'<SubTree ID="The Way" {ports}/></BehaviorTree><BehaviorTree ID="The Way"><Fallback><OpenBox {ports}/><Nod/>'
+        "</Fallback>",
+    ):
+        lines = said(xml)
+        assert max(map(len, lines)) <= 100, lines
+    assert lines[-2:] == [
+        '    the_name_of_port_6 "a text, and more 6", the_name_of_port_7 "a text, and more 7",',
+        '    the_name_of_port_8 "a text, and more 8"',
+    ]
