@@ -1,8 +1,8 @@
 """The canonical layout of a mission: indentation, spaces and empty lines. Words, comments and line ends stay.
 
-Two spaces a block level, and four more where a line goes on with the one before it; one space between words; none before
-`,` `;` `:` `.` `)` and behind `(`; two before a comment behind a command; nothing at the ends of lines; at most one empty
-line in a row and none at the ends of the text.
+Two spaces a block level, and four more where a line goes on with the one before it; one space between words; none
+before `,` `;` `:` `.` `)` and behind `(`; two before a comment behind a command; nothing at the ends of lines; at most
+one empty line in a row and none at the ends of the text.
 """
 
 from __future__ import annotations

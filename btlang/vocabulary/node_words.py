@@ -65,7 +65,7 @@ def read_id(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, int] | None
     written = text.source.text[text.starts[at] : text.ends[last - 1]]
     match = _phrase(text, at, vocabulary)
     is_phrase = match is not None and match.last >= last
-    is_node = respellings(" ".join(words[at:last]), vocabulary.nodes.values())
+    is_node = _is_near(" ".join(words[at:last]), _phrases(vocabulary)[2])
     if is_phrase or is_node or written != written.lower():
         return None
     if _is_misspelt(words[at:last], _phrases(vocabulary)[0], vocabulary):
@@ -115,20 +115,25 @@ def _ends(text: Words, at: int, vocabulary: Lexicon) -> bool:
 
 
 @lru_cache(maxsize=4)
-def _phrases(vocabulary: Lexicon) -> tuple[frozenset[str], frozenset[str]]:
-    """What can be said without a value, with the words of nodes; and the words up to the first value of all else."""
+def _phrases(vocabulary: Lexicon) -> tuple[frozenset[str], frozenset[str], frozenset[str]]:
+    """What can be said without a value, the words up to the first value of all else, and the words of nodes."""
     whole, heads = set(vocabulary.nodes.values()), set[str]()
     said = [phrase for entries in vocabulary.entries.values() for entry in entries for phrase in entry.phrases]
     for phrase in [*said, *(phrase for phrases in vocabulary.roles.values() for phrase in phrases)]:
         for form in forms(phrase, vocabulary.articles):
             head = " ".join(str(part) for part in takewhile(lambda part: not isinstance(part, Slot), form))
             (heads if any(isinstance(part, Slot) for part in form) else whole).add(head)
-    return frozenset(whole), frozenset(heads)
+    return frozenset(whole), frozenset(heads), frozenset(vocabulary.nodes.values())
+
+
+@lru_cache(maxsize=4096)  # a file has few ids and ports, each many times
+def _is_near(written: str, known: frozenset[str]) -> bool:
+    return bool(respellings(written, known))
 
 
 def _is_misspelt(words: list[str], known: frozenset[str], vocabulary: Lexicon) -> bool:
     written = " ".join(words)
-    if len(written) < _LEAST or not respellings(written, known):
+    if len(written) < _LEAST or not _is_near(written, known):
         return False
     from btlang.vocabulary.correct_words import correct_words  # hardly ever
 

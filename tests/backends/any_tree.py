@@ -83,8 +83,8 @@ texts = st.one_of(
     st.text(st.characters(codec="utf-8", exclude_categories=["Cs"]), max_size=8),
 )
 _SUBTREES = (
-    "patrol", "big dance", "GraspObject", "Approach Shelf", "then", "wave", "it's {x}", "greet {who}", "visit {stop} {n}",
-    "each_stop", "each_stop", "each_n_2",
+    "patrol", "big dance", "GraspObject", "Approach Shelf", "then", "wave", "it's {x}", "greet {who}",
+    "visit {stop} {n}", "each_stop", "each_stop", "each_n_2",
 )  # fmt: skip
 _GIVEN = ("Alice", "lab", "3", "two words", "{goal}", "{count}", "{who}", "{_1}", "a}")
 _keys = st.one_of(
