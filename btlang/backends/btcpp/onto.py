@@ -17,10 +17,10 @@ from btlang.frontends.btcpp.file import SPOKEN_NAME, XmlFile
 from btlang.frontends.btcpp.reader import MAIN, read_xml
 from btlang.frontends.btcpp.scan import Note, scanned
 from btlang.frontends.btcpp.spelling import MAIN_TREE, SPELL, is_editors
-from btlang.frontends.mission.comments import FOOT, HEAD, comments_by_line, line_of
 from btlang.record import Record
 from btlang.text.source import NOWHERE, Source
 from btlang.tree.alignment import Alignment
+from btlang.tree.comments import FOOT, HEAD, comments_by_line, line_of
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
