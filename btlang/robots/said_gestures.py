@@ -11,7 +11,7 @@ from btlang.record import Record
 from btlang.robots.body import Body
 from btlang.robots.gesture import BEARING
 from btlang.robots.gesture_file import ARTICLES, phrase_forms
-from btlang.robots.needs import needs_of
+from btlang.robots.needs import lack, needs_of
 from btlang.robots.world import World
 from btlang.speech.marks import read_marks
 from btlang.text.source import NOWHERE, Span
@@ -81,9 +81,8 @@ def _problem(body: Body, known: set[str], node: Node, words: str) -> Diagnostic 
     found, span = said_gesture(body, words), _place(node, words)
     if found is None:
         near = nearest(words.lower(), [*body.gestures, *body.postures])
-        missing, similar = f'gesture "{words}"', f"Similar: {', '.join(near)}" if near else ""
-        sentence = node.span.text if node.span is not None else node.id
-        return diagnostic("BT072", span, words=sentence, parts=missing, robot=body.name, help=similar)
+        similar = f"Similar: {', '.join(near)}" if near else ""
+        return lack(body, [f'gesture "{words}"'], node, span, similar)
     if found.target and found.target.lower() not in known:
         near = nearest(found.target.lower(), known)
         similar = f"Similar: {', '.join(near)}" if near else ""
