@@ -101,7 +101,9 @@ def test_without_sound_words_share_the_time() -> None:
     assert (spoken.seconds, spoken.samples) == (3.5, b"")
     assert [(word.time, word.seconds) for word in spoken.words] == [(1.0, 1.5), (2.5, 1.0)]
     assert [spoken.time_of(index) for index in (0, 2, 3, 5)] == [1.0, 2.5, 2.5, 3.5]
-    assert [spoken.index_at(time) for time in (0.0, 1.0, 2.6, 9.0)] == [0, 0, 3, 3]
+    words = [spoken.word_at(time) for time in (0.0, 1.0, 2.6, 9.0)]
+    assert [word.start for word in words if word is not None] == [0, 0, 3, 3]
+    assert spoken.replace(words=()).word_at(1.0) is None
 
 
 def test_mouths_follow_phonemes() -> None:
