@@ -1,7 +1,8 @@
 // The missions of the robot's library, to be begun by one click while it has nothing to do.
-import { may, request } from "../api";
+import { may } from "../api";
 import { fill, h } from "../dom";
 import type { Robot } from "../fleet";
+import { libraryOf } from "../tasks/library";
 import { command } from "../tasks/queue";
 import { t } from "../texts";
 import type { Context } from "../view";
@@ -24,8 +25,8 @@ export class Offers {
   }
 
   private async ask(): Promise<void> {
-    const { data } = await request("GET", `/api/missions?robot=${encodeURIComponent(this.context.robot)}`).catch(() => ({ data: { missions: [] } }));
-    this.names = (data.missions as { name: string }[]).map(({ name }) => name);
+    const missions = await libraryOf(this.context.robot).catch(() => []);
+    this.names = missions.map(({ name }) => name);
     const button = (name: string): HTMLElement => h("button", { type: "button", dir: "auto", onclick: () => void this.begin(name) }, name.replaceAll("_", " "));
     fill(this.list, ...this.names.slice(0, MOST).map(button));
     this.show(this.context.fleet.get(this.context.robot), false);
