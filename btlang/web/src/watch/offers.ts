@@ -14,6 +14,7 @@ export class Offers {
   private problem = h("p", { class: "problem", role: "alert" });
   readonly element = h("div", { class: "starts card", role: "group", "aria-label": t("offers"), hidden: true }, h("h2", { "aria-hidden": true }, t("offers")), this.list, this.problem);
   private names: string[] = [];
+  private busy = true; // for all that is known
 
   constructor(private context: Context) {
     if (may(context.me, "operator")) void this.ask();
@@ -21,6 +22,7 @@ export class Offers {
 
   /** What is known of the robot by now, and whether it has a task. */
   show(robot: Robot, busy: boolean): void {
+    this.busy = busy;
     this.element.hidden = busy || !robot.up || !this.names.length || Boolean(robot.state?.stopped);
   }
 
@@ -29,7 +31,7 @@ export class Offers {
     this.names = missions.map(({ name }) => name);
     const button = (name: string): HTMLElement => h("button", { type: "button", dir: "auto", onclick: () => void this.begin(name) }, name.replaceAll("_", " "));
     fill(this.list, ...this.names.slice(0, MOST).map(button));
-    this.show(this.context.fleet.get(this.context.robot), false);
+    this.show(this.context.fleet.get(this.context.robot), this.busy);
   }
 
   private async begin(name: string): Promise<void> {
