@@ -164,6 +164,7 @@ _ALL = (
     Code("BT132", "The node '{id}' can't be used like this: {reason}."),
     Code("BT133", "This isn't a tree in JSON: {reason}.", "See docs/targets.md for the format."),
     Code("BT134", "{target} can't express the node '{id}': {reason}."),
+    Code("BT135", "The tree '{name}' can't be changed here, because it is in another file.", "Change it in {path}, which this file includes."),
     Code("BT141", "I can't read on at '{words}': {wanted} is needed.", "Write for example: do \"OpenGripper\" with width 0.05"),
     Code("BT142", "English can't express this tree: {reason}."),
     Code("BT150", "'{words}' doesn't fit here: {reason}.", "Write for example: {example}"),

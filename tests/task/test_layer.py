@@ -8,6 +8,7 @@ import threading
 import time
 import weakref
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import closing
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -279,9 +280,10 @@ def test_parameters_are_values_of_the_mission(tmp_path: Path) -> None:
 def test_a_schedule_makes_its_tasks(tmp_path: Path, place: str) -> None:
     """An hour in a moment: the robot's time is simulated."""
     begins = datetime(2026, 3, 2, 8, 50, tzinfo=UTC).timestamp()
-    with layer_in(tmp_path, store=place, speed="max", begins=begins) as layer:
+    with closing(TaskLayer(folder=str(tmp_path), store=place, speed="max", begins=begins)) as layer:
         rule = "every 10 minutes between 9:00 and 9:30"
         ask(layer, "schedule", rule=rule, zone="UTC", text="wave", labels=["tour"])
+        layer.start()  # only now: while the store keeps the schedule, an hour may go by
         wait_until(lambda: layer.now() > begins + 3000)
         ask(layer, "pause")
         tours = ask(layer, "list", states=["completed"], label="tour")["tasks"]

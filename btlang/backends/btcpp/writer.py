@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from btlang.frontends.btcpp.spelling import Pairs
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'
-_NOTHING = TreeOrigin((), {}, {}, {})
+_NOTHING = TreeOrigin((), {}, {}, {}, {}, {})
 
 
 def to_xml(tree: Tree, vocabulary: Lexicon, *, dialect: int = 4) -> str:
@@ -117,7 +117,7 @@ class _Writer:
             node, depth = stack.pop()
             space = margin(depth)
             if isinstance(node, str):
-                lines.append(f"{space}</{node}>")
+                lines.append(space + node)
                 continue
             if isinstance(node, tuple):
                 lines += [space + text for text in node]
@@ -130,14 +130,16 @@ class _Writer:
                 tag, pairs = spell(node, kind, ids)
             written = write(pairs, node.span) if pairs else ""
             comments = inside.get(number, ()) if inside else ()
-            if node.children or comments:
-                lines.append(f"{space}<{tag}{written}>")
-                stack.append((tag, depth))
+            beside = " ".join(("", *origin.heading.get(number, ()))) if origin.heading else ""
+            end = " ".join(("", *origin.behind.get(number, ()))) if origin.behind else ""
+            if node.children or comments or beside:
+                lines.append(f"{space}<{tag}{written}>{beside}")
+                stack.append((f"</{tag}>{end}", depth))
                 if comments:
                     stack.append((comments, depth + 1))
                 stack += [(child, depth + 1) for child in reversed(node.children)]
             else:
-                lines.append(f"{space}<{tag}{written}/>")
+                lines.append(f"{space}<{tag}{written}/>{end}")
             number += 1
         lines += [INDENT * 2 + text for text in origin.after]
         lines.append(f"{INDENT}</BehaviorTree>")

@@ -31,13 +31,16 @@ class TreeOrigin(Record):
     """How a BehaviorTree was written. Nodes are known by their number in preorder, 0 for the root.
 
     `tags` are those nodes whose tag or attributes are not the usual ones; `before` and `inside` are comments before a
-    node and behind its last child, and `after` those behind the root.
+    node and behind its last child, `heading` and `behind` those on the line of its start tag and of its end, and
+    `after` those behind the root.
     """
 
     attributes: Pairs
     tags: dict[int, Spelling]
     before: dict[int, tuple[str, ...]]
     inside: dict[int, tuple[str, ...]]
+    heading: dict[int, tuple[str, ...]]
+    behind: dict[int, tuple[str, ...]]
     after: tuple[str, ...] = ()
 
 

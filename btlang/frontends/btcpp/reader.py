@@ -22,7 +22,8 @@ from btlang.tree.visit import in_order_of_use
 
 _NO_NODES = CATALOGUE.keys() | TO_4.keys() | {"root", "BehaviorTree", MODEL, *MODEL_KINDS}
 """Tags that are no ids of nodes that somebody made."""
-_MAIN = "main_tree_to_execute"
+MAIN = "main_tree_to_execute"
+"""The attribute of <root> with the ID of the main tree."""
 _ROS_FOLDERS = "AMENT_PREFIX_PATH"  # where ROS 2 has its packages
 
 
@@ -135,7 +136,7 @@ class _Reader:
     def _main_tree(self, trees: dict[str, Node], heads: dict[str, TreeHead], names: dict[str, str]) -> str:
         """The name of the main tree; anything where none can be told."""
         file = self._files[0]
-        asked = self._main or file.attributes.get(_MAIN, "")
+        asked = self._main or file.attributes.get(MAIN, "")
         name = names.get(asked, asked)
         if name in trees:
             return name
@@ -203,7 +204,7 @@ def _origin(file: XmlFile, tree: Tree, asked: str) -> XmlOrigin:
     """What the main file tells beside the tree; `asked` is the ID of the main tree where the caller chose it."""
     attributes = dict(file.attributes)
     if asked:
-        attributes[_MAIN] = asked
+        attributes[MAIN] = asked
     return XmlOrigin(
         file.dialect,
         tree.root,

@@ -39,7 +39,16 @@ AUTOREMAP_3 = "__autoremap"
 AUTOREMAP = "_autoremap"
 TRUE = frozenset(("1", "true", "TRUE", "True"))
 
+_MEANT = frozenset((
+    AUTOREMAP, AUTOREMAP_3, SHARED,
+    "_skipIf", "_failureIf", "_successIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post",
+))  # fmt: skip
 _NAME = re.compile(r"[^\W\d][\w.\-]*")  # of the names that XML allows, those without a colon
+
+
+def is_editors(attribute: str) -> bool:
+    """Whether an attribute tells editors something, such as `_uid`, and the robot nothing."""
+    return attribute[:1] == "_" and attribute not in _MEANT
 
 
 def is_xml_name(text: str) -> bool:
