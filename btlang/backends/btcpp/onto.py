@@ -6,6 +6,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping
 from difflib import SequenceMatcher
 
+from btlang.backends.btcpp.markup import sound_comment
 from btlang.backends.btcpp.models import Uses
 from btlang.backends.btcpp.names import tree_ids
 from btlang.backends.btcpp.rewriting import Rewriter
@@ -16,7 +17,7 @@ from btlang.frontends.btcpp.file import SPOKEN_NAME, XmlFile
 from btlang.frontends.btcpp.reader import MAIN, read_xml
 from btlang.frontends.btcpp.scan import Note, scanned
 from btlang.frontends.btcpp.spelling import MAIN_TREE, SPELL, is_editors
-from btlang.frontends.mission.comments import FOOT, comments_by_line, line_of
+from btlang.frontends.mission.comments import FOOT, HEAD, comments_by_line, line_of
 from btlang.record import Record
 from btlang.text.source import NOWHERE, Source
 from btlang.tree.alignment import Alignment
@@ -171,11 +172,12 @@ class _Onto:
         if self._mission is None:
             return
         nodes = list(self._after.walk())
-        wanted = comments_by_line(self._mission, self._vocabulary.orthography, nodes)
+        wanted = comments_by_line(self._mission, self._vocabulary.orthography, self._after)
         first: dict[float, Node] = {}
         for node in nodes:
             first.setdefault(line_of(node), node)
-        there, gone = self._comments_by_line(min((line for line in first if line), default=0))
+        top = HEAD if self._after.name else min((line for line in first if line), default=HEAD)
+        there, gone = self._comments_by_line(top)
         come: Counter[str] = Counter()
         left: Counter[str] = Counter()
         for line in sorted({*there, *wanted}):
@@ -185,21 +187,20 @@ class _Onto:
         stays = come & left, come & left  # said in another statement, as English puts comments before whole ones
         raw = {said.lines: said.note.text for said in gone}
         for line in sorted({*there, *wanted}):
-            self._change_line(first.get(line), there.get(line, []), wanted.get(line, []), stays, raw)
+            new = self._changed_line(there.get(line, []), wanted.get(line, []), stays, raw)
+            if line in (HEAD, FOOT):
+                self._text.add_around(new, at_end=line == FOOT)
+            elif new:
+                self._text.add_comments(first[line], new)
 
-    def _change_line(
-        self,
-        node: Node | None,
-        there: list[_Said],
-        wanted: list[str],
-        stays: tuple[Counter[str], Counter[str]],
-        raw: Raw,
-    ) -> None:
-        """Makes the comments of one statement those that are wanted."""
+    def _changed_line(
+        self, there: list[_Said], wanted: list[str], stays: tuple[Counter[str], Counter[str]], raw: Raw
+    ) -> list[str]:
+        """Changes the comments of one statement to those that are wanted; returns those that are new."""
         has = [(said, at, text) for said in there for at, text in enumerate(said.lines)]
         texts = [text for _, _, text in has]
         if Counter(texts) == Counter(wanted):
-            return
+            return []
         changed: defaultdict[int, dict[int, str | None]] = defaultdict(dict)
         come: list[str] = []
         for tag, first, last, begin, end in SequenceMatcher(a=texts, b=wanted, autojunk=False).get_opcodes():
@@ -215,9 +216,8 @@ class _Onto:
         for said in there:
             if id(said) in changed:
                 self._change_comment(said, changed[id(said)])
-        if come:
-            written = raw.get(tuple(come))
-            self._text.add_comments(node, [written] if written else [f"<!-- {_sound(text)} -->" for text in come])
+        written = raw.get(tuple(come))
+        return [written] if written is not None else [f"<!-- {sound_comment(text)} -->" for text in come]
 
     def _change_comment(self, said: _Said, lines: Mapping[int, str | None]) -> None:
         if len(lines) == len(said.lines) and not any(lines.values()):
@@ -234,7 +234,7 @@ class _Onto:
             text = lines.get(at, line)
             if text is not None:
                 inner = line.strip()
-                kept.append(line if at not in lines else line.replace(inner, _sound(text)))
+                kept.append(line if at not in lines else line.replace(inner, sound_comment(text)))
             at += 1
         inner = "\n".join(kept)
         self._text.change(start, end, f"<!--{inner}-->")
@@ -246,14 +246,14 @@ class _Onto:
         found: defaultdict[float, list[_Said]] = defaultdict(list)
         gone: list[_Said] = []
 
-        def put(notes: Iterable[Note], node: Node | None, line: float = 0) -> None:
+        def put(notes: Iterable[Note], node: Node | None, line: float | None = None) -> None:
             for note in notes:
                 lines = tuple(lines_of((note.text,))) if not note.is_text else ()
-                if lines and node is None and not line:
+                if lines and node is None and line is None:
                     gone.append(_Said(note, lines))
                     self._text.remove_comment(note)
                 elif lines:
-                    found[line or line_of(node)].append(_Said(note, lines))  # type: ignore[arg-type]
+                    found[line_of(node) if node is not None else line].append(_Said(note, lines))  # type: ignore[index]
 
         notes, document = self._file.notes, self._file.document
         put(notes.before(0), None, top)
@@ -290,11 +290,6 @@ def _taken(counter: Counter[str], text: str) -> bool:
         return False
     counter[text] -= 1
     return True
-
-
-def _sound(text: str) -> str:
-    """As a comment may hold it: XML forbids two hyphens in it."""
-    return text.replace("--", "- -").removesuffix("-")
 
 
 def _apart(root: Node) -> Node:

@@ -130,14 +130,18 @@ class Rewriter:
         """Puts a text in place of some characters, which no other change touches."""
         self._changes.append((start, end, text))
 
-    def add_comments(self, node: Node | None, comments: list[str]) -> None:
-        """Comments on lines of their own before a node, None for the end of the file's trees."""
-        if node is not None:
-            self._leads.setdefault(id(node), []).extend(comments)
+    def add_comments(self, node: Node, comments: list[str]) -> None:
+        """Comments on lines of their own before a node."""
+        self._leads.setdefault(id(node), []).extend(comments)
+
+    def add_around(self, comments: list[str], *, at_end: bool) -> None:
+        """Comments on lines of their own before the outermost element, or at the end of what is in it."""
+        root = self._layout.places[0]
+        if not at_end:
+            self.change(root.start, root.start, "".join(f"{text}{self.line_end}" for text in comments))
             return
-        end = self._layout.places[0].foot
-        line = self._text.rfind("\n", 0, end) + 1
-        at = line if self._text[line:end].strip() == "" else end
+        line = self._text.rfind("\n", 0, root.foot) + 1
+        at = line if self._text[line : root.foot].strip() == "" else root.foot
         self.change(at, at, "".join(f"{self._unit}{text}{self.line_end}" for text in comments))
 
     def remove_comment(self, note: Note) -> None:

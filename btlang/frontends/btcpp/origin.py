@@ -48,7 +48,8 @@ class XmlOrigin(Record):
     """What the file of a tree holds beside it. It says nothing of another tree than the one of `root` and `subtrees`.
 
     `items` are the parts of <root> in their order, a str being the name of a tree; `trees` tells of the trees of this
-    file, those of included files are missing; `head` and `foot` are what stands around <root>.
+    file, those of included files are missing; `head` and `foot` are what stands around <root>. `file` is the name of
+    the file without its folder, "" for a text, `digest` that of its text (see kept.py).
     """
 
     dialect: int
@@ -59,3 +60,5 @@ class XmlOrigin(Record):
     trees: dict[str, TreeOrigin]
     head: tuple[str, ...] = ()
     foot: tuple[str, ...] = ()
+    file: str = ""
+    digest: str = ""

@@ -9,6 +9,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included, real_path
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
+from btlang.frontends.btcpp.kept import digest_of
 from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models, subtree_defaults
 from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.btcpp.scan import scanned
@@ -202,7 +203,7 @@ def _known(
 
 def _origin(file: XmlFile, tree: Tree, asked: str) -> XmlOrigin:
     """What the main file tells beside the tree; `asked` is the ID of the main tree where the caller chose it."""
-    attributes = dict(file.attributes)
+    attributes, source = dict(file.attributes), file.document.source
     if asked:
         attributes[MAIN] = asked
     return XmlOrigin(
@@ -214,4 +215,6 @@ def _origin(file: XmlFile, tree: Tree, asked: str) -> XmlOrigin:
         file.origins,
         file.head(),
         file.foot(),
+        os.path.basename(source.name) if source.name not in ("-", "<text>") else "",
+        digest_of(source.text),
     )
