@@ -6,7 +6,7 @@ from difflib import unified_diff
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 
 from btlang.api import world_vocabulary
@@ -89,20 +89,29 @@ def _read_by_people(text: str) -> list[str]:
 @given(trees(), trees())
 def test_any_tree_onto_any_other(before: Tree, after: Tree) -> None:
     """Nothing that was written onto a file is lost, however much is edited at once."""
-    original = Source(to_xml(before, WORDS))
+    original = _written(before)
+    _written(after)
     made = written_onto(original, after, WORDS)
-    assert plain(read_xml(Source(made))) == plain(read_xml(Source(to_xml(after, WORDS))))
+    assert plain(read_xml(Source(made))) == plain(after)
     assert written_onto(Source(made), after, WORDS) == made
 
 
 @settings(deadline=None)
 @given(trees(), st.data())
 def test_a_changed_value_changes_one_line(tree: Tree, data: st.DataObject) -> None:
-    original = Source(to_xml(tree, WORDS))
+    original = _written(tree)
     lines = original.text.split("\n")
-    at = data.draw(st.sampled_from([number for number, line in enumerate(lines) if ' n="' in line] or [-1]))
+    at = data.draw(st.sampled_from([number for number, line in enumerate(lines) if ' text="' in line] or [-1]))
     if at < 0:
         return
-    lines[at] = lines[at].replace(' n="', ' n="9', 1)
+    lines[at] = lines[at].replace(' text="', ' text="9', 1)
     wanted = read_xml(Source("\n".join(lines)))
     assert written_onto(original, wanted, WORDS) == "\n".join(lines)
+
+
+def _written(tree: Tree) -> Source:
+    """Of trees that XML can hold."""
+    try:
+        return Source(to_xml(tree, WORDS))
+    except MissionError:
+        reject()

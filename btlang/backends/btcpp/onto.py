@@ -138,7 +138,7 @@ class _Onto:
         return self._new.get(self._renamed.get(key, key))
 
     def _tree_attributes(self, name: str) -> Pairs:
-        written = self._ids[name]
+        written = self._ids[name if name in self._ids else ""]
         return (("ID", written),) if name == written else (("ID", written), (SPOKEN_NAME, name))
 
     def _change(self, number: int, old: Node, new: Node) -> None:
@@ -153,17 +153,19 @@ class _Onto:
 
     def _name_trees(self) -> None:
         """The IDs of trees that have other names now."""
-        renamed = {old: new for old, new in self._renamed.items() if old}
-        for old, new in renamed.items():
-            head = self._heads[old]
-            self._text.attributes(head.index, (("ID", head.written),), (("ID", self._ids[new]),))
-        main = self._after.name
-        head = next(head for name, head in self._heads.items() if name not in self._old)
-        if main != self._before.name and head.written:
-            self._text.attributes(head.index, (("ID", head.written),), (("ID", main or MAIN_TREE),))
-            if MAIN in self._file.attributes:
-                told = ((MAIN, self._file.attributes[MAIN]),)
-                self._text.attributes(0, told, ((MAIN, main or MAIN_TREE),))
+        for name, head in self._heads.items():
+            old = name if name in self._old else ""
+            new = self._renamed.get(old, old)
+            if not old and self._after.name != self._before.name:
+                new = self._after.name or MAIN_TREE
+                told = self._file.attributes.get(MAIN)
+                if told is not None:
+                    self._text.attributes(0, ((MAIN, told),), ((MAIN, self._ids[self._after.name]),))
+            elif new == old:
+                continue
+            there = self._file.document.attributes(head.index)
+            before = tuple((key, there[key]) for key in ("ID", SPOKEN_NAME) if key in there)
+            self._text.attributes(head.index, before, self._tree_attributes(new))
 
     # -- comments
 
