@@ -56,29 +56,20 @@ def test_edits_of_a_team_s_trees(path: Path) -> None:
 @pytest.mark.parametrize("path", [*FILES, *GOOD], ids=lambda path: path.stem)
 def test_without_an_edit_no_byte_changes(path: Path) -> None:
     source = read_source(str(path))
-    try:
-        text = to_english(read_xml(source), WORDS)
-    except MissionError as error:
-        assert error.diagnostics[0].code == "BT142"
-        return
+    text = to_english(read_xml(source), WORDS)
     assert written_onto(source, mission_of(text), WORDS) == source.text
 
 
-@pytest.mark.parametrize("path", [*FILES, *GOOD], ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_comments_and_models_come_back_without_the_file(path: Path) -> None:
     """English -> XML -> English: what a person reads is the same, and the models of the file are there again."""
     tree = read_xml(read_source(str(path)))
-    try:
-        text = to_english(tree, WORDS)
-    except MissionError as error:
-        assert error.diagnostics[0].code == "BT142"
-        return
+    text = to_english(tree, WORDS)
     again = read_xml(Source(to_xml(mission_of(text), WORDS)))
+    assert _read_by_people(to_english(again, WORDS)) == _read_by_people(text)
+    written = {model.id: model for model in tree.models if f'ID="{model.id}"' in text.partition("#: <Tree")[2]}
     kept = {model.id: model for model in again.models}
-    if path in FILES:
-        assert _read_by_people(to_english(again, WORDS)) == _read_by_people(text)
-        written = {model.id: model for model in tree.models if f'ID="{model.id}"' in text.partition("#: <Tree")[2]}
-        assert {name: kept[name] for name in written} == written
+    assert {name: kept[name] for name in written} == written
 
 
 def _read_by_people(text: str) -> list[str]:

@@ -54,11 +54,12 @@ class _Said(Record):
 class _Onto:
     def __init__(self, original: Source, tree: Tree, vocabulary: Lexicon) -> None:
         self._vocabulary = vocabulary
-        self._before = read_xml(original)
+        self._file = XmlFile(scanned(original))
+        is_there = tree.name in (head.name for head in self._file.heads)  # then it is the main tree, whatever is told
+        self._before = read_xml(original, tree.name if is_there else "")
         self._after = tree.replace(
             root=_apart(tree.root), subtrees=[(name, _apart(root)) for name, root in tree.subtrees]
         )
-        self._file = XmlFile(scanned(original))
         document = self._file.document
         self._dialect = self._file.dialect
         self._heads = {head.name: head for head in self._file.heads}
