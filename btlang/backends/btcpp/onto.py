@@ -79,7 +79,7 @@ class _Onto:
         kinds = {model.id: model.kind for model in self._before.models}
         self._kind = lambda node_id: kinds.get(node_id) or uses.kind(node_id)
         self._text = Rewriter(document, self._file.notes, self._known, self._spelled)
-        self._mission = next((node.span.source for node in self._after.walk() if node.span is not None), None)
+        self._mission = tree.origin if isinstance(tree.origin, Source) else None
 
     # -- what is what
 
