@@ -17,8 +17,8 @@ from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, spelled
 
 TARGET = "target"
 """The slot of phrases for what a gesture is aimed at."""
+ARTICLES = frozenset(("the", "a", "an"))
 NEARER = "nearer"
-_ARTICLES = frozenset(("the", "a", "an"))
 _SHORTEST = 0.05  # seconds to a key frame
 _LONGEST = 60.0  # seconds of a gesture
 _MOST_FRAMES = 500
@@ -68,7 +68,7 @@ def read_gestures(top: Table, joints: Sequence[Joint], file: str) -> dict[str, G
 def phrase_forms(gesture: Gesture) -> Iterator[Form]:
     """All ways to say it, without articles."""
     for phrase in gesture.phrases:
-        yield from forms(phrase, _ARTICLES)
+        yield from forms(phrase, ARTICLES)
 
 
 def _files(name: str, file: str, index: int) -> Sequence[str]:
@@ -128,7 +128,7 @@ def _phrases(top: Table, name: str) -> tuple[str, ...]:
     if top.has("phrase"):
         found = top.texts("phrase") if top.is_list("phrase") else (top.text("phrase"),)
     try:
-        parts = {part for text in found for form in forms(text, _ARTICLES) for part in form}
+        parts = {part for text in found for form in forms(text, ARTICLES) for part in form}
     except PatternError as error:
         raise top.problem("phrase", str(error)) from None
     if any(isinstance(part, Slot) and part.name != TARGET for part in parts):

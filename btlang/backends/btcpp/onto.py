@@ -17,10 +17,10 @@ from btlang.frontends.btcpp.file import SPOKEN_NAME, XmlFile
 from btlang.frontends.btcpp.reader import MAIN, read_xml
 from btlang.frontends.btcpp.scan import Note, scanned
 from btlang.frontends.btcpp.spelling import MAIN_TREE, SPELL, is_editors
-from btlang.frontends.mission.comments import FOOT, HEAD, comments_by_line, line_of
 from btlang.record import Record
 from btlang.text.source import NOWHERE, Source
 from btlang.tree.alignment import Alignment
+from btlang.tree.comments import FOOT, HEAD, comments_by_line, line_of
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
@@ -54,11 +54,12 @@ class _Said(Record):
 class _Onto:
     def __init__(self, original: Source, tree: Tree, vocabulary: Lexicon) -> None:
         self._vocabulary = vocabulary
-        self._before = read_xml(original)
+        self._file = XmlFile(scanned(original))
+        is_there = tree.name in (head.name for head in self._file.heads)  # then it is the main tree, whatever is told
+        self._before = read_xml(original, tree.name if is_there else "")
         self._after = tree.replace(
             root=_apart(tree.root), subtrees=[(name, _apart(root)) for name, root in tree.subtrees]
         )
-        self._file = XmlFile(scanned(original))
         document = self._file.document
         self._dialect = self._file.dialect
         self._heads = {head.name: head for head in self._file.heads}
@@ -78,7 +79,7 @@ class _Onto:
         kinds = {model.id: model.kind for model in self._before.models}
         self._kind = lambda node_id: kinds.get(node_id) or uses.kind(node_id)
         self._text = Rewriter(document, self._file.notes, self._known, self._spelled)
-        self._mission = next((node.span.source for node in self._after.walk() if node.span is not None), None)
+        self._mission = tree.origin if isinstance(tree.origin, Source) else None
 
     # -- what is what
 
@@ -138,7 +139,7 @@ class _Onto:
         return self._new.get(self._renamed.get(key, key))
 
     def _tree_attributes(self, name: str) -> Pairs:
-        written = self._ids[name]
+        written = self._ids[name if name in self._ids else ""]
         return (("ID", written),) if name == written else (("ID", written), (SPOKEN_NAME, name))
 
     def _change(self, number: int, old: Node, new: Node) -> None:
@@ -153,17 +154,19 @@ class _Onto:
 
     def _name_trees(self) -> None:
         """The IDs of trees that have other names now."""
-        renamed = {old: new for old, new in self._renamed.items() if old}
-        for old, new in renamed.items():
-            head = self._heads[old]
-            self._text.attributes(head.index, (("ID", head.written),), (("ID", self._ids[new]),))
-        main = self._after.name
-        head = next(head for name, head in self._heads.items() if name not in self._old)
-        if main != self._before.name and head.written:
-            self._text.attributes(head.index, (("ID", head.written),), (("ID", main or MAIN_TREE),))
-            if MAIN in self._file.attributes:
-                told = ((MAIN, self._file.attributes[MAIN]),)
-                self._text.attributes(0, told, ((MAIN, main or MAIN_TREE),))
+        for name, head in self._heads.items():
+            old = name if name in self._old else ""
+            new = self._renamed.get(old, old)
+            if not old and self._after.name != self._before.name:
+                new = self._after.name or MAIN_TREE
+                told = self._file.attributes.get(MAIN)
+                if told is not None:
+                    self._text.attributes(0, ((MAIN, told),), ((MAIN, self._ids[self._after.name]),))
+            elif new == old:
+                continue
+            there = self._file.document.attributes(head.index)
+            before = tuple((key, there[key]) for key in ("ID", SPOKEN_NAME) if key in there)
+            self._text.attributes(head.index, before, self._tree_attributes(new))
 
     # -- comments
 

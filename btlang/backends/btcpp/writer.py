@@ -14,8 +14,8 @@ from btlang.frontends.btcpp.kept import Kept, kept_in
 from btlang.frontends.btcpp.models import why_no_port
 from btlang.frontends.btcpp.origin import Element, Markup, TreeOrigin, XmlOrigin
 from btlang.frontends.btcpp.spelling import MAIN_TREE, SPELL, spelled_3
-from btlang.frontends.mission.comments import FOOT, HEAD, comments_by_line, line_of
 from btlang.text.source import Source
+from btlang.tree.comments import FOOT, HEAD, comments_by_line, line_of
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 
@@ -26,13 +26,17 @@ if TYPE_CHECKING:
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'
 
 
-def to_xml(tree: Tree, vocabulary: Lexicon, *, dialect: int = 4) -> str:
-    """The XML of a tree, in lines, with a line end at the end.
+def to_xml(tree: Tree, vocabulary: Lexicon, *, dialect: int = 4, onto: Source | None = None) -> str:
+    """The XML of a tree, in lines, with a line end at the end; or the file `onto`, with what has changed in the tree.
 
     A tree that was read from a file of the same dialect, and not changed since, is written with all that stood in the
     file: its tags, attributes, texts and comments. Any other is written in the one canonical way. `dialect` is 4 or 3.
     Raises MissionError where a name or text isn't allowed in XML (BT129), ValueError for another dialect.
     """
+    if onto is not None:
+        from btlang.backends.btcpp.onto import written_onto
+
+        return written_onto(onto, tree, vocabulary)
     if dialect not in SPELL:
         raise ValueError(f"there is no dialect {dialect}")
     return _Writer(tree, vocabulary, dialect).write()

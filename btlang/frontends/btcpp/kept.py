@@ -5,6 +5,7 @@ Each line is a part of the file behind `#:`; a line that would be too long goes 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from hashlib import sha256
 
@@ -14,9 +15,9 @@ from btlang.frontends.btcpp.models import ModelReader
 from btlang.frontends.btcpp.origin import Element, XmlOrigin
 from btlang.frontends.btcpp.scan import scanned
 from btlang.frontends.btcpp.spelling import MODEL
-from btlang.frontends.mission.comments import KEPT
 from btlang.record import Record
 from btlang.text.source import Source
+from btlang.tree.comments import KEPT
 from btlang.tree.model import NodeModel
 
 TYPE_CHECKING = False
@@ -28,6 +29,7 @@ _WIDTH = 160  # characters of a line without its mark
 _OWN = {"ID", "_name", "BTCPP_format", "main_tree_to_execute"}
 """Attributes that the writer gives anew."""
 _FILE = "file"
+_DIGEST = re.compile(rf'^({KEPT} <{_FILE} [^\n]*digest=")[0-9a-f]*', re.MULTILINE)
 _TOLD = "For btc, of the XML that this was made from; leave it as it is."
 
 
@@ -112,3 +114,8 @@ def kept_in(text: str) -> Kept:
     file = dict(found.get(_FILE, ()))
     told = file.get("name", ""), file.get("digest", ""), found.get("root", ())
     return Kept(*told, tuple(trees.items()), tuple(parts), tuple(models))
+
+
+def with_digest(text: str, digest: str) -> str:
+    """A mission that was made from an XML file, for another state of that file."""
+    return _DIGEST.sub(rf"\g<1>{digest}", text, count=1)
