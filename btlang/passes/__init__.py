@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.errors import MissionError, in_order
 from btlang.passes.compilation import Compilation, Pass
-from btlang.passes.lint.allow import silence
+from btlang.passes.lint.allow import silence, silence_in_xml
 from btlang.passes.lint.asked_once import asked_once
 from btlang.passes.lint.busy import busy_loops
 from btlang.passes.lint.cut_off import cut_off
@@ -50,6 +50,7 @@ PASSES = (
     Pass("cut off", cut_off),
     Pass("line end", line_ends, needs_text=True),
     Pass("allow", silence, needs_text=True),
+    Pass("allow in XML", silence_in_xml),
 )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from btlang.frontends.btcpp.scan import Document
 from btlang.frontends.btcpp.spelling import AUTOREMAP, AUTOREMAP_3, PORTS_TO_4, SHARED, TO_4, without_dollar
-from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE
+from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, POST_CONDITIONS, PRE_CONDITIONS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -24,10 +24,8 @@ _NODES = {
 """Tags that only one version has. Kind tags tell nothing: `<Action ID="Script"/>` may be a node that somebody made."""
 _KEYS = {
     3: frozenset((SHARED, AUTOREMAP_3)),
-    4: frozenset((
-        AUTOREMAP, "_skipIf", "_failureIf", "_successIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post",
-    )),
-}  # fmt: skip
+    4: frozenset((AUTOREMAP, *PRE_CONDITIONS, *POST_CONDITIONS)),
+}
 _PORTS: dict[int, dict[str, frozenset[str]]] = {
     3: {node_id: frozenset((*names, "threshold")) for node_id, names in PORTS_TO_4.items()},
     4: {node_id: frozenset(names.values()) for node_id, names in PORTS_TO_4.items()}

@@ -22,7 +22,7 @@ class Element(Record):
 
 
 class Markup(Record):
-    """A comment or processing instruction as it is written."""
+    """A comment, processing instruction or text as it is written."""
 
     text: str
 
@@ -30,8 +30,8 @@ class Markup(Record):
 class TreeOrigin(Record):
     """How a BehaviorTree was written. Nodes are known by their number in preorder, 0 for the root.
 
-    `tags` are those nodes whose tag or attributes are not the usual ones; `before` and `inside` are comments before a
-    node and behind its last child, and `after` those behind the root.
+    `tags` are those nodes whose tag or attributes are not the usual ones; `before` and `inside` are comments and texts
+    before a node and behind its last child, as XML, and `after` those behind the root.
     """
 
     attributes: Pairs

@@ -39,6 +39,7 @@ class _Reader:
     def __init__(self, main: str) -> None:
         self._main = main
         self._problems: list[Diagnostic] = []
+        self._warnings: list[Diagnostic] = []
         self._files: list[XmlFile] = []
         self._read: set[str] = set()
 
@@ -64,7 +65,7 @@ class _Reader:
         subtrees = tuple(tree for tree in trees.items() if tree[0] != main)
         tree = Tree(trees[main], subtrees, "" if is_usual else main, tuple(_known(models, kinds, trees, self._files)))
         asked = (heads[main].written or main) if self._main else ""
-        return tree.replace(origin=_origin(file, tree, asked))  # type: ignore[no-any-return]
+        return tree.replace(origin=_origin(file, tree, asked), warnings=tuple(self._warnings))  # type: ignore[no-any-return]
 
     def _stop_where_wrong(self) -> None:
         if self._problems:
@@ -78,6 +79,7 @@ class _Reader:
             self._problems += error.diagnostics
             return
         self._problems += file.problems
+        self._warnings += file.warnings
         file.problems.clear()
         self._files.append(file)
         self._read.add(within[-1])
@@ -128,7 +130,10 @@ class _Reader:
                     self._problems.append(diagnostic("BT127", head.span, note, name=head.name))
         if not heads:
             span = self._files[0].root_span
-            told = {"problem": "contains no BehaviorTree", "advice": 'Add one: <BehaviorTree ID="MainTree">'}
+            advice = 'Add one: <BehaviorTree ID="MainTree">'
+            if self._files[0].models:
+                advice = "It only describes nodes. For trees with them: btc check TREE.xml --models FILE.xml"
+            told = {"problem": "contains no BehaviorTree", "advice": advice}
             self._problems.append(diagnostic("BT122", span, (), None, what="<root>", **told))
         return heads
 
