@@ -13,8 +13,12 @@ if TYPE_CHECKING:
     Shape: TypeAlias = tuple[str, ...]
     """A tag and the names of its attributes."""
 
+ONLY_IN_3 = frozenset((
+    "BlackboardCheckBool", "BlackboardCheckDouble", "BlackboardCheckInt", "BlackboardCheckString", "ManualSelector",
+))  # fmt: skip
+"""Nodes of BehaviorTree.CPP that format 4 doesn't have, under any name."""
 _NODES = {
-    3: TO_4.keys() | {"BlackboardCheckBool", "BlackboardCheckDouble", "BlackboardCheckInt", "BlackboardCheckString"},
+    3: TO_4.keys() | ONLY_IN_3 - {"ManualSelector"},
     4: frozenset(
         kind.id
         for kind in CATALOGUE.values()

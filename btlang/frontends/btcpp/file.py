@@ -53,6 +53,8 @@ class XmlFile:
         self.notes = Notes(document)
         self.problems: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
+        self.is_sound = True
+        """Whether its trees can be read, as far as that is known before."""
         self.heads: list[TreeHead] = []
         self.includes: list[tuple[dict[str, str], Span]] = []
         self.models: dict[str, NodeModel] = {}
