@@ -137,28 +137,23 @@ def _draw_tree(mission: Mission, path: str, apart: bool) -> None:
 
 
 def _compile(options: argparse.Namespace) -> int:
+    from btlang.backends.files import put
     from btlang.backends.targets import TARGETS, target_of
 
-    name = options.to or (target_of(options.out) if options.out is not None else "")
+    name = options.to or (target_of(options.out or options.onto or ""))
     if not name:
         options.refuse(f"choose a target with --to: {', '.join(TARGETS)}")
     if options.out is None and TARGETS[name].binary and sys.stdout.isatty():
         options.refuse(f"{name} isn't text; write it to a file with -o FILE")
-    if options.dialect is not None and "dialect" not in TARGETS[name].options:
-        options.refuse(f"--dialect is for xml, not for {name}")
-    return _put(mission_of(options).to(name, dialect=options.dialect), options.out)
+    for option in ("dialect", "onto"):
+        if getattr(options, option) is not None and option not in TARGETS[name].options:
+            options.refuse(f"--{option} is for xml, not for {name}")
+    if options.onto is not None:
+        from btlang.editing.onto import write_onto
 
-
-def _put(made: str | bytes, path: str | None) -> int:
-    """Into the file, or else to standard output."""
-    if path is not None:
-        from btlang.backends.files import write_file
-
-        write_file(path, made)
-    elif isinstance(made, bytes):
-        sys.stdout.buffer.write(made)
-    else:
-        pass_on(made)
+        write_onto(mission_of(options), options.onto, options.out, force=options.force)
+        return SUCCESS
+    put(mission_of(options).to(name, dialect=options.dialect), options.out)
     return SUCCESS
 
 
@@ -175,9 +170,11 @@ def _words(options: argparse.Namespace) -> int:
 
 
 def _grammar(options: argparse.Namespace) -> int:
+    from btlang.backends.files import put
     from btlang.backends.grammar.targets import GRAMMARS
 
-    return _put(GRAMMARS[options.to](world_vocabulary(options.keywords, options.world, options.language)), options.out)
+    put(GRAMMARS[options.to](world_vocabulary(options.keywords, options.world, options.language)), options.out)
+    return SUCCESS
 
 
 def _examples(options: argparse.Namespace) -> int:

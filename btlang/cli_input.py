@@ -16,6 +16,8 @@ from btlang.robots.platforms import ROBOTS
 from btlang.testing.names import is_test_file
 from btlang.text.source import Source, Span
 
+_OWN_ROBOT = ("robot", "gesture")  # these verbs read the robot themselves
+
 
 def typed_source(options: argparse.Namespace) -> Source:
     """The text of the option -c, whose folder is the current one."""
@@ -28,12 +30,13 @@ def add_robot_files(options: argparse.Namespace) -> None:
     given, in every verb that takes these.
     """
     robot = getattr(options, "robot", "")
-    if options.verb != "robot" and hasattr(options, "keywords") and robot not in ("", *ROBOTS):
-        from btlang.components.words import robot_words
+    if options.verb not in _OWN_ROBOT and hasattr(options, "keywords") and robot not in ("", *ROBOTS):
+        from btlang.components.words import words_of
         from btlang.robots.registry import body_of
 
-        options.keywords = [*robot_words(robot), *options.keywords]
-        options.world = options.world or body_of(robot).world or None
+        body = body_of(robot)
+        options.keywords = [*words_of(body), *options.keywords]
+        options.world = options.world or body.world or None
 
 
 def mission_of(options: argparse.Namespace, source: Source | None = None) -> Mission:

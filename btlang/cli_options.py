@@ -277,6 +277,10 @@ def _compile_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--to", choices=list(TARGETS), metavar="TARGET", help="target: " + ", ".join(TARGETS))
     parser.add_argument("-o", dest="out", metavar="OUT", help="file to write; its ending can select the target")
     parser.add_argument("--dialect", type=int, choices=(3, 4), help="BehaviorTree.CPP version of the XML (default: 4)")
+    parser.add_argument(
+        "--onto", metavar="XML", help="the file that the mission was made from: changes what was edited"
+    )
+    parser.add_argument("--force", action="store_true", help="with --onto: also where the file has changed since then")
 
 
 def _listing_options(parser: argparse.ArgumentParser) -> None:

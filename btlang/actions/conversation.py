@@ -17,7 +17,7 @@ from btlang.robots.body import Body
 from btlang.robots.capabilities import Conversing, Listening
 from btlang.robots.ears import Heard
 from btlang.robots.world import said
-from btlang.speech.grammar import plain
+from btlang.speech.grammar import spoken
 from btlang.speech.marks import without_marks
 from btlang.speech.recogniser import Expected
 
@@ -89,8 +89,8 @@ def answers(texts: Iterable[str], body: Body) -> Expected:
     for text in texts:
         meaning = meaning_of(text)
         if meaning in MEANINGS:
-            phrases.update(dict.fromkeys(map(plain, _answers().get(language, _answers()["en"])[meaning])))
-        elif words := plain(text):
+            phrases.update(dict.fromkeys(map(spoken, _answers().get(language, _answers()["en"])[meaning])))
+        elif words := spoken(text):
             phrases[f"[i would like/want] [a/an/the/some] {words} [please]"] = None
             phrases[f"i'd like [a/an/the/some] {words} [please]"] = None
     return Expected(tuple(phrases), anything=not phrases)

@@ -44,8 +44,10 @@ def _begun(robot: Voice, text: str) -> int:
     """Where the sentence of a text begins that it is in; behind the last one when all is said."""
     if robot.said is None or robot.said.text != text:
         return 0
-    spoken = robot.time - robot.said_at
-    return sentence_start(text, robot.said.index_at(spoken)) if robot.speaking else len(text)
+    if not robot.speaking:
+        return len(text)
+    word = robot.said.word_at(robot.time - robot.said_at)
+    return 0 if word is None else sentence_start(text, word.start)
 
 
 def speak_language(robot: Voice, language: str) -> None:

@@ -4,11 +4,23 @@ from __future__ import annotations
 
 import os
 import shutil
+import sys
 from codecs import BOM_UTF8
 from contextlib import nullcontext
 
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
+from btlang.text.output import pass_on
+
+
+def put(made: str | bytes, path: str | None) -> None:
+    """Into the file, or else to standard output."""
+    if path is not None:
+        write_file(path, made)
+    elif isinstance(made, bytes):
+        sys.stdout.buffer.write(made)
+    else:
+        pass_on(made)
 
 
 def replace_text(path: str, text: str) -> None:

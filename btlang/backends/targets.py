@@ -35,7 +35,7 @@ TARGETS = {
         "btlang.backends.btcpp.writer:to_xml",
         "XML of BehaviorTree.CPP, for Groot2 and Nav2; --dialect 3 for version 3",
         (".xml",),
-        options=("dialect",),
+        options=("dialect", "onto"),
     ),
     "english": Target(
         "btlang.backends.english:to_english", "a mission in English", (".txt",), given=("facts", "needs")

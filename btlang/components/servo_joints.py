@@ -14,7 +14,7 @@ from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import JointTarget
 from btlang.devices.loop import DeviceLoop
 from btlang.robots.body import Body
-from btlang.robots.gesture import Gesture
+from btlang.robots.gesture import Gesture, joints_of
 from btlang.robots.joints import joint_of
 from btlang.robots.motion.course import PERIOD
 from btlang.robots.motion.smooth_joints import SmoothJoints
@@ -47,7 +47,7 @@ class ServoJoints:
     def moving(self) -> bool:
         """True while any joint is on its way, as far as that is known."""
         try:
-            return self._smooth.moving or not all(map(self._reached, self._told))
+            return self._smooth.moving or not self._have_reached(self._told)
         except DeviceError:
             return False
 
@@ -63,8 +63,7 @@ class ServoJoints:
 
     def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[Operation, float]:
         """See SmoothJoints."""
-        steps = [frame.joints for frame in wanted.frames] if isinstance(wanted, Gesture) else wanted
-        self._begin({name for step in steps for name in step})
+        self._begin(joints_of(wanted))
         made = self._smooth.play(wanted, room)
         self._go_on()
         return made
@@ -77,7 +76,7 @@ class ServoJoints:
     def idle(self, targets: Mapping[str, float], least: float) -> bool:
         """See SmoothJoints; not where a servo is silent."""
         try:
-            if not all(name in self._told and self._reached(name) for name in targets):
+            if not (self._told.issuperset(targets) and self._have_reached(targets)):
                 self._begin(targets)
         except RobotError:
             return False
@@ -92,7 +91,7 @@ class ServoJoints:
 
     def at_target(self, names: tuple[str, ...]) -> bool:
         """True when none of them is on its way. Raises DeviceSilent."""
-        return self._smooth.at_target(names) and all(self._reached(name) for name in names if name in self._told)
+        return self._smooth.at_target(names) and self._have_reached(name for name in names if name in self._told)
 
     def freeze(self, names: tuple[str, ...] | None = None) -> None:
         """They come to rest, and stay there; None: all of them, which takes no lock."""
@@ -154,5 +153,7 @@ class ServoJoints:
         if let_go:
             self._told, self._lets_go = frozenset(), False
 
-    def _reached(self, name: str) -> bool:
-        return abs(self.angle(name) - self._smooth.angle(name)) <= joint_of(self._body, name).close_enough
+    def _have_reached(self, names: Iterable[str]) -> bool:
+        """Raises DeviceSilent where one of them is."""
+        planned = self._smooth.angles
+        return all(abs(self.angle(name) - planned[name]) <= joint_of(self._body, name).close_enough for name in names)

@@ -8,7 +8,7 @@ from functools import partial
 
 from btlang.api import parse_tree
 from btlang.backends.files import write_file
-from btlang.components.words import robot_words
+from btlang.components.words import words_of
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
@@ -18,7 +18,7 @@ from btlang.pictures.files import MOVING, STILL, check_picture, ending
 from btlang.robots.body import Body
 from btlang.robots.gesture import Gesture
 from btlang.robots.gesture_file import TARGET, phrase_forms
-from btlang.robots.registry import body_of, connector, runs_in_real_time, runs_on
+from btlang.robots.registry import Connector, body_of, runs_in_real_time, runs_on
 from btlang.robots.rehearsal import rehearse
 from btlang.text.output import show
 from btlang.text.source import Source, Span
@@ -48,11 +48,11 @@ def serve(options: argparse.Namespace) -> int:
         options.refuse(f"{act} needs --robot FILE")
     if act in ("picture", "record") and options.out is None:
         options.refuse(f"{act} needs -o OUT")
+    body, over = runs_on(options.robot, options.over)
     if act == "record":
-        return record(items[0], options.out, *runs_on(options.robot, options.over))
-    body = body_of(options.robot)
+        return record(items[0], options.out, body, over)
     gesture = _named(items[0], body)
-    return _play(options, body, gesture) if act == "play" else _draw(options.out, body, gesture)
+    return _play(options, body, over, gesture) if act == "play" else _draw(options.out, body, gesture)
 
 
 def _named(name: str, body: Body) -> Gesture:
@@ -68,20 +68,18 @@ def _named(name: str, body: Body) -> Gesture:
     return found
 
 
-def _play(options: argparse.Namespace, body: Body, gesture: Gesture) -> int:
+def _play(options: argparse.Namespace, body: Body, over: str, gesture: Gesture) -> int:
     from btlang.run.command import run_mission
     from btlang.session import Session
 
-    over = runs_on(options.robot, options.over)[1]
     if options.speed != "real" and runs_in_real_time(body, over):
         options.refuse(f"the robot runs in real time over {over}, so it takes no --speed")
     world = options.world or body.world or None
     words = _said(options, gesture)
-    mission = parse_tree(Source(words, "<command line>"), keywords=robot_words(options.robot), world=world)
-    robot = connector(options.robot, options.over)
+    mission = parse_tree(Source(words, "<command line>"), keywords=words_of(body), world=world)
     return run_mission(
-        mission, partial(Session, robot, world=mission.world), speed=options.speed, rate=20.0, time_limit=None,
-        log=None, quiet=False, lines=True,
+        mission, partial(Session, Connector(body, over), world=mission.world), speed=options.speed, rate=20.0,
+        time_limit=None, log=None, quiet=False, lines=True,
     )  # fmt: skip
 
 

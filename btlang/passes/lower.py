@@ -44,7 +44,7 @@ def lower_names(compilation: Compilation) -> Iterator[Diagnostic]:
     exact = (node for body in ast.bodies(mission) for node in compilation.syntax(body) if isinstance(node, ast.Exact))
     conditions = dict.fromkeys(node.id for node in exact if node.is_condition)
     models = tuple(NodeModel("Condition", id) for id in conditions)
-    compilation.tree = Tree(root, tuple(scope.bodies), mission.name, models)
+    compilation.tree = Tree(root, tuple(scope.bodies), mission.name, models, mission.span.source)
 
 
 def lower(root: ast.Ast, scope: Scope) -> Lowered:

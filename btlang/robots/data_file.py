@@ -52,7 +52,7 @@ def load_data(file: str | Source, what: str, make: Callable[[Table], T], error: 
     except tomllib.TOMLDecodeError as problem:
         raise error(f"this isn't TOML: {problem}", path, line_of(problem), source) from None
     except Problem as problem:
-        raise _all_of(placed((problem, *problem.more), source, path, error)) from None
+        raise all_of(placed((problem, *problem.more), source, path, error)) from None
 
 
 def make_from(
@@ -62,10 +62,11 @@ def make_from(
     try:
         return make(Table(what, values))
     except Problem as problem:
-        raise _all_of(error(each.message, path) for each in (problem, *problem.more)) from None
+        raise all_of(error(each.message, path) for each in (problem, *problem.more)) from None
 
 
-def _all_of(errors: Iterable[DataFileError]) -> DataFileError:
+def all_of(errors: Iterable[DataFileError]) -> DataFileError:
+    """The first of them, with the others."""
     first, *more = errors
     first.more = tuple(more)
     return first

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from math import inf
 
 from btlang.record import Record
-from btlang.speech.grammar import plain
+from btlang.speech.grammar import spoken
 from btlang.speech.recogniser import Expected
 
 TYPE_CHECKING = False
@@ -91,7 +91,7 @@ class Ears:
 
     def expected(self, now: float) -> Expected:
         """What the robot listens for."""
-        texts = (plain(text) for text, (looked, _, _) in self._looks.items() if now - looked <= _LISTENS)
+        texts = (spoken(text) for text, (looked, _, _) in self._looks.items() if now - looked <= _LISTENS)
         found = Expected(tuple(filter(None, texts)))
         for each in self._awaited:
             found |= each

@@ -43,7 +43,7 @@ def recogniser_of(body: Body) -> Recogniser:
 
         return PocketSphinx(body.ears.settings)
     try:
-        make = class_of(body.ears.engine, ENTRY_POINTS, body.folder)
+        make = class_of(body.ears.engine, ENTRY_POINTS, body.folder, "a recogniser", "my_ears:Recogniser")
     except ValueError as problem:
         raise RecogniserError(str(problem)) from problem
     recogniser: Recogniser = make(body.ears.settings)

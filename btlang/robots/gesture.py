@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from btlang.record import Record
 
@@ -19,6 +19,12 @@ Step = Mapping[str, float | str]
 def angle_of(value: float | str, bearing: float) -> float:
     """The angle of a joint in a step, where what the robot turns to is `bearing` degrees to the left."""
     return -bearing if value == OPPOSITE else bearing if value == BEARING else float(value)
+
+
+def joints_of(wanted: Gesture | Sequence[Step]) -> tuple[str, ...]:
+    """The names of the joints in a gesture, or in the steps of a posture."""
+    steps = [frame.joints for frame in wanted.frames] if isinstance(wanted, Gesture) else wanted
+    return tuple(dict.fromkeys(name for step in steps for name in step))
 
 
 class KeyFrame(Record):

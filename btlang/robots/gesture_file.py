@@ -7,18 +7,18 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from btlang.diagnostics.reading import is_below, real_path
 from btlang.robots.body import Joint
-from btlang.robots.data_file import DataFileError, load_data
+from btlang.robots.data_file import DataFileError, all_of, load_data
 from btlang.robots.gesture import BEARINGS, Gesture, KeyFrame
 from btlang.robots.joint_tables import step
 from btlang.robots.mirroring import mirrored, swapped
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem, Problems, Table
-from btlang.vocabulary.pattern import Form, PatternError, Slot, forms
+from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, spelled
 
 TARGET = "target"
 """The slot of phrases for what a gesture is aimed at."""
+ARTICLES = frozenset(("the", "a", "an"))
 NEARER = "nearer"
-_ARTICLES = frozenset(("the", "a", "an"))
 _SHORTEST = 0.05  # seconds to a key frame
 _LONGEST = 60.0  # seconds of a gesture
 _MOST_FRAMES = 500
@@ -61,16 +61,14 @@ def read_gestures(top: Table, joints: Sequence[Joint], file: str) -> dict[str, G
             except GestureError as error:
                 wrong += [error, *error.more]
     if wrong:
-        first, *more = wrong
-        first.more = tuple(more)
-        raise first
+        raise all_of(wrong)
     return found
 
 
 def phrase_forms(gesture: Gesture) -> Iterator[Form]:
     """All ways to say it, without articles."""
     for phrase in gesture.phrases:
-        yield from forms(phrase, _ARTICLES)
+        yield from forms(phrase, ARTICLES)
 
 
 def _files(name: str, file: str, index: int) -> Sequence[str]:
@@ -89,9 +87,10 @@ def _check_unique(gesture: Gesture, path: str, found: Mapping[str, Gesture], sai
     if gesture.name in found:
         raise GestureError(f'there is another gesture "{gesture.name}"; give one of them another "name"', path)
     for form in phrase_forms(gesture):
-        words = " ".join(part if isinstance(part, str) else f"{{{part.name}}}" for part in form)
         if said.setdefault(form, gesture.name) != gesture.name:
-            raise GestureError(f'"{words}" is said for the gesture "{said[form]}" too; change one of them', path)
+            raise GestureError(
+                f'"{spelled(form)}" is said for the gesture "{said[form]}" too; change one of them', path
+            )
 
 
 def _gestures(top: Table, stem: str, joints: Sequence[Joint]) -> tuple[Gesture, ...]:
@@ -129,7 +128,7 @@ def _phrases(top: Table, name: str) -> tuple[str, ...]:
     if top.has("phrase"):
         found = top.texts("phrase") if top.is_list("phrase") else (top.text("phrase"),)
     try:
-        parts = {part for text in found for form in forms(text, _ARTICLES) for part in form}
+        parts = {part for text in found for form in forms(text, ARTICLES) for part in form}
     except PatternError as error:
         raise top.problem("phrase", str(error)) from None
     if any(isinstance(part, Slot) and part.name != TARGET for part in parts):

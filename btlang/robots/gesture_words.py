@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import os
 import re
-import tempfile
 from collections.abc import Iterator, Mapping
 from functools import cache
 from zlib import crc32
 
-from btlang.backends.files import write_file
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.robots.body import Body
 from btlang.robots.data_file import DataFileError, as_mission_error, placed
-from btlang.robots.gesture import Gesture
+from btlang.robots.gesture import Gesture, joints_of
 from btlang.robots.gesture_file import TARGET, GestureError, phrase_forms
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem
@@ -24,12 +22,13 @@ from btlang.vocabulary.cache import own_folder
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import load_vocabulary
-from btlang.vocabulary.pattern import Form
+from btlang.vocabulary.pattern import Form, spelled
 from btlang.vocabulary.shipped import shown_name
 from btlang.vocabulary.word_tree import END, SLOTS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from tempfile import TemporaryDirectory
     from typing import Any
 
 TOPIC = "gestures"
@@ -64,6 +63,8 @@ def gesture_words(body: Body) -> str | None:
 
 def _problem(path: str, text: str) -> MissionError | None:
     """Why a text can't be the keyword file there."""
+    from btlang.backends.files import write_file  # only a file that is new is written
+
     write_file(path, text)
     try:
         load_vocabulary([path])
@@ -124,7 +125,7 @@ def _entry(body: Body, gesture: Gesture, node_id: str, phrases: list[str]) -> st
 def _parts(body: Body, gesture: Gesture) -> list[str]:
     """What it moves."""
     both = [gesture, *([gesture.other] if gesture.other is not None else [])]
-    names = {name for each in both for frame in each.frames for name in frame.joints}
+    names = {name for each in both for name in joints_of(each)}
     moved = (joint.part for joint in body.joints if joint.name in names)
     return list(dict.fromkeys((*moved, *(each.aim for each in both if each.aim))))
 
@@ -160,8 +161,7 @@ def _known(english: Lexicon, form: Form, gesture: Gesture, index: int) -> str:
     if meaning is None or (meaning.entry is not None and meaning.entry.yields and meaning.entry.topic != TOPIC):
         return ""
     if meaning.entry is None or meaning.entry.topic != TOPIC:
-        words = " ".join(part if isinstance(part, str) else f"{{{part.name}}}" for part in form)
-        raise _refused(gesture, index, f'"{words}" has another meaning already')
+        raise _refused(gesture, index, f'"{spelled(form)}" has another meaning already')
     return meaning.entry.id
 
 
@@ -178,9 +178,11 @@ def _folder() -> str:
         folder = os.path.join(own_folder(), "words")
         os.makedirs(folder, 0o700, exist_ok=True)
     except OSError:
-        _kept.append(tempfile.TemporaryDirectory(prefix="btlang-"))
+        from tempfile import TemporaryDirectory  # it costs more than all the rest here
+
+        _kept.append(TemporaryDirectory(prefix="btlang-"))
         return _kept[0].name
     return folder
 
 
-_kept: list[tempfile.TemporaryDirectory[str]] = []  # until the process ends
+_kept: list[TemporaryDirectory[str]] = []  # until the process ends

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.body import Body
+from btlang.robots.needs import lack
 from btlang.robots.voice_file import engine_of
 from btlang.speech.engine import SpeechError
-from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -34,8 +33,6 @@ def check_languages(body: Body, tree: Tree, vocabulary: Lexicon) -> None:
         try:
             engine_of(body, language)
         except SpeechError:
-            words = node.span.text if node.span is not None else node.id
-            lacks = f'voice for the language "{language}"'
-            problems.append(diagnostic("BT072", node.span or NOWHERE, words=words, parts=lacks, robot=body.name))
+            problems.append(lack(body, [f'voice for the language "{language}"'], node))
     if problems:
         raise MissionError(problems)

@@ -35,16 +35,17 @@ def module_of(name: str, folder: str) -> ModuleType:
     return module
 
 
-def class_of(place: str, group: str, folder: str) -> Any:
-    """A class by its `module:Class`, or by its name in a group of entry points. Raises ValueError with the reason."""
+def class_of(place: str, group: str, folder: str, noun: str, example: str) -> Any:
+    """A class by its `module:Class`, or by its name in a group of entry points.
+
+    Raises ValueError with the reason. For its text: a `noun` such as "a recogniser", an `example` of a place.
+    """
     from importlib.metadata import entry_points
 
     named = entry_points(group=group, name=place)
     module, colon, name = (next(iter(named)).value.replace(" ", "") if named else place).partition(":")
     if not colon:
-        raise ValueError(
-            f'no package has a class "{place}" for {group}; or write its place, such as "my_module:MyClass"'
-        )
+        raise ValueError(f'no package has {noun} "{place}"; or write its place, such as "{example}"')
     try:
         return getattr(module_of(module, folder), name)
     except Exception as problem:  # whatever somebody's module raises

@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.body import Body
-from btlang.text.source import NOWHERE
+from btlang.text.source import NOWHERE, Span
 from btlang.vocabulary.capabilities import POSTURE, part_of
 
 TYPE_CHECKING = False
@@ -45,10 +45,16 @@ def check_body(body: Body, tree: Tree, vocabulary: Lexicon, but: Collection[str]
     for part, node in lacking(body, tree, vocabulary, but).items():
         by_leaf.setdefault(id(node), (node, []))[1].append(part)
     if by_leaf:
-        raise MissionError([_lack(body, parts, node) for node, parts in by_leaf.values()])
+        raise MissionError([lack(body, parts, node) for node, parts in by_leaf.values()])
 
 
-def _lack(body: Body, parts: Sequence[str], node: Node) -> Diagnostic:
-    words = node.span.text if node.span is not None else node.id
+def words_of(node: Node) -> str:
+    """How the mission says it; the id of a node that has no place in a text."""
+    return node.span.text if node.span is not None else node.id
+
+
+def lack(body: Body, parts: Sequence[str], node: Node, span: Span | None = None, help: str = "") -> Diagnostic:
+    """BT072: the body lacks parts, such as "left arm", that a leaf needs; by default at the leaf."""
     said = [part for part in parts if not any(other.endswith(f" {part}") for other in parts)]  # a right hand is a hand
-    return diagnostic("BT072", node.span or NOWHERE, words=words, parts=" and no ".join(said), robot=body.name)
+    place, listed = span or node.span or NOWHERE, " and no ".join(said)
+    return diagnostic("BT072", place, words=words_of(node), parts=listed, robot=body.name, help=help)

@@ -79,8 +79,7 @@ def stations(world: World, body: Body, pose: Pose) -> list[Station]:
     """The docks of a world, the nearest first. Raises RobotError where it has none."""
     if not world.all_docks:
         raise RobotError(_NOWHERE)
-    docks = sorted(world.all_docks, key=lambda dock: pose.distance_to((dock.x, dock.y)))
-    return [_station(dock, world, body) for dock in docks]
+    return [_station(dock, world, body) for dock in world.docks_from(pose)]
 
 
 def _station(dock: Place, world: World, body: Body) -> Station:

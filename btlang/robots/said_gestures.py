@@ -10,22 +10,22 @@ from btlang.diagnostics.errors import MissionError
 from btlang.record import Record
 from btlang.robots.body import Body
 from btlang.robots.gesture import BEARING
-from btlang.robots.needs import needs_of
+from btlang.robots.gesture_file import ARTICLES, phrase_forms
+from btlang.robots.needs import lack, needs_of
 from btlang.robots.world import World
 from btlang.speech.marks import read_marks
 from btlang.text.source import NOWHERE, Span
 from btlang.text.spelling import nearest
 from btlang.tree.catalogue import SUBTREE
-from btlang.vocabulary.pattern import PatternError, Slot, forms
+from btlang.vocabulary.pattern import Slot
+from btlang.vocabulary.references import keys_in
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.tree.node import Node, Tree
     from btlang.vocabulary.lexicon import Lexicon
 
-_ARTICLES = frozenset(("the", "a", "an"))
 _LITERAL = re.compile(r"'([^']*)'")
-_KEY = re.compile(r"\{([^{}]+)\}")
 
 
 class SaidGesture(Record):
@@ -37,7 +37,7 @@ class SaidGesture(Record):
 
 def said_gesture(body: Body, words: str) -> SaidGesture | None:
     """What a mark stands for, by its name or by a phrase; None where the body has no such gesture."""
-    said = [word for word in words.split() if word.lower() not in _ARTICLES]
+    said = [word for word in words.split() if word.lower() not in ARTICLES]
     lower = [word.lower() for word in said]
     found = (
         (len(start), SaidGesture(name, " ".join(said[len(start) :])))
@@ -52,12 +52,8 @@ def _phrases(body: Body) -> Iterator[tuple[str, list[str], bool]]:
     """Names of gestures, the words that each begins with, and whether what it is aimed at may follow."""
     for name, gesture in body.gestures.items():
         yield name, name.lower().split(), bool(gesture.aim)
-        for phrase in gesture.phrases:
-            try:
-                for form in forms(phrase, _ARTICLES):
-                    yield name, [part for part in form if isinstance(part, str)], isinstance(form[-1], Slot)
-            except PatternError:
-                continue  # whoever reads gestures reports it
+        for form in phrase_forms(gesture):
+            yield name, [part for part in form if isinstance(part, str)], isinstance(form[-1], Slot)
     for name, steps in body.postures.items():
         if name not in body.gestures:
             yield name, name.lower().split(), any(BEARING in step.values() for step in steps)
@@ -85,9 +81,8 @@ def _problem(body: Body, known: set[str], node: Node, words: str) -> Diagnostic 
     found, span = said_gesture(body, words), _place(node, words)
     if found is None:
         near = nearest(words.lower(), [*body.gestures, *body.postures])
-        missing, similar = f'gesture "{words}"', f"Similar: {', '.join(near)}" if near else ""
-        sentence = node.span.text if node.span is not None else node.id
-        return diagnostic("BT072", span, words=sentence, parts=missing, robot=body.name, help=similar)
+        similar = f"Similar: {', '.join(near)}" if near else ""
+        return lack(body, [f'gesture "{words}"'], node, span, similar)
     if found.target and found.target.lower() not in known:
         near = nearest(found.target.lower(), known)
         similar = f"Similar: {', '.join(near)}" if near else ""
@@ -111,13 +106,13 @@ def _said(tree: Tree, vocabulary: Lexicon) -> Iterator[tuple[Node, str]]:
         if "voice" in needs_of(node, vocabulary):
             for _, text in node.ports:
                 yield node, text
-                keys.update((key, node) for key in _KEY.findall(text) if key not in keys)
+                keys.update((key, node) for key in keys_in(text) if key not in keys)
     known = 0
     while known < len(keys):  # values are handed from tree to tree
         known = len(keys)
         for node in nodes:
             if node.id == SUBTREE:
-                read = [(name, key) for name, text in node.ports if name in keys for key in _KEY.findall(text)]
+                read = [(name, key) for name, text in node.ports if name in keys for key in keys_in(text)]
                 keys.update((key, keys[name]) for name, key in read if key not in keys)
     for node in nodes if keys else ():
         if node.id == SUBTREE:

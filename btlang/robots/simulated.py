@@ -272,7 +272,7 @@ class SimulatedRobot:
 
     def locate(self, name: str) -> Point:
         """Where a place, object or person is. Raises RobotError for an unknown name, and for what it hasn't seen."""
-        return self._surroundings.where(name) or (self.pose.x, self.pose.y)
+        return self._surroundings.locate(name, self.pose)
 
     def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
         """A name that is the "nearest", "random" and so on. Raises RobotError where there is none."""

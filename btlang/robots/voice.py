@@ -21,6 +21,7 @@ class Synthesizer:
         self._own = (body.voice or VoiceSettings(Settings())).settings.language
         self.language = self._own
         """Such as "en"."""
+        self._last: tuple[str, Utterance] | None = None  # gestures ask for the times of what is said next
         try:
             self._engine = engine_of(body)
         except SpeechError as problem:
@@ -37,14 +38,17 @@ class Synthesizer:
             self._engine = engine_of(self._body, wanted)
         except SpeechError as problem:
             raise RobotError(str(problem)) from None
-        self.language = wanted
+        self.language, self._last = wanted, None
 
     def speak(self, text: str) -> Utterance:
-        """The text as sound and times. Raises RobotError where the engine can't."""
-        try:
-            return self._engine.speak(text)
-        except SpeechError as problem:
-            raise RobotError(str(problem)) from None
+        """The text as sound and times; the latest one is kept. Raises RobotError where the engine can't."""
+        last = self._last
+        if last is None or last[0] != text:
+            try:
+                self._last = last = text, self._engine.speak(text)
+            except SpeechError as problem:
+                raise RobotError(str(problem)) from None
+        return last[1]
 
 
 class Voice:

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from btlang.robots.body import Mouth, Voice
-from btlang.robots.modules import module_of
+from btlang.robots.modules import class_of
 from btlang.speech.engine import Settings, SpeechError
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
-
     from btlang.robots.body import Body
     from btlang.speech.engine import SpeechEngine
     from btlang.text.toml_table import Table
@@ -66,18 +64,9 @@ def engine_of(body: Body, language: str = "") -> SpeechEngine:
         from btlang.speech.espeak import Espeak
 
         return Espeak(settings)
-    engine: SpeechEngine = _class_of(voice.engine, body.folder)(settings)
-    return engine
-
-
-def _class_of(place: str, folder: str) -> Any:
-    from importlib.metadata import entry_points
-
-    named = entry_points(group=ENTRY_POINTS, name=place)
-    module, colon, name = (next(iter(named)).value.replace(" ", "") if named else place).partition(":")
-    if not colon:
-        raise SpeechError(f'no package has an engine of speech "{place}"; or write its place, such as "my_voice:Voice"')
     try:
-        return getattr(module_of(module, folder), name)
-    except Exception as problem:  # whatever somebody's module raises
-        raise SpeechError(f"{place} can't be loaded: {type(problem).__name__}: {problem}") from problem
+        make = class_of(voice.engine, ENTRY_POINTS, body.folder, "an engine of speech", "my_voice:Voice")
+    except ValueError as problem:
+        raise SpeechError(str(problem)) from problem
+    engine: SpeechEngine = make(settings)
+    return engine

@@ -265,6 +265,10 @@ class World(Record):
         """Every place where a robot can charge."""
         return self.docks if self.dock is None else (self.dock, *self.docks)
 
+    def docks_from(self, pose: Pose) -> tuple[Place, ...]:
+        """Those of `all_docks`, the nearest to a pose first."""
+        return tuple(sorted(self.all_docks, key=lambda dock: pose.distance_to((dock.x, dock.y))))
+
     @property
     def names(self) -> WorldNames:
         """All names of the world."""
@@ -297,5 +301,5 @@ class World(Record):
         }
         for person, shown in zip(self.people, found["people"], strict=True):
             shown["walks"] = [(stop.x, stop.y) for stop in person.walks]
-        docks = [dock.as_dict() for dock in self.all_docks]
-        return {"walls": self.walls, "dock": docks[0] if docks else None, "docks": docks, **found}
+        dock = next((dock.as_dict() for dock in self.all_docks), None)
+        return {"walls": self.walls, "dock": dock, **found}

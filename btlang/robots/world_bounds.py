@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from btlang.robots.geometry import Point, contains, edges, segment_distance
-from btlang.robots.world import World, Zone
+from btlang.robots.world import Person, World, Zone
 from btlang.text.toml_table import Problem
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, TypeAlias
+
+    Path: TypeAlias = tuple[str | int, ...]
+    Rows: TypeAlias = Mapping[str, Sequence[Any]]
 
 _TOUCHING = 0.1  # metres; so near to the outer wall something is on it
 _STEPS = 20  # points looked at on each side of a zone
+_SINGLE = ("start", "dock")  # sections that are one table
+_STANDING = {
+    "start": "start", "places": "place", "dock": "place", "docks": "place", "objects": "object", "people": "person",
+    "crowds": "person",
+}  # fmt: skip
 
 Polyline = tuple[Point, ...]
 
@@ -61,45 +69,50 @@ def _joined(walls: list[Polyline]) -> list[Polyline]:
     return done
 
 
-def outside(world: World, rows: Mapping[str, Sequence[Any]]) -> Iterator[Problem]:
+def entries(rows: Rows, sections: Iterable[str]) -> Iterator[tuple[Path, tuple[Any, ...]]]:
+    """What the rows of these sections of a world file have made, and where each of them is in the file.
+
+    `rows` has a list for each section, None for what is wrong. The people of a crowd are made by one row.
+    """
+    for section in sections:
+        for index, row in enumerate(rows[section]):
+            if row is not None:
+                yield (section,) if section in _SINGLE else (section, index), row if isinstance(row, tuple) else (row,)
+
+
+def spots(rows: Rows, sections: Iterable[str] = _STANDING) -> Iterator[tuple[str, Path, Any]]:
+    """What each row of these sections is called in messages, where it is in the file, and what has its x and y."""
+    for path, (first, *_) in entries(rows, sections):
+        kind = _STANDING[str(path[0])]
+        yield f"the {kind}" if kind == "start" else f'the {kind} "{first.name}"', path, first
+
+
+def outside(world: World, rows: Rows) -> Iterator[Problem]:
     """A Problem for each place, object, person, stop of a route, zone and door outside the outer wall.
 
-    `rows` are those of each section of the file, and of "start", None for those that are wrong.
+    `rows` are as those of `entries`.
     """
     wall = outer_wall(world)
     if wall is None:
         return
-    for what, path, point in _spots(world, rows):
+    for what, path, point in _points(world, rows):
         if not contains(wall, point) and not _is_on(wall, point):
             yield Problem(f"{what} at ({point[0]:g}, {point[1]:g}) is outside the outer walls", *path)
-    for index, zone in _listed(rows, "zones"):
+    for path, (zone,) in entries(rows, ("zones",)):
         if not _reaches_into(zone, wall):
-            yield Problem(f'the zone "{zone.name}" is outside the outer walls', "zones", index, "points")
-    for index, door in _listed(rows, "doors"):
+            yield Problem(f'the zone "{zone.name}" is outside the outer walls', *path, "points")
+    for path, (door,) in entries(rows, ("doors",)):
         if not any(contains(wall, end) or _is_on(wall, end) for end in (door.start, door.end)):
-            yield Problem(f'the door "{door.name}" is outside the outer walls', "doors", index, "from")
+            yield Problem(f'the door "{door.name}" is outside the outer walls', *path, "from")
 
 
-def _listed(rows: Mapping[str, Sequence[Any]], section: str) -> Iterator[tuple[int, Any]]:
-    return ((index, row) for index, row in enumerate(rows[section]) if row is not None)
-
-
-def _spots(world: World, rows: Mapping[str, Sequence[Any]]) -> Iterator[tuple[str, tuple[str | int, ...], Point]]:
-    for _, start in _listed(rows, "start"):
-        yield "the start", ("start", "x"), (start.x, start.y)
-    for index, place in _listed(rows, "places"):
-        path: tuple[str | int, ...] = ("dock", "x") if place is world.dock else ("places", index, "x")
-        if place in world.docks:
-            path = ("docks", world.docks.index(place), "x")
-        yield f'the place "{place.name}"', path, (place.x, place.y)
-    for index, thing in _listed(rows, "objects"):
-        yield f'the object "{thing.name}"', ("objects", index, "x"), (thing.x, thing.y)
+def _points(world: World, rows: Rows) -> Iterator[tuple[str, Path, Point]]:
     places = {(place.x, place.y) for place in world.places}
-    for index, person in _listed(rows, "people"):
-        yield f'the person "{person.name}"', ("people", index, "x"), (person.x, person.y)
-        for at, stop in enumerate(person.walks):
+    for what, path, row in spots(rows):
+        yield what, (*path, "x"), (row.x, row.y)
+        for at, stop in enumerate(row.walks if isinstance(row, Person) else ()):
             if (stop.x, stop.y) not in places:  # of a place that is told already
-                yield f'a stop of "{person.name}"', ("people", index, "walks", at), (stop.x, stop.y)
+                yield f'a stop of "{row.name}"', (*path, "walks", at), (stop.x, stop.y)
 
 
 def _is_on(wall: Polyline, point: Point) -> bool:

@@ -17,7 +17,7 @@ from btlang.robots.world import (
     World,
     WorldNames,
 )
-from btlang.robots.world_bounds import outside
+from btlang.robots.world_bounds import entries, outside, spots
 from btlang.robots.world_tables import is_point, read_crowd, read_door, read_object, read_person, read_zone
 from btlang.text.source import Source
 from btlang.text.time_of_day import USUAL_START
@@ -29,10 +29,12 @@ if TYPE_CHECKING:
     from typing import Any, TypeVar
 
     from btlang.robots.body import Body
+    from btlang.robots.world_bounds import Rows
 
     T = TypeVar("T")
 
 _MOST_CHECKS = 5_000_000  # of a place with a piece of wall, in some seconds
+_NAMED = ("places", "dock", "docks", "objects", "people", "zones", "doors", "crowds")
 _FAULTS = ("blocked", "slip", "silent scanner", "weak hand", "dock")
 
 
@@ -73,15 +75,14 @@ def _world(top: Table, radius: float, bounded: bool = False) -> World:
     walls: list[Any] = problems.part(lambda: top.items("walls"), [])
     pieces = [problems.part(partial(_wall, points, index), None) for index, points in enumerate(walls)]
     boxes = _made(problems.rows(top, "boxes", _box))
-    rows: dict[str, list[Any]] = {"places": problems.rows(top, "places", _place)}
+    rows: dict[str, list[Any]] = {"start": [start], "places": problems.rows(top, "places", _place)}
     dock = problems.part(lambda: _dock(top), None)
-    rows["places"] += [] if dock is None else [dock]
-    rows["docks"] = problems.rows(top, "docks", _further_dock)
-    places = _made((*rows["places"], *rows["docks"]))
+    rows["dock"], rows["docks"] = [dock], problems.rows(top, "docks", _further_dock)
+    places = _made((*rows["places"], dock, *rows["docks"]))
     known = problems.part(lambda: top.flag("known", True), True)
     rows["objects"] = problems.rows(top, "objects", lambda table: read_object(table, known))
     rows["people"] = problems.rows(top, "people", lambda table: read_person(table, known, places))
-    crowds = problems.rows(top, "crowds", lambda table: read_crowd(table, known, places))
+    rows["crowds"] = problems.rows(top, "crowds", lambda table: read_crowd(table, known, places))
     rows["zones"], rows["doors"] = problems.rows(top, "zones", read_zone), problems.rows(top, "doors", read_door)
     names = tuple(place.name for place in places)
     docks = tuple(place.name for place in _made((dock, *rows["docks"])))
@@ -90,16 +91,15 @@ def _world(top: Table, radius: float, bounded: bool = False) -> World:
     seed = problems.part(lambda: int(top.number("seed", low=0.0)) if top.has("seed") else None, None)
     problems.part(lambda: top.finish(None), None)
     objects, people, zones, doors = (_made(rows[key]) for key in ("objects", "people", "zones", "doors"))
-    rows["crowds"] = [person for crowd in _made(crowds) for person in crowd]
-    people += tuple(rows["crowds"])
+    people += tuple(person for crowd in _made(rows["crowds"]) for person in crowd)
     world = World(
         start or Pose(0.0, 0.0), battery, _made(pieces), boxes, places, objects, people, faults, dock, clock, zones,
         doors, seed, weekday, _made(rows["docks"]),
     )  # fmt: skip
     problems.found += _names_given_twice(rows)
-    problems.found += _without_room(world, [*rows["places"], *rows["docks"]], start, radius)
+    problems.found += _without_room(world, rows, radius)
     if bounded:
-        problems.found += outside(world, {"start": [start], **rows})
+        problems.found += outside(world, rows)
     problems.end()
     return world
 
@@ -170,39 +170,27 @@ def _fault(table: Table, places: tuple[str, ...], docks: tuple[str, ...]) -> Fau
     return table.finish(Fault(kind, start, end, **more))
 
 
-def _names_given_twice(rows: Mapping[str, list[Any]]) -> Iterator[Problem]:
-    """`rows` are those of each section, None for the wrong ones."""
+def _names_given_twice(rows: Rows) -> Iterator[Problem]:
     seen: dict[str, str] = {}
-    for section, group in rows.items():
-        for index, named in enumerate(group):
-            if named is None:
-                continue
+    for (section, *index), group in entries(rows, _NAMED):
+        for named in group:
             key = named.name.lower()
             if key in seen:
                 message = f'the name "{named.name}" is given twice ({seen[key]} and {section}); give one another name'
-                yield Problem(message, section, index, "name")
-            seen[key] = section
+                yield Problem(message, section, *index, "name")
+            seen[key] = str(section)
 
 
-def _without_room(world: World, places: list[Place | None], start: Pose | None, radius: float) -> Iterator[Problem]:
-    spots: list[tuple[str, tuple[str | int, ...], Point]] = []
-    if start is not None:
-        spots.append(("the start", ("start",), (start.x, start.y)))
-    for index, place in enumerate(places):
-        if place is not None:
-            path: tuple[str | int, ...] = ("dock",) if place is world.dock else ("places", index)
-            if place in world.docks:
-                path = ("docks", world.docks.index(place))
-            spots.append((f'the place "{place.name}"', path, (place.x, place.y)))
+def _without_room(world: World, rows: Rows, radius: float) -> Iterator[Problem]:
+    standing = list(spots(rows, ("start", "places", "dock", "docks")))
     segments = world.segments()
-    if len(spots) * len(segments) > _MOST_CHECKS:
-        message = f"{len(spots):,} places are too many for {len(segments):,} pieces of wall; leave some out"
+    if len(standing) * len(segments) > _MOST_CHECKS:
+        message = f"{len(standing):,} places are too many for {len(segments):,} pieces of wall; leave some out"
         yield Problem(message, "places")
         return
-    for what, path, point in spots:
-        if not has_room(world, point, radius, segments):
-            x, y = point
-            message = f"{what} at ({x:g}, {y:g}) is inside a wall or a box; leave {radius:g} m to every wall"
+    for what, path, spot in standing:
+        if not has_room(world, (spot.x, spot.y), radius, segments):
+            message = f"{what} at ({spot.x:g}, {spot.y:g}) is inside a wall or a box; leave {radius:g} m to every wall"
             yield Problem(message, *path, "x")
 
 

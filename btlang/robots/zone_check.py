@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.geometry import Point
-from btlang.robots.needs import needs_of
+from btlang.robots.needs import needs_of, words_of
 from btlang.robots.world import World
 from btlang.text.source import NOWHERE
 
@@ -37,8 +37,8 @@ def check_zones(world: World, tree: Tree, vocabulary: Lexicon) -> None:
             for point in _goals(node, places, vocabulary):
                 zone = next((zone for zone in closed if zone.contains(point)), None)
                 if zone is not None:
-                    words = node.span.text if node.span is not None else node.id
-                    problems.append(diagnostic("BT074", node.span or NOWHERE, words=words, zone=zone.name))
+                    place = node.span or NOWHERE
+                    problems.append(diagnostic("BT074", place, words=words_of(node), zone=zone.name))
     if problems:
         raise MissionError(problems)
 

@@ -11,10 +11,9 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.body import Body
-from btlang.robots.needs import check_body, lacking
-from btlang.robots.said_gestures import check_marks
+from btlang.robots.needs import lacking
+from btlang.robots.preflight import check_mission
 from btlang.robots.world import World
-from btlang.robots.zone_check import check_zones
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.binding import bind_ros
 from btlang.ros.clients import Clients
@@ -188,12 +187,10 @@ class RosConnection:
         return ids, own
 
     def check(self, tree: Tree, vocabulary: Lexicon) -> None:
-        """Raises MissionError with all that the tree needs and the robot lacks (BT072, BT101), and for goals in closed
-        zones (BT074).
+        """Raises MissionError as `check_mission` does, and with all interfaces that the tree needs and the robot lacks
+        (BT101).
         """
-        check_body(self.robot.body, tree, vocabulary, but=self._bound(tree, vocabulary)[0])
-        check_zones(self.robot.world, tree, vocabulary)
-        check_marks(self.robot.world, self.robot.body, tree, vocabulary)
+        check_mission(self.robot.world, self.robot.body, tree, vocabulary, but=self._bound(tree, vocabulary)[0])
         lacking = [(i, node, reason) for i, (node, reason) in self.survey(tree, vocabulary).items() if reason]
         if lacking:
             raise MissionError([_lack(*lack) for lack in lacking])

@@ -73,13 +73,11 @@ class Places(Knowledge):
 
     def dock(self, robot: Pose) -> Pose | None:
         """The nearest of the world, which faces as the robot does in it."""
-        docks = [Pose(dock.x, dock.y, dock.facing or 0.0) for dock in self.world.all_docks]
-        return min(docks, key=lambda dock: robot.distance_to((dock.x, dock.y)), default=None)
+        return next((Pose(dock.x, dock.y, dock.facing or 0.0) for dock in self.world.docks_from(robot)), None)
 
     def stations(self, robot: Pose) -> list[Station]:
         """The docks, the nearest first: where the robot has to stand to be connected; where it is, if there is none."""
-        docks = sorted(self.world.all_docks, key=lambda dock: robot.distance_to((dock.x, dock.y)))
-        names = [dock.name for dock in docks] or [_DOCK]
+        names = [dock.name for dock in self.world.docks_from(robot)] or [_DOCK]
         known = {name.lower() for name in self.world.names.places}
         spots = {name: self.goal(name, robot) for name in names if name.lower() in known}
         return [Station(name, spots.get(name, robot), spots.get(name, robot)) for name in names]

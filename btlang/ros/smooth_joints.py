@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from math import inf
 
@@ -13,11 +13,12 @@ from trajectory_msgs.msg import JointTrajectory
 
 from btlang.record import Record
 from btlang.robots.body import Body
-from btlang.robots.gesture import Gesture
+from btlang.robots.gesture import Gesture, joints_of
 from btlang.robots.joints import joint_of
 from btlang.robots.motion.braking import braking
 from btlang.robots.motion.course import PERIOD, Limits, Piece, State, between, samples
 from btlang.robots.motion.kinematics import Array
+from btlang.robots.motion.movements import staying
 from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.motion.timeline import Play
 from btlang.robots.robot import RobotError
@@ -54,11 +55,7 @@ class Sent(Record):
         last = len(self.way.position) - 1
         passed = min(max(0.0, (seconds - self.begins) / PERIOD), last)
         before = int(passed)
-        rows = (
-            State(*(getattr(self.way, name)[row] for name in State.fields)) for row in (before, min(before + 1, last))
-        )
-        one, other = rows
-        return between(one, other, passed - before)
+        return between(self.way.rows(before), self.way.rows(min(before + 1, last)), passed - before)
 
 
 class Played:
@@ -132,8 +129,7 @@ class RosSmoothJoints:
 
     def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[Played, float]:
         """See SmoothJoints; `room` counts from the latest step on."""
-        steps = [frame.joints for frame in wanted.frames] if isinstance(wanted, Gesture) else wanted
-        self._begin({name: 0.0 for step in steps for name in step})
+        self._begin(joints_of(wanted))
         play, slower = self._smooth.play(wanted, None if room is None else room - self._passed)
         made = Played(self, play, self._names)
         self._played.append(made)
@@ -213,7 +209,7 @@ class RosSmoothJoints:
         elif passed < -_STAMPED:  # a simulation has begun again
             self._origin += passed
 
-    def _begin(self, names: Mapping[str, float]) -> None:
+    def _begin(self, names: Collection[str]) -> None:
         """Raises RobotError where one of them is silent. From rest, they begin where they are."""
         for name in names:
             self.angle(name)
@@ -222,12 +218,16 @@ class RosSmoothJoints:
         if rests:
             self._seed()
         told = {self._names.index(name) for name in names}
-        self._told = tuple(sorted(told if rests else told.union(self._told)))
+        self._told = tuple(sorted(told if told and rests else told.union(self._told)))
         self._near = self._now()
 
     def _seed(self) -> None:
-        self._smooth.timeline.put(np.array([self._measured(index) for index in range(len(self._names))]))
+        self._smooth.timeline.put(self._here())
         self._way = self._smooth.timeline.plan[1]
+
+    def _here(self) -> Array:
+        """Of all joints; where one is silent, as planned."""
+        return np.array([self._measured(index) for index in range(len(self._names))])
 
     def _measured(self, index: int) -> float:
         try:
@@ -266,14 +266,7 @@ class RosSmoothJoints:
     def _stay(self, reason: str) -> None:
         timeline = self._smooth.timeline
         timeline.halt(reason)
-        here = np.array([self._measured(index) for index in range(len(self._names))])
-        still = State(here[None], 0 * here[None], 0 * here[None])
-        timeline.follow(
-            range(len(self._names)),
-            lambda times: State(*(np.repeat(getattr(still, name), len(times), axis=0) for name in State.fields)),
-            timeline.seconds,
-            timeline.seconds,
-        )
+        timeline.follow(range(len(self._names)), staying(self._here()), timeline.seconds, timeline.seconds)
 
     def _brake(self) -> None:
         """Sends how all joints come to rest from what they do, as it was sent last. From any thread."""
@@ -290,8 +283,7 @@ class RosSmoothJoints:
         if way is self._way:
             return
         self._way = way
-        later = State(*(getattr(way, name)[1:] for name in State.fields))  # the first one is what was before
-        self._publish(self._origin + begins + PERIOD, later)
+        self._publish(self._origin + begins + PERIOD, way.rows(slice(1, None)))  # the first one is what was before
 
     def _publish(self, begins: float, way: State) -> None:
         if not self._told:

@@ -71,10 +71,10 @@ class Utterance(Record):
         """When the first word begins that is at an index of the text or behind it; after the last one the end."""
         return next((word.time for word in self.words if word.start >= index), self.seconds)
 
-    def index_at(self, time: float) -> int:
-        """The index of the word that is spoken at a time, or was last; 0 before the first."""
-        at = bisect_right([word.time for word in self.words], time)
-        return self.words[at - 1].start if at else 0
+    def word_at(self, time: float) -> Word | None:
+        """The word that is spoken at a time, or was last; the first one before that, None where there is no word."""
+        at = bisect_right(self.words, time, key=lambda word: word.time)
+        return self.words[max(0, at - 1)] if self.words else None
 
 
 def words_at(text: str, starts: Sequence[tuple[int, float]], seconds: float) -> tuple[Word, ...]:

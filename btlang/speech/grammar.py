@@ -25,14 +25,12 @@ _NOTHING = "<VOID>"
 
 
 def spoken(text: str) -> str:
-    """The words that are said for a text: small letters without accents, numbers as words. "" where there are none."""
+    """The words that are said for a text: small letters without accents, numbers as words. "" where there are none.
+
+    As a phrase of a grammar they mean only themselves.
+    """
     plain = unicodedata.normalize("NFKD", text.lower().replace("\u2019", "'")).encode("ascii", "ignore").decode()
     return " ".join(_number(word) if word.isdigit() else word for word in _WORD.findall(plain))
-
-
-def plain(text: str) -> str:
-    """A text as a phrase that means only itself; "" where nobody can say it."""
-    return spoken(text)
 
 
 class Grammar:

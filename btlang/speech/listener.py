@@ -24,7 +24,7 @@ class Listener:
         self._recogniser = recogniser
         self._calls: SimpleQueue[Callable[[], object] | None] = SimpleQueue()
         self._found: deque[Understood] = deque(maxlen=100)
-        self._waiting = 0
+        self._waiting, self._lock = 0, threading.Lock()  # bytes, which two threads count
         self._broken = ""
         self._is_late = False
         self._thread = threading.Thread(target=self._work, name="btlang ears", daemon=True)
@@ -41,10 +41,12 @@ class Listener:
 
     def hear(self, samples: bytes) -> None:
         """The next samples; they are lost where five seconds of sound wait already."""
-        self._is_late = self._waiting + len(samples) > _LONGEST
-        if not self._is_late:
+        with self._lock:
+            self._is_late = self._waiting + len(samples) > _LONGEST
+            if self._is_late:
+                return
             self._waiting += len(samples)
-            self._put(lambda: self._hear(samples))
+        self._put(lambda: self._hear(samples))
 
     def end(self) -> None:
         """Whoever speaks has let go of the button."""
@@ -68,7 +70,8 @@ class Listener:
             self._calls.put(call)
 
     def _hear(self, samples: bytes) -> None:
-        self._waiting -= len(samples)
+        with self._lock:
+            self._waiting -= len(samples)
         for at in range(0, len(samples), _PIECE):
             self._found.extend(self._recogniser.hear(samples[at : at + _PIECE]))
 

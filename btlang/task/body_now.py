@@ -44,6 +44,5 @@ def _speech(robot: Any) -> tuple[str, int, int] | None:
     said, now = robot.said, robot.time - robot.said_at
     if said is None or now < 0 or not robot.speaking:
         return None
-    start = said.index_at(now)
-    word = next((word for word in said.words if word.start == start), None)
-    return said.text, start, start if word is None else word.end
+    word = said.word_at(now)
+    return (said.text, 0, 0) if word is None else (said.text, word.start, word.end)

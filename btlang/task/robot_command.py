@@ -13,7 +13,7 @@ from functools import partial
 from urllib.parse import parse_qs, urlsplit
 
 from btlang.components.file_command import serve_file
-from btlang.components.words import robot_words
+from btlang.components.words import words_of
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.answers_file import read_answers
 from btlang.robots.registry import connector, runs_in_real_time
@@ -126,7 +126,7 @@ def _up(options: argparse.Namespace) -> int:
         robot, world = _from_library(options, kept)
         if options.speed != "real" and runs_in_real_time(robot.body, robot.over, options.simulate):
             options.refuse(f"the robot runs in real time over {robot.over}, so it takes no --speed")
-        words = [] if options.robot.startswith(_LIBRARY) else robot_words(options.robot)
+        words = [] if options.robot.startswith(_LIBRARY) else words_of(robot.body)
         reader = MissionReader(
             [*words, *options.keywords],
             world,

@@ -57,7 +57,7 @@ class Pieces:
             self.fakes += self._fakes(one)
         elif one.kind == "with":
             self.setup.append(self._event(one.first, one.last))
-        elif one.kind not in ("run", "world", "robot", "rules"):
+        elif one.kind not in ("run", *_BEFORE_RUN):
             self.steps.append(self._step(one))
 
     def _step(self, one: Statement) -> Step:

@@ -14,7 +14,7 @@ import os
 from collections.abc import Iterator
 
 from btlang.api import Mission, parse_tree, world_vocabulary
-from btlang.components.words import robot_words
+from btlang.components.words import words_of
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import OUTSIDE, included_path, is_below, read_source
@@ -148,8 +148,9 @@ class _Reader:
         world = self._named_file("world") or None
         self._robot = self._named_file("robot")
         if self._robot:
-            self._robot_words = robot_words(self._robot)
-            world = world or body_of(self._robot).world or None
+            body = body_of(self._robot)
+            self._robot_words = words_of(body)
+            world = world or body.world or None
         self._world = world
         if run.file is not None:
             mission = self._given(_named(run.file), world)

@@ -37,7 +37,8 @@ class Tree(Record, uncompared=("models", "origin", "warnings")):
 
     `name` is that of the main tree, "" for the usual one (`MainTree` in XML); no two trees have the same. `models` tell
     of kinds of nodes what a front end has read of them. `origin` is what a front end knows beside the tree, for its own
-    back end: such as the comments of an XML file, and how its tags were written. `warnings` are those of reading it.
+    back end: such as the comments of an XML file, and how its tags were written; of a mission it is its Source.
+    `warnings` are those of reading it.
     """
 
     root: Node

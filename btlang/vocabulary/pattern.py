@@ -76,6 +76,11 @@ def forms(pattern: str, articles: frozenset[str] = frozenset()) -> tuple[Form, .
     return tuple(found)
 
 
+def spelled(form: Form) -> str:
+    """A form as people would write it, its slots as {name}."""
+    return " ".join(part if isinstance(part, str) else f"{{{part.name}}}" for part in form)
+
+
 def name_form(name: str) -> Form:
     """The form of a defined name with parameters, `greet {someone}`, in which no other character means anything."""
     return tuple(Slot(word[1:-1]) if word[0] == "{" and len(word) > 2 else word for word in name.split())

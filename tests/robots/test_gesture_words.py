@@ -9,6 +9,8 @@ import pytest
 from btlang import MissionError, parse_tree
 from btlang.cli import main
 from btlang.components.words import robot_words
+from btlang.robots import registry
+from btlang.robots.body import Body
 from tests.robots.motion.bodies import GUIDE
 from tests.robots.test_gesture_file import NOD, POINT, robot_file
 
@@ -93,3 +95,19 @@ def test_a_phrase_that_clashes_is_named_by_its_file(tmp_path: Path, capsys: pyte
 def test_robots_without_gestures_have_no_more_words() -> None:
     assert robot_words("simulated") == []
     assert "gestures" in robot_words(str(GUIDE))[-1]
+
+
+def test_one_command_reads_the_robot_once(
+    robot: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read, files = registry.read_body, list[object]()
+
+    def noted(file: object) -> Body:
+        files.append(file)
+        return read(file)
+
+    monkeypatch.setattr(registry, "read_body", noted)
+    for arguments in (["tree", "-c", "bow"], ["gesture", "play", "bow", "--speed", "max"]):
+        printed([*arguments, "--robot", robot], capsys)
+        assert files == [robot]
+        files.clear()

@@ -32,6 +32,9 @@ def told(text: str) -> list[tuple[int | None, str]]:
     [
         ('places = [{ name = "lab", x = 7, y = 1 }]', 'the place "lab" at (7, 1)'),
         ("dock = { x = -1, y = 1 }", 'the place "dock" at (-1, 1)'),
+        ('docks = [{ name = "bay", x = 7, y = 1 }]', 'the place "bay" at (7, 1)'),
+        ('crowds = [{ name = "guest", count = 3, x = 7, y = 1, walks = [[5, 1]] }]', 'the person "guest 1" at (7, 1)'),
+        ('crowds = [{ name = "guest", count = 3, x = 5, y = 1, walks = [[7, 1]] }]', 'a stop of "guest 1" at (7, 1)'),
         ('objects = [{ name = "cup", x = 7, y = 1 }]', 'the object "cup" at (7, 1)'),
         ('people = [{ name = "Vera", x = 7, y = 1 }]', 'the person "Vera" at (7, 1)'),
         ('people = [{ name = "Vera", x = 5, y = 1, walks = [[7, 1]] }]', 'a stop of "Vera" at (7, 1)'),
@@ -85,6 +88,21 @@ def test_all_is_told_at_once_and_at_its_line() -> None:
         (6, 'the name "bay" is given twice (places and places); give one another name'),
         (6, 'the place "bay" at (3.1, 1) is inside a wall or a box; leave 0.2 m to every wall'),
         (5, 'the place "bay" at (9, 1) is outside the outer walls'),
+    ]
+
+
+def test_docks_and_crowds_are_told_at_their_lines() -> None:
+    text = START + (
+        'dock = { x = 2, y = 1 }\nplaces = [\n  { name = "bay", x = 4, y = 1 },\n'
+        '  { name = "Dock", x = 4, y = 1 },\n]\n'
+        '[[docks]]\nname = "lab dock"\nx = "east"\ny = 1\n[[docks]]\nname = "Bay"\nx = 5\ny = 1\n'
+        '[[crowds]]\nname = "guest"\ncount = 2\nx = 5\ny = 1\n[[crowds]]\nname = "Guest"\ncount = 1\nx = 5\ny = 1\n'
+    )
+    assert told(text) == [
+        (9, '"x" must be a number; write x = 1.5'),
+        (2, 'the name "dock" is given twice (places and dock); give one another name'),
+        (12, 'the name "Bay" is given twice (places and docks); give one another name'),
+        (21, 'the name "Guest 1" is given twice (crowds and crowds); give one another name'),
     ]
 
 

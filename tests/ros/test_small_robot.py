@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import JointState, LaserScan
@@ -10,6 +12,14 @@ from btlang.cli import main
 from tests.ros.client import Client
 
 SMALL = ["--robot", "small", "--over", "ros", "--sim-time"]
+PARROT = """
+from btlang.speech.engine import SpeechError
+
+class Parrot:
+    def __init__(self, settings):
+        if settings.language != "en":
+            raise SpeechError("it speaks English only")
+"""
 
 
 @pytest.fixture(autouse=True)
@@ -42,3 +52,14 @@ def test_what_it_lacks_is_said(start_sim, capfd: pytest.CaptureFixture[str]) -> 
     out = capfd.readouterr().out
     assert 'part    posture "nod"' in out
     assert "Missing: 1 of " in out
+
+
+def test_a_language_that_it_lacks_is_refused(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "parrot.py").write_text(PARROT, encoding="utf-8")
+    (tmp_path / "robot.toml").write_text(
+        'name = "talker"\nradius = 0.2\n[voice]\nengine = "parrot:Parrot"\n', encoding="utf-8"
+    )
+    robot = str(tmp_path / "robot.toml")
+    assert main(["run", "-c", "speak English then speak Finnish", "--robot", robot, "--over", "ros"]) == 2
+    err = capfd.readouterr().err
+    assert "BT072: The robot 'talker' has no voice for the language \"fi\", which 'speak Finnish' needs." in err

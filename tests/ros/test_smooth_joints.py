@@ -202,6 +202,18 @@ def test_a_joint_that_stops_short_is_reported() -> None:
         wire.joints.at_target(("left elbow",))
 
 
+def test_to_move_nothing_changes_nothing() -> None:
+    wire = Wire()
+    wire.joints.move({"head tilt": -20.0})
+    while wire.joints.moving:
+        wire.run(STEP)
+    sent = len(wire.sent)
+    wire.joints.move({})
+    wire.run(1.0)  # in which what was sent is compared with where the joints are
+    assert len(wire.sent) == sent
+    assert wire.joints.angle("head tilt") == pytest.approx(-20.0, abs=0.5)
+
+
 def test_silent_joints_end_the_gesture() -> None:
     wire = Wire()
     played, _ = wire.joints.play(guide().gestures["bow"], None)

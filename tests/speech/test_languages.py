@@ -10,6 +10,8 @@ import pytest
 import btlang
 from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
+from btlang.robots.body_file import load_body
+from btlang.robots.voice import Synthesizer
 from btlang.run.events import LanguageChosen
 from btlang.session import Session
 from btlang.speech.engine import Settings
@@ -72,6 +74,20 @@ def test_it_speaks_as_the_engine_does_in_that_language(tmp_path: Path) -> None:
             seconds = Espeak(Settings(language)).speak("1984 1985").seconds
             assert run.outcome.seconds == pytest.approx(seconds, abs=0.1), text
     assert Espeak(Settings("es")).speak("1984 1985").seconds != pytest.approx(seconds, abs=0.1)
+
+
+def test_a_text_is_spoken_once_in_each_language(parrot: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    spoken: list[str] = []
+    synthesizer = Synthesizer(load_body(parrot))
+    for language in ("en", "es"):
+        synthesizer.speak_in(language)
+        engine = synthesizer._engine
+        monkeypatch.setattr(engine, "speak", lambda text, by=engine.speak: spoken.append(text) or by(text))
+        assert synthesizer.speak("hi") is synthesizer.speak("hi")
+        assert synthesizer.speak("hi").seconds == {"en": 1.0, "es": 3.0}[language]
+    synthesizer.speak("ho")
+    synthesizer.speak("hi")
+    assert spoken == ["hi", "hi", "ho", "hi"]
 
 
 def test_what_it_speaks_is_an_event(parrot: str) -> None:

@@ -41,6 +41,7 @@ await visit(base, async (page) => {
   await page.click(".tabs a[href$='/tasks']");
   await page.waitForSelector("ul.tasks .what:has-text('short_tour')");
   assert.ok(await canvas.evaluate((each) => each.getContext("webgl2").isContextLost()), "it keeps the graphics card");
+  await offersNothing(page);
 }, {}, undefined, true);
 
 await visit(base, async (page) => {
@@ -49,6 +50,24 @@ await visit(base, async (page) => {
   await page.waitForSelector(".body .empty:has-text('no WebGL')");
   await page.waitForSelector("canvas.map");
 });
+
+/** Back at a robot that gives a tour: the library is asked for once, and nothing of it is offered, however late it comes. */
+async function offersNothing(page) {
+  let asked = 0;
+  await page.route("**/api/missions?*", async (route) => {
+    asked++;
+    await page.waitForSelector(".now h1:has-text('tour')");
+    await route.continue();
+  });
+  await page.evaluate(() => {
+    const look = () => (globalThis.offered ||= Boolean(document.querySelector(".starts:not([hidden])")));
+    new MutationObserver(look).observe(document, { subtree: true, childList: true, attributes: true });
+  });
+  await page.goBack();
+  await page.waitForSelector(".submit option[value='tour']", { state: "attached" });
+  assert.ok(!(await page.evaluate(() => globalThis.offered)), "it offers missions while one runs");
+  assert.equal(asked, 1);
+}
 
 /** What the page makes of URDF, and of what is none. */
 async function reads(page) {

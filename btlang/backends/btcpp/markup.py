@@ -27,6 +27,11 @@ _IN_VALUES = str.maketrans({
 _NO_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
+def sound_comment(text: str) -> str:
+    """As a comment may hold it: XML forbids two hyphens in it."""
+    return text.replace("--", "- -").removesuffix("-")
+
+
 def margin(depth: int) -> str:
     """The spaces before a line."""
     return INDENT * min(depth, _DEEPEST)

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from btlang.backends.btcpp.markup import INDENT, Markers, margin
+from collections.abc import Iterable
+
+from btlang.backends.btcpp.markup import INDENT, Markers, margin, sound_comment
 from btlang.backends.btcpp.models import Uses, model_part
 from btlang.backends.btcpp.names import tree_ids
 from btlang.backends.btcpp.typed import typed
 from btlang.frontends.btcpp.dialect import told_by_shapes
 from btlang.frontends.btcpp.file import SPOKEN_NAME
+from btlang.frontends.btcpp.kept import Kept, kept_in
 from btlang.frontends.btcpp.models import why_no_port
 from btlang.frontends.btcpp.origin import Element, Markup, TreeOrigin, XmlOrigin
 from btlang.frontends.btcpp.spelling import MAIN_TREE, SPELL, spelled_3
+from btlang.text.source import Source
+from btlang.tree.comments import FOOT, HEAD, comments_by_line, line_of
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 
@@ -19,16 +24,19 @@ if TYPE_CHECKING:
     from btlang.frontends.btcpp.spelling import Pairs
 
 _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'
-_NOTHING = TreeOrigin((), {}, {}, {})
 
 
-def to_xml(tree: Tree, vocabulary: Lexicon, *, dialect: int = 4) -> str:
-    """The XML of a tree, in lines, with a line end at the end.
+def to_xml(tree: Tree, vocabulary: Lexicon, *, dialect: int = 4, onto: Source | None = None) -> str:
+    """The XML of a tree, in lines, with a line end at the end; or the file `onto`, with what has changed in the tree.
 
     A tree that was read from a file of the same dialect, and not changed since, is written with all that stood in the
     file: its tags, attributes, texts and comments. Any other is written in the one canonical way. `dialect` is 4 or 3.
     Raises MissionError where a name or text isn't allowed in XML (BT129), ValueError for another dialect.
     """
+    if onto is not None:
+        from btlang.backends.btcpp.onto import written_onto
+
+        return written_onto(onto, tree, vocabulary)
     if dialect not in SPELL:
         raise ValueError(f"there is no dialect {dialect}")
     return _Writer(tree, vocabulary, dialect).write()
@@ -42,7 +50,12 @@ class _Writer:
         self._markers = Markers()
         self._origin = _own_origin(tree, dialect)
         self._uses: Uses | None = None
+        self._comments: dict[str, dict[int, tuple[str, ...]]] = {}
+        self._head: tuple[str, ...] = ()
+        self._foot: tuple[str, ...] = ()
+        self._kept = kept_in(tree.origin.text) if isinstance(tree.origin, Source) else Kept()
         if self._origin is None:
+            tree = tree.replace(models=(*self._kept.models, *tree.models))
             self._uses = Uses(tree, vocabulary, dialect)
             for node in self._uses.misnamed:
                 self._markers.wrong("name", why_no_port("name"), node.span)
@@ -50,6 +63,7 @@ class _Writer:
             self._ids = tree_ids(tree, self._uses.ids, dialect)
             if dialect == 4:
                 self._tree = typed(tree, self._uses.port_types)
+            self._find_comments(tree.origin)
         else:
             kinds = {model.id: model.kind for model in tree.models}
             self._kind = lambda node_id: kinds.get(node_id, "")  # any other tag is told by the origin
@@ -58,7 +72,7 @@ class _Writer:
 
     def write(self) -> str:
         markers, origin = self._markers, self._origin
-        head: tuple[str, ...] = (_DECLARATION,)
+        head: tuple[str, ...] = (_DECLARATION, *self._head)
         foot: tuple[str, ...] = ()
         if origin is not None:
             head, foot = origin.head, origin.foot
@@ -86,7 +100,7 @@ class _Writer:
         return {name: self._tree.name for name in self._origin.trees if name not in others}
 
     def _root_attributes(self) -> Pairs:
-        main = (("main_tree_to_execute", self._ids[self._tree.name]),)
+        main = (("main_tree_to_execute", self._ids[self._tree.name]), *self._kept.root)
         return (("BTCPP_format", "4"), *main) if self._dialect == 4 else self._format_3() + main
 
     def _format_3(self) -> Pairs:
@@ -96,19 +110,49 @@ class _Writer:
         return (("BTCPP_format", "3"),) if told_by_shapes(shapes) == 4 else ()
 
     def _items(self) -> tuple[Element | Markup | str, ...]:
-        """The main tree, the others in their order, the models."""
-        models = None if self._uses is None else model_part(self._uses.models(), self._ids)
-        return (self._tree.name, *(name for name, _ in self._tree.subtrees), *((models,) if models else ()))
+        """The main tree, the others in their order, the models; with the comments of a mission."""
+        models = self._models()
+        found: list[Element | Markup | str] = [self._tree.name]
+        for name, _ in self._tree.subtrees:
+            found += (*map(Markup, self._comments.get(name, {}).pop(0, ())), name)
+        return (*found, *models, *map(Markup, self._foot))
+
+    def _models(self) -> list[Element]:
+        """Those that the mission keeps as they stood in its file, and further ones of what it uses."""
+        assert self._uses is not None
+        known = {model.id for model in self._kept.models}
+        found = list(self._kept.parts)
+        further = model_part([model for model in self._uses.models() if model.id not in known], self._ids)
+        if further is not None:
+            found[:1] = [found[0].replace(items=found[0].items + further.items) if found else further]
+        return found
 
     def _tree_attributes(self, name: str) -> Pairs:
         written = self._ids[name]
         spoken = name or MAIN_TREE
-        return (("ID", written),) if spoken == written else (("ID", written), (SPOKEN_NAME, spoken))
+        named = (("ID", written),) if spoken == written else (("ID", written), (SPOKEN_NAME, spoken))
+        return (*named, *dict(self._kept.trees).get(written, ()))
+
+    def _find_comments(self, source: object) -> None:
+        """The comments of a mission, each before the node of its statement."""
+        if not isinstance(source, Source) or "#" not in source.text:
+            return
+        comments = comments_by_line(source, self._vocabulary.orthography, self._tree)
+        self._head, self._foot = _marked(comments.pop(HEAD, ())), _marked(comments.pop(FOOT, ()))
+        for name, root in ((self._tree.name, self._tree.root), *self._tree.subtrees):
+            before: dict[int, tuple[str, ...]] = {}
+            for number, node in enumerate(Tree(root).walk()):
+                if lines := comments.pop(line_of(node), None):
+                    before[number] = _marked(lines)
+            self._comments[name] = before
 
     def _tree_lines(self, name: str, root: Node, lines: list[str]) -> None:
-        origin = _NOTHING if self._origin is None else self._origin.trees[name]
-        attributes = self._tree_attributes(name) if self._origin is None else origin.attributes
-        lines.append(f"{INDENT}<BehaviorTree{self._markers.attributes(attributes)}>")
+        if self._origin is None:
+            before = self._comments.get(name, {})
+            origin = TreeOrigin(self._tree_attributes(name), {}, before, {}, {}, {})
+        else:
+            origin = self._origin.trees[name]
+        lines.append(f"{INDENT}<BehaviorTree{self._markers.attributes(origin.attributes)}>")
         spell, kind, ids, write = SPELL[self._dialect], self._kind, self._ids, self._markers.attributes
         tags, before, inside = origin.tags, origin.before, origin.inside
         number = 0
@@ -117,7 +161,7 @@ class _Writer:
             node, depth = stack.pop()
             space = margin(depth)
             if isinstance(node, str):
-                lines.append(f"{space}</{node}>")
+                lines.append(space + node)
                 continue
             if isinstance(node, tuple):
                 lines += [space + text for text in node]
@@ -130,17 +174,23 @@ class _Writer:
                 tag, pairs = spell(node, kind, ids)
             written = write(pairs, node.span) if pairs else ""
             comments = inside.get(number, ()) if inside else ()
-            if node.children or comments:
-                lines.append(f"{space}<{tag}{written}>")
-                stack.append((tag, depth))
+            beside = " ".join(("", *origin.heading.get(number, ()))) if origin.heading else ""
+            end = " ".join(("", *origin.behind.get(number, ()))) if origin.behind else ""
+            if node.children or comments or beside:
+                lines.append(f"{space}<{tag}{written}>{beside}")
+                stack.append((f"</{tag}>{end}", depth))
                 if comments:
                     stack.append((comments, depth + 1))
                 stack += [(child, depth + 1) for child in reversed(node.children)]
             else:
-                lines.append(f"{space}<{tag}{written}/>")
+                lines.append(f"{space}<{tag}{written}/>{end}")
             number += 1
         lines += [INDENT * 2 + text for text in origin.after]
         lines.append(f"{INDENT}</BehaviorTree>")
+
+
+def _marked(lines: Iterable[str]) -> tuple[str, ...]:
+    return tuple(f"<!-- {sound_comment(line)} -->" for line in lines)
 
 
 def _own_origin(tree: Tree, dialect: int) -> XmlOrigin | None:

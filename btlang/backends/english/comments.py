@@ -31,29 +31,31 @@ def comments_of(tree: Tree) -> Comments:
     waiting: list[str] = []
     for item in origin.items:
         if isinstance(item, Markup):
-            waiting += _lines((item.text,))
+            waiting += lines_of((item.text,))
         elif isinstance(item, str) and item in origin.trees:
             name = item if item in roots else ""
-            trees[name] = (*waiting, *_lines(origin.trees[item].after))
+            trees[name] = (*waiting, *lines_of(origin.trees[item].after))
             waiting = []
             nodes |= _of_tree(roots[name], origin.trees[item])
-    return Comments(nodes, trees, tuple(_lines(origin.head)), (*waiting, *_lines(origin.foot)))
+    return Comments(nodes, trees, tuple(lines_of(origin.head)), (*waiting, *lines_of(origin.foot)))
 
 
 def _of_tree(root: Node, origin: TreeOrigin) -> dict[int, tuple[str, ...]]:
-    """What stands behind the last child of a node stands before the node here."""
-    if not origin.before and not origin.inside:
+    """All that belongs to a node stands before it here."""
+    places = origin.before, origin.heading, origin.behind, origin.inside
+    if not any(places):
         return {}
     found: dict[int, tuple[str, ...]] = {}
     for number, node in enumerate(Tree(root).walk()):
-        lines = tuple(_lines((*origin.before.get(number, ()), *origin.inside.get(number, ()))))
+        lines = tuple(lines_of(text for place in places for text in place.get(number, ())))
         if lines:
             found[id(node)] = lines
     return found
 
 
-def _lines(texts: Iterable[str]) -> Iterator[str]:
+def lines_of(texts: Iterable[str]) -> Iterator[str]:
+    """What English says of comments: their lines but for rulers, which have no letter."""
     for text in texts:
         if text.startswith(_OPEN):
             lines = text.removeprefix(_OPEN).removesuffix(_CLOSE).split("\n")
-            yield from filter(None, (" ".join(line.split()) for line in lines))
+            yield from (" ".join(line.split()) for line in lines if any(map(str.isalnum, line)))

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from btlang.backends.btcpp.markup import Markers
 from btlang.backends.english.comments import Comments, comments_of
 from btlang.backends.english.lift import Lifter
 from btlang.backends.english.names import Names, Refused
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.frontends.btcpp.kept import marked, parts_of
+from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission
 from btlang.passes.order import used_first
@@ -47,9 +50,8 @@ def to_english(
     comments, refused = comments_of(tree), Refused()
     for level in _LEVELS:
         mission, printer = _mission(tree, words, level, refused, comments)
-        text = "".join(
-            f"{line}\n" for line in _lines(mission.replace(facts=tuple(facts), needs=needs), printer, comments)
-        )
+        said = _lines(mission.replace(facts=tuple(facts), needs=needs), printer, comments)
+        text = "".join(f"{line}\n" for line in (*said, *_kept(tree)))
         try:
             again = lower_mission(read_mission(Source(text), vocabulary).mission, vocabulary)
         except MissionError as error:
@@ -88,6 +90,13 @@ def _lines(mission: Program, printer: Printer, comments: Comments) -> Iterator[s
     yield from (f"# {line}" for line in comments.head)
     yield from mission_lines(mission, printer, WIDTH)
     yield from (f"# {line}" for line in comments.foot)
+
+
+def _kept(tree: Tree) -> Iterator[str]:
+    """Comments with what English doesn't say of an XML file."""
+    if isinstance(tree.origin, XmlOrigin):
+        markers = Markers()
+        yield from marked(line for part in parts_of(tree.origin) for line in markers.part(part, 0))
 
 
 def _mission(

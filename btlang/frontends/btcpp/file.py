@@ -156,16 +156,14 @@ class XmlFile:
             self.trees.append((head.name, root))
             self.uses[head.name] = reader.uses[::-1]
             reader.uses.clear()
-            before: dict[int, tuple[str, ...]] = {}
-            inside: dict[int, tuple[str, ...]] = {}
-            for at in range(first, end) if self.notes else ():
-                if told := self.notes.before(at):
-                    before[at - first] = as_written(told)
-                if told := self.notes.inside(at):
-                    inside[at - first] = as_written(told)
-            after = as_written(self.notes.inside(head.index))
+            notes = self.notes
+            before, inside, heading, behind = (
+                {at - first: as_written(told) for at in range(first, end) if (told := find(at))} if notes else {}
+                for find in (notes.before, notes.inside, notes.heading, notes.behind)
+            )
+            after = as_written(notes.inside(head.index))
             attributes = tuple(document.attributes(head.index).items())
-            self.origins[head.name] = TreeOrigin(attributes, tags, before, inside, after)
+            self.origins[head.name] = TreeOrigin(attributes, tags, before, inside, heading, behind, after)
         self.problems += reader.problems
 
     def items(self) -> tuple[Element | Markup | str, ...]:

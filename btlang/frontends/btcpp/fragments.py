@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 
 IN_TEXTS = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", "\r": "&#13;"})
+_NODES = 2  # elements around nodes: <root> and <BehaviorTree>
 
 
 class Notes:
@@ -22,6 +23,8 @@ class Notes:
         self._document = document
         self._before: dict[int, list[Note]] = {}
         self._inside: dict[int, list[Note]] = {}
+        self._heading: dict[int, list[Note]] = {}
+        self._behind: dict[int, list[Note]] = {}
         self.texts: list[tuple[Note, int]] = []
         """Texts, each with the element that it stands in, in the order of the file."""
         if document.notes:
@@ -38,24 +41,52 @@ class Notes:
         """Those behind the last element inside an element; -1 stands for the whole file."""
         return self._inside.get(index, [])
 
+    def heading(self, index: int) -> list[Note]:
+        """Those behind the start tag of a node, on its line."""
+        return self._heading.get(index, [])
+
+    def behind(self, index: int) -> list[Note]:
+        """Those behind a node that has ended, on its line."""
+        return self._behind.get(index, [])
+
     def _place(self) -> None:
         """In the order of the file; `opened` are the elements around the present place."""
-        elements = self._document.elements
+        elements, depths = self._document.elements, self._document.depths
         opened: list[int] = []
         started = 0
+        last: tuple[int, int] = (0, 0)
+        owner: list[Note] | None = None  # that of the note before this one, if it stands on the line of a tag
         for note in self._document.notes:
             while started < note.before:
-                del opened[self._document.depths[started] :]
+                del opened[depths[started] :]
                 opened.append(started)
                 started += 1
+            closed = opened[note.before - note.ended :][:1]
             del opened[note.before - note.ended :]
             around = opened[-1] if opened else -1
             if note.is_text:
                 self.texts.append((note, around))
-            if note.before < len(elements) and elements[note.before][3] == note.ended:
+                owner = None
+            elif self._is_on_line(note):
+                if last != (note.before, note.ended):
+                    kind, at = (self._behind, closed[0]) if closed else (self._heading, around)
+                    owner = kind.setdefault(at, []) if at >= 0 and depths[at] >= _NODES else None
+            else:
+                owner = None
+            last = note.before, note.ended
+            if owner is not None:
+                owner.append(note)
+            elif note.before < len(elements) and elements[note.before][3] == note.ended:
                 self._before.setdefault(note.before, []).append(note)
             else:
                 self._inside.setdefault(around, []).append(note)
+
+    def _is_on_line(self, note: Note) -> bool:
+        """Whether something ends on its line."""
+        text, at = self._document.text, note.start - 1
+        while at >= 0 and text[at] in " \t":
+            at -= 1
+        return at >= 0 and text[at] == ">"
 
 
 def as_items(notes: list[Note]) -> Items:

@@ -31,13 +31,16 @@ class TreeOrigin(Record):
     """How a BehaviorTree was written. Nodes are known by their number in preorder, 0 for the root.
 
     `tags` are those nodes whose tag or attributes are not the usual ones; `before` and `inside` are comments and texts
-    before a node and behind its last child, as XML, and `after` those behind the root.
+    before a node and behind its last child, as XML, `heading` and `behind` those on the line of its start tag and of
+    its end, and `after` those behind the root.
     """
 
     attributes: Pairs
     tags: dict[int, Spelling]
     before: dict[int, tuple[str, ...]]
     inside: dict[int, tuple[str, ...]]
+    heading: dict[int, tuple[str, ...]]
+    behind: dict[int, tuple[str, ...]]
     after: tuple[str, ...] = ()
 
 
@@ -45,7 +48,8 @@ class XmlOrigin(Record):
     """What the file of a tree holds beside it. It says nothing of another tree than the one of `root` and `subtrees`.
 
     `items` are the parts of <root> in their order, a str being the name of a tree; `trees` tells of the trees of this
-    file, those of included files are missing; `head` and `foot` are what stands around <root>.
+    file, those of included files are missing; `head` and `foot` are what stands around <root>. `file` is the name of
+    the file without its folder, "" for a text, `digest` that of its text (see kept.py).
     """
 
     dialect: int
@@ -56,3 +60,5 @@ class XmlOrigin(Record):
     trees: dict[str, TreeOrigin]
     head: tuple[str, ...] = ()
     foot: tuple[str, ...] = ()
+    file: str = ""
+    digest: str = ""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.files import XmlFiles
+from btlang.frontends.btcpp.kept import digest_of
 from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models, subtree_defaults
 from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.btcpp.spelling import MAIN_TREE, MODEL, TO_4
@@ -21,6 +23,7 @@ from btlang.tree.visit import in_order_of_use
 _NO_NODES = CATALOGUE.keys() | TO_4.keys() | {"root", "BehaviorTree", MODEL, *MODEL_KINDS}
 """Tags that are no ids of nodes that somebody made."""
 MAIN = "main_tree_to_execute"
+"""The attribute of <root> with the ID of the main tree."""
 
 
 def read_xml(source: Source, main: str = "") -> Tree:
@@ -145,7 +148,7 @@ def _known(
 
 def _origin(file: XmlFile, tree: Tree, asked: str) -> XmlOrigin:
     """What the main file tells beside the tree; `asked` is the ID of the main tree where the caller chose it."""
-    attributes = dict(file.attributes)
+    attributes, source = dict(file.attributes), file.document.source
     if asked:
         attributes[MAIN] = asked
     return XmlOrigin(
@@ -157,4 +160,6 @@ def _origin(file: XmlFile, tree: Tree, asked: str) -> XmlOrigin:
         file.origins,
         file.head(),
         file.foot(),
+        os.path.basename(source.name) if source.name not in ("-", "<text>") else "",
+        digest_of(source.text),
     )

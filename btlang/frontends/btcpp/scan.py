@@ -49,12 +49,13 @@ _NO_MORE = _ERRORS[expat.errors.XML_ERROR_NO_ELEMENTS]
 class Note(Record):
     """A comment or processing instruction as it is written, or a text; between which elements it stands.
 
-    `before` is the number of elements that started before it, `ended` of those that ended.
+    `before` is the number of elements that started before it, `ended` of those that ended; it begins at `start`.
     """
 
     text: str
     before: int
     ended: int
+    start: int
     is_text: bool = False
 
 
@@ -194,7 +195,8 @@ class _Scanner:
         return diagnostic("BT121", place, what=what, advice="Move the inner ones into named trees.")
 
     def _note(self, text: str, is_text: bool = False) -> None:
-        self._document.notes.append(Note(text, len(self._document.elements), len(self._ends), is_text))
+        at = self._parser.CurrentByteIndex
+        self._document.notes.append(Note(text, len(self._document.elements), len(self._ends), at, is_text))
 
     def _declared(self, version: str, encoding: str | None, standalone: int) -> None:
         told = f' encoding="{encoding}"' if encoding is not None else ""
@@ -257,13 +259,15 @@ class _Scanner:
         """Places from bytes of UTF-8 to characters, without the blanks that the parser got, in one pass."""
         document, place = self._document, self._readable.place
         data = document.text.encode()
+        places = sorted([element[2] for element in document.elements] + [note.start for note in document.notes])
         bytes_done = characters = 0
-        placed: list[Element] = []
-        for tag, flat, start, ended in document.elements:
+        counted: dict[int, int] = {}
+        for start in places:
             characters += len(data[bytes_done:start].decode())
             bytes_done = start
-            placed.append((tag, flat, place(characters), ended))
-        document.elements = placed
+            counted[start] = place(characters)
+        document.elements = [(tag, flat, counted[start], ended) for tag, flat, start, ended in document.elements]
+        document.notes = [note.replace(start=counted[note.start]) for note in document.notes]
         document.text = self._readable.text
 
 

@@ -6,10 +6,15 @@ from collections.abc import Callable, Sequence
 from math import ceil
 
 import numpy as np
+import numpy.typing as npt
 
 from btlang.record import Record
 from btlang.robots.body import Joint
 from btlang.robots.motion.kinematics import Array
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 PERIOD = 0.01
 """Seconds between two samples."""
@@ -26,6 +31,10 @@ class State(Record):
     def of(self, joints: Sequence[int]) -> State:
         """That of some of the joints."""
         return State(self.position[..., joints], self.velocity[..., joints], self.acceleration[..., joints])
+
+    def rows(self, which: int | slice | Sequence[int] | npt.NDArray[Any]) -> State:
+        """Some samples of many, in their order; of a number the one without that axis."""
+        return State(self.position[which], self.velocity[which], self.acceleration[which])
 
 
 class Limits(Record):
@@ -67,8 +76,7 @@ def samples(pieces: Sequence[Piece]) -> State:
 
 def between(before: State, after: State, share: float) -> State:
     """The state `share` (0 to 1) of a PERIOD after one sample: the quintic that meets it and the next one."""
-    found = quintic(before, after, PERIOD).at(np.array([share * PERIOD]))
-    return State(*(getattr(found, name)[0] for name in State.fields))
+    return quintic(before, after, PERIOD).at(np.array([share * PERIOD])).rows(0)
 
 
 def quintic(start: State, end: State, seconds: float) -> Piece:

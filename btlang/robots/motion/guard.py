@@ -56,7 +56,7 @@ class Guard:
         if not self._collisions.pairs:
             return ""
         looks = sorted({*range(0, len(way.position), _EACH), len(way.position) - 1})
-        seen = State(*(getattr(way, name)[looks] for name in State.fields))
+        seen = way.rows(looks)
         now = self._collisions.distances(self._braking(seen, slice(0, 1)), _MARGIN)
         allowed = np.minimum(_MARGIN, now.min(axis=1)) - _ROUNDING
         moving = (np.abs(seen.velocity).max(axis=1) > 0.0) | (np.abs(seen.acceleration).max(axis=1) > 0.0)
@@ -71,7 +71,6 @@ class Guard:
 
     def _braking(self, way: State, rows: slice | Array) -> Array:
         """Where the body is on its way to rest from these samples."""
-        state = State(*(getattr(way, name)[rows] for name in State.fields))
-        halt = brake(state, self._limits)
+        halt = brake(way.rows(rows), self._limits)
         times = np.append(np.arange(_BRAKING, halt.seconds, _BRAKING), halt.seconds)
         return np.concatenate([halt.at(float(time)).position for time in times])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Protocol
 
@@ -30,10 +30,13 @@ class Tail(Record):
 
 
 class Movement(Protocol):
-    """Of the `joints` with these numbers. It may be done in a share of its time, down to `least`."""
+    """Of the `joints` with these numbers. It may be done in a share of its time, down to `least`. One that `flows` may
+    pass its first position with speed.
+    """
 
     joints: Sequence[int]
     least: float
+    flows: bool
 
     def tail(self, start: State, share: float, rests: bool) -> Tail:
         """From a state of these joints; where it `rests`, its first position is reached without speed."""
@@ -43,6 +46,7 @@ class Steps:
     """Positions of some joints one after the other, at rest at each; the stroke is at the first."""
 
     least = 1.0
+    flows = False
 
     def __init__(self, joints: Sequence[int], steps: Sequence[Array], limits: Limits) -> None:
         self.joints, self._steps, self._limits = joints, steps, limits
@@ -56,6 +60,8 @@ class Steps:
 
 class KeyFrames:
     """A gesture of key frames."""
+
+    flows = True
 
     def __init__(self, joints: Sequence[int], frames: Frames, gesture: Gesture, limits: Limits) -> None:
         self.joints, self.least = joints, gesture.least
@@ -78,6 +84,11 @@ class KeyFrames:
 def resting(position: Array) -> State:
     """At rest there."""
     return State(position, np.zeros_like(position), np.zeros_like(position))
+
+
+def staying(position: Array) -> Callable[[Array], State]:
+    """At rest there at each of some times."""
+    return lambda times: resting(np.repeat(position[None], len(times), axis=0))
 
 
 def frames_of(gesture: Gesture, names: Sequence[str], settled: Array) -> Frames:

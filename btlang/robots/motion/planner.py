@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from math import floor, inf
 
-import numpy as np
-
 from btlang.record import Record
 from btlang.robots.motion.braking import brake, braking
 from btlang.robots.motion.course import PERIOD, Limits, Piece, State, to_state
-from btlang.robots.motion.kinematics import Array
-from btlang.robots.motion.movements import Movement, Tail, resting
+from btlang.robots.motion.movements import Movement, Tail, resting, staying
 
 _EXACT = 1e-6
 _SLOWED = 1.02  # times as long: less is not worth a word
@@ -40,7 +37,7 @@ class Planner:
         """
         joints = movement.joints
         limits, start = self._limits.some(joints), state(0).of(joints)
-        for rests in (False, True):
+        for rests in (False, True) if movement.flows else (True,):
             course = self._direct(movement, limits, lambda ticks: state(ticks).of(joints), rests, room)
             if course is not None:
                 yield course
@@ -52,7 +49,7 @@ class Planner:
                 left = None if room is None else room - before.seconds
                 course = self._direct(movement, limits, lambda ticks, begin=begin: begin, True, left)  # type: ignore[misc]
                 if course is not None:
-                    waits = Piece(PERIOD * course.begins, _staying(begin.position))
+                    waits = Piece(PERIOD * course.begins, staying(begin.position))
                     pieces = (before, waits, *course.pieces)
                     yield course.replace(begins=0, pieces=pieces, stroke=course.stroke + before.seconds)
 
@@ -97,7 +94,3 @@ class Planner:
     ) -> tuple[Tail, Piece | None]:
         tail = movement.tail(start, share, rests)
         return tail, to_state(start, tail.first, limits, tail.approach)
-
-
-def _staying(position: Array) -> Callable[[Array], State]:
-    return lambda times: resting(np.repeat(position[None], len(times), axis=0))

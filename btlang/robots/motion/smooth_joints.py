@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from btlang.robots.body import Body
-from btlang.robots.gesture import Gesture
+from btlang.robots.gesture import Gesture, joints_of
 from btlang.robots.joints import clipped, joint_of
 from btlang.robots.motion.braking import brake
 from btlang.robots.motion.course import Limits
@@ -104,15 +104,16 @@ class SmoothJoints:
     def _movement(self, wanted: Gesture | Sequence[Mapping[str, float]]) -> Movement:
         if not isinstance(wanted, Gesture):
             return self._steps(wanted)
-        names = {joint_of(self._body, name).name for frame in wanted.frames for name in frame.joints}
-        joints = [index for index, name in enumerate(self._names) if name in names]
+        joints = self._joints(wanted)
         limits = self._limits.some(joints)
         settled = brake(self.timeline.state.of(joints), limits).end.position
         return KeyFrames(joints, frames_of(wanted, [self._names[index] for index in joints], settled), wanted, limits)
 
+    def _joints(self, wanted: Gesture | Sequence[Mapping[str, float]]) -> list[int]:
+        return sorted(self._names.index(joint_of(self._body, name).name) for name in joints_of(wanted))
+
     def _steps(self, steps: Sequence[Mapping[str, float]]) -> Steps:
-        names = {joint_of(self._body, name).name for step in steps for name in step}
-        joints = [index for index, name in enumerate(self._names) if name in names]
+        joints = self._joints(steps)
         row, rows = self.timeline.state.position[joints], []
         for step in steps:
             row = row.copy()

@@ -219,12 +219,12 @@ class Timeline:
 
     def _sample(self, tick: int) -> State:
         at = min(max(tick - self._first, 0), len(self._way.position) - 1)
-        return State(*(getattr(self._way, name)[at] for name in State.fields))
+        return self._way.rows(at)
 
     def _between(self, tick: int, end: int) -> State:
         """What all joints do from one tick to another, or at the first. A copy."""
         rows = np.clip(np.arange(tick, max(tick, end) + 1) - self._first, 0, len(self._way.position) - 1)
-        return State(*(getattr(self._way, name)[rows] for name in State.fields))
+        return self._way.rows(rows)
 
     def _with(self, course: Course, tick: int) -> tuple[State, Array]:
         """What all joints do from a tick on where some take a course, and when each of them rests."""

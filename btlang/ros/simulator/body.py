@@ -17,6 +17,7 @@ from trajectory_msgs.msg import JointTrajectory
 
 from btlang.robots.robot import Hand, RobotError
 from btlang.robots.simulated import SimulatedRobot
+from btlang.ros.joint_states import on_wire
 from btlang.ros.node import LATCHED
 from btlang.ros.simulator.call_queue import CallQueue
 from btlang.ros.simulator.publishing import COMMANDS, Every, Latched, Moment
@@ -40,7 +41,7 @@ class Body:
         self._robot, self._player, self._logger = robot, player, node.get_logger()
         self._calls = calls
         self._stepped = monotonic()
-        self._names = {joint.name.replace(" ", "_"): joint.name for joint in robot.body.joints}
+        self._names = {on_wire(joint.name): joint.name for joint in robot.body.joints}
         self._si = {joint.name: joint.si for joint in robot.body.joints}
         hands = [hand for hand in _HANDS if robot.body.hand(hand) is not None]
         self._joints = node.create_publisher(JointState, "joint_states", COMMANDS)

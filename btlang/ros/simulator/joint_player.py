@@ -12,10 +12,11 @@ from trajectory_msgs.msg import JointTrajectory
 from btlang.robots.body import Body
 from btlang.robots.motion.course import PERIOD, Limits, Piece, State, on_quintic, to_state
 from btlang.robots.motion.kinematics import Array
-from btlang.robots.motion.movements import resting
+from btlang.robots.motion.movements import staying
 from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.motion.timeline import Timeline
 from btlang.robots.robot import RobotError
+from btlang.ros.joint_states import on_wire
 from btlang.ros.times import seconds_of
 
 _SILENCE = 0.5  # simulated and real seconds without a trajectory after which the joints brake
@@ -35,7 +36,7 @@ class JointPlayer:
     def __init__(self, body: Body, joints: SmoothJoints, clocks: Callable[[], list[float]]) -> None:
         self._body, self._clocks = body, clocks
         self._timeline: Timeline = joints.timeline
-        self._names = [joint.name.replace(" ", "_") for joint in body.joints]
+        self._names = [on_wire(joint.name) for joint in body.joints]
         self._limits = Limits.of(body.joints)
         self._si = np.array([joint.si for joint in body.joints])
         self._playing: list[int] = []
@@ -98,8 +99,7 @@ class JointPlayer:
         if (off <= _SAME * limits.speed).all() and (faster <= _SAME_SPEED * limits.speed).all():
             return at
         for within in _CATCHES_UP:
-            goal = at(np.array([tick + within]))
-            goal = State(*(getattr(goal, name)[0] for name in State.fields))
+            goal = at(np.array([tick + within])).rows(0)
             piece = to_state(now, goal, limits, within)
             if piece is not None and piece.seconds <= within + 1e-6:
                 return _first(piece, tick, at)
@@ -119,7 +119,7 @@ def _first(piece: Piece, begins: float, at: Callable[[Array], State]) -> Callabl
 def _on(times: Array, way: State, seconds: Array) -> State:
     """Where they are at some seconds; before and after the points they rest."""
     if len(times) == 1:
-        return resting(np.repeat(way.position, len(seconds), axis=0))
+        return staying(way.position[0])(seconds)
     before = np.clip(np.searchsorted(times, seconds, side="right") - 1, 0, len(times) - 2)
-    start, end = (State(*(getattr(way, name)[rows] for name in State.fields)) for rows in (before, before + 1))
+    start, end = way.rows(before), way.rows(before + 1)
     return on_quintic(start, end, (times[before + 1] - times[before])[:, None], seconds - times[before])

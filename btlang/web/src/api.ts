@@ -37,27 +37,25 @@ let csrf = "";
 
 /** The answer to a request, an object. Throws RequestError. */
 export async function request(method: string, path: string, body?: unknown, signal?: AbortSignal): Promise<any> {
-  let answer: Response;
-  try {
-    answer = await fetch(path, {
-      method,
-      headers: { "content-type": "application/json", "x-csrf-token": csrf },
-      ...(body === undefined ? {} : { body: JSON.stringify(body) }),
-      ...(signal ? { signal } : {}),
-    });
-  } catch (error) {
-    throw new RequestError(0, String(error));
-  }
-  const data = await answer.json().catch(() => ({}));
-  if (!answer.ok) throw new RequestError(answer.status, data.text ?? answer.statusText, data);
-  return data;
+  const answer = await answered(path, {
+    method,
+    headers: { "content-type": "application/json", "x-csrf-token": csrf },
+    ...(body === undefined ? {} : { body: JSON.stringify(body) }),
+    ...(signal ? { signal } : {}),
+  });
+  return answer.json().catch(() => ({}));
 }
 
 /** A text that isn't JSON. Throws RequestError. */
 export async function requestText(path: string): Promise<string> {
-  const answer = await fetch(path).catch((error) => { throw new RequestError(0, String(error)); });
-  if (!answer.ok) throw new RequestError(answer.status, (await answer.json().catch(() => ({}))).text ?? answer.statusText);
-  return answer.text();
+  return (await answered(path)).text();
+}
+
+async function answered(path: string, options: RequestInit = {}): Promise<Response> {
+  const answer = await fetch(path, options).catch((error) => { throw new RequestError(0, String(error)); });
+  if (answer.ok) return answer;
+  const data = await answer.json().catch(() => ({}));
+  throw new RequestError(answer.status, data.text ?? answer.statusText, data);
 }
 
 export const post = (path: string, body: unknown): Promise<any> => request("POST", path, body);

@@ -22,7 +22,7 @@ from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
-from btlang.vocabulary.pattern import Slot, forms
+from btlang.vocabulary.pattern import forms, spelled
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.value_type import PLACE, ValueType, with_unit
@@ -310,8 +310,7 @@ def _phrases(vocabulary: Lexicon) -> dict[str, tuple[str, list[str]]]:
     for id, patterns in (*entries, *roles):
         for form in (form for pattern in patterns for form in reversed(forms(pattern, vocabulary.articles))):
             start = tuple(str(part) for part in takewhile(lambda part: isinstance(part, str), form))
-            written = (f"{{{part.name}}}" if isinstance(part, Slot) else part for part in form)
-            known.setdefault(start, (" ".join(written), id))
+            known.setdefault(start, (spelled(form), id))
     return {written: (id, list(start)) for start, (written, id) in known.items() if start}
 
 

@@ -31,6 +31,7 @@ export class BodyView {
   private from: Posture = [];
   private to: Posture = [];
   private came = 0;
+  private seen: unknown[] = []; // that the picture depends on
   private period = PERIODS[0];
   private calm = matchMedia("(prefers-reduced-motion: reduce)");
   private timer = 0;
@@ -82,6 +83,9 @@ export class BodyView {
 
   /** What is known of the robot by now. */
   show(robot: Robot): void {
+    const seen = [robot.map, robot.things, robot.joints, robot.state, robot.speech];
+    if (seen.every((each, index) => each === this.seen[index])) return;
+    this.seen = seen;
     this.room.show(robot);
     const [x, y, heading] = robot.state?.pose ?? this.to.slice(0, 3);
     const known = this.to.slice(3);
@@ -95,7 +99,7 @@ export class BodyView {
   private go(to: Posture, robot: Robot): void {
     const now = performance.now();
     if (this.calm.matches && now - this.came < CALM && this.shown.length) {
-      this.timer ||= window.setTimeout(() => ((this.timer = 0), this.show(robot)), CALM);
+      this.timer ||= window.setTimeout(() => ((this.timer = 0), (this.seen = []), this.show(robot)), CALM);
       return;
     }
     const [least, most] = PERIODS;

@@ -9,7 +9,6 @@ export class Links {
   /** Metres from the floor to its top, with all joints at zero. */
   readonly height: number;
   private movers: { joint: Joint; axis: Vector3; group: Group }[] = [];
-  private positions: number[];
 
   constructor(urdf: Urdf, material: Material) {
     const groups = new Map<string, Group>();
@@ -25,14 +24,13 @@ export class Links {
     }
     this.group.add(groups.get(urdf.root)!);
     this.movers = moving(urdf).map((joint) => ({ joint, axis: new Vector3(...joint.axis).normalize(), group: groups.get(joint.child)! }));
-    this.positions = this.movers.map(() => 0);
     this.height = new Box3().setFromObject(this.group).max.z;
   }
 
-  /** Radians and metres of the joints that move, in order; null leaves one as it is. */
-  pose(positions: (number | null)[]): void {
-    for (const [index, { joint, axis, group }] of this.movers.entries()) {
-      const position = (this.positions[index] = positions[index] ?? this.positions[index]!);
+  /** Radians and metres of the joints that move, in order; those that are missing at the end stay as they are. */
+  pose(positions: number[]): void {
+    for (const [index, position] of positions.slice(0, this.movers.length).entries()) {
+      const { joint, axis, group } = this.movers[index]!;
       if (joint.kind === "turns") group.quaternion.setFromAxisAngle(axis, position);
       else group.position.copy(axis).multiplyScalar(position);
     }

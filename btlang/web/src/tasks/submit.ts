@@ -1,8 +1,8 @@
 // The form for new work: words or a mission of the library, now or by a schedule.
-import { request } from "../api";
 import { fill, h } from "../dom";
 import { t } from "../texts";
 import type { Context } from "../view";
+import { libraryOf } from "./library";
 import { command } from "./queue";
 
 /** `done` is called after the robot has taken it. */
@@ -37,8 +37,8 @@ export function submitForm(context: Context, done: () => void = () => undefined)
       button.disabled = false;
     }
   });
-  void request("GET", `/api/missions?robot=${encodeURIComponent(context.robot)}`).then(
-    ({ data }) => mission.append(...(data.missions as { name: string }[]).map(({ name }) => h("option", { value: name }, name))),
+  void libraryOf(context.robot).then(
+    (missions) => mission.append(...missions.map(({ name }) => h("option", { value: name }, name))),
     () => undefined,
   );
   return form;

@@ -1,7 +1,8 @@
 // The missions of the robot's library, to be begun by one click while it has nothing to do.
-import { may, request } from "../api";
+import { may } from "../api";
 import { fill, h } from "../dom";
 import type { Robot } from "../fleet";
+import { libraryOf } from "../tasks/library";
 import { command } from "../tasks/queue";
 import { t } from "../texts";
 import type { Context } from "../view";
@@ -13,6 +14,7 @@ export class Offers {
   private problem = h("p", { class: "problem", role: "alert" });
   readonly element = h("div", { class: "starts card", role: "group", "aria-label": t("offers"), hidden: true }, h("h2", { "aria-hidden": true }, t("offers")), this.list, this.problem);
   private names: string[] = [];
+  private busy = true; // for all that is known
 
   constructor(private context: Context) {
     if (may(context.me, "operator")) void this.ask();
@@ -20,15 +22,16 @@ export class Offers {
 
   /** What is known of the robot by now, and whether it has a task. */
   show(robot: Robot, busy: boolean): void {
+    this.busy = busy;
     this.element.hidden = busy || !robot.up || !this.names.length || Boolean(robot.state?.stopped);
   }
 
   private async ask(): Promise<void> {
-    const { data } = await request("GET", `/api/missions?robot=${encodeURIComponent(this.context.robot)}`).catch(() => ({ data: { missions: [] } }));
-    this.names = (data.missions as { name: string }[]).map(({ name }) => name);
+    const missions = await libraryOf(this.context.robot).catch(() => []);
+    this.names = missions.map(({ name }) => name);
     const button = (name: string): HTMLElement => h("button", { type: "button", dir: "auto", onclick: () => void this.begin(name) }, name.replaceAll("_", " "));
     fill(this.list, ...this.names.slice(0, MOST).map(button));
-    this.show(this.context.fleet.get(this.context.robot), false);
+    this.show(this.context.fleet.get(this.context.robot), this.busy);
   }
 
   private async begin(name: string): Promise<void> {

@@ -1,7 +1,8 @@
 // Missions: a list of those in the library, and one as English and tree side by side.
-import { may, request, type RequestError } from "../api";
+import { may, type RequestError } from "../api";
 import { fill, h, set } from "../dom";
 import { downloads, pictures, plain, type Offer } from "../download";
+import { libraryOf } from "../tasks/library";
 import { command } from "../tasks/queue";
 import { askSchedule } from "../tasks/schedule";
 import { t } from "../texts";
@@ -28,10 +29,8 @@ export function openWrite(context: Context): View {
 
 function openList(context: Context): View {
   const list = h("ul", { class: "tasks" });
-  const robot = context.robot ? `?robot=${encodeURIComponent(context.robot)}` : "";
-  void request("GET", `/api/missions${robot}`).then(
-    ({ data }) => {
-      const missions = data.missions as { name: string; number: number; person: string }[];
+  void libraryOf(context.robot).then(
+    (missions) => {
       const items = missions.map(({ name, number, person }) =>
         h("li", { class: "card" }, h("span", { class: "number" }, number), h("a", { class: "what", href: address("write", name), dir: "auto" }, name), h("span", { class: "why", dir: "auto" }, person)),
       );
@@ -218,7 +217,7 @@ class Desk {
   private tell(): void {
     const { tree, copy, problem } = this.keeping.kept;
     fill(this.state, this.keeping.state);
-    fill(this.origin, tree && copy && t("write.of_tree", { tree, copy }), problem && h("span", { class: "problem", lang: "en" }, problem));
+    fill(this.origin, tree && (copy ? t("write.of_tree", { tree, copy }) : t("write.onto_tree", { tree })), problem && h("span", { class: "problem", lang: "en" }, problem));
     this.context.presence.write(this.keeping.name, this.keeping.isChanged);
   }
 

@@ -1,0 +1,304 @@
+"""A tree written onto the XML file that it came from: only what was edited changes, all other bytes stay."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping
+from difflib import SequenceMatcher
+
+from btlang.backends.btcpp.markup import sound_comment
+from btlang.backends.btcpp.models import Uses
+from btlang.backends.btcpp.names import tree_ids
+from btlang.backends.btcpp.rewriting import Rewriter
+from btlang.backends.english.comments import lines_of
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.frontends.btcpp.file import SPOKEN_NAME, XmlFile
+from btlang.frontends.btcpp.reader import MAIN, read_xml
+from btlang.frontends.btcpp.scan import Note, scanned
+from btlang.frontends.btcpp.spelling import MAIN_TREE, SPELL, is_editors
+from btlang.record import Record
+from btlang.text.source import NOWHERE, Source
+from btlang.tree.alignment import Alignment
+from btlang.tree.comments import FOOT, HEAD, comments_by_line, line_of
+from btlang.tree.node import Node, Tree
+from btlang.tree.visit import fold
+from btlang.vocabulary.lexicon import Lexicon
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    from btlang.frontends.btcpp.spelling import Pairs, Spelling
+
+    Raw: TypeAlias = Mapping[tuple[str, ...], str]
+    """Comments of nodes that are gone, as they were written, by their lines in English."""
+
+
+def written_onto(original: Source, tree: Tree, vocabulary: Lexicon) -> str:
+    """The text of the XML file `original` with the nodes and comments of a tree from a mission.
+
+    Nodes that have not changed keep their bytes, as do comments, models and all else. Raises MissionError where the
+    file is no tree (BT120 to BT129), or where the tree changes what a file has that this one includes (BT135).
+    """
+    return _Onto(original, tree, vocabulary).written()
+
+
+class _Said(Record):
+    """A comment of the file with the line of the mission that it belongs to; `lines` are what English says of it."""
+
+    note: Note
+    lines: tuple[str, ...]
+
+
+class _Onto:
+    def __init__(self, original: Source, tree: Tree, vocabulary: Lexicon) -> None:
+        self._vocabulary = vocabulary
+        self._file = XmlFile(scanned(original))
+        is_there = tree.name in (head.name for head in self._file.heads)  # then it is the main tree, whatever is told
+        self._before = read_xml(original, tree.name if is_there else "")
+        self._after = tree.replace(
+            root=_apart(tree.root), subtrees=[(name, _apart(root)) for name, root in tree.subtrees]
+        )
+        document = self._file.document
+        self._dialect = self._file.dialect
+        self._heads = {head.name: head for head in self._file.heads}
+        others = dict(self._before.subtrees)
+        self._old = {(name if name in others else ""): others.get(name, self._before.root) for name in self._heads}
+        self._elements: dict[int, int] = {}
+        for name, head in self._heads.items():
+            root = self._old[name if name in others else ""]
+            for number, node in enumerate(Tree(root).walk(), head.index + 1):
+                self._elements[id(node)] = number
+        self._new = {"": self._after.root, **dict(self._after.subtrees)}
+        self._elsewhere = {name: root for name, root in others.items() if name not in self._heads}
+        self._renamed = self._find_renamed()
+        self._alignment = self._aligned()
+        self._ids = self._written_ids()
+        uses = Uses(self._after, vocabulary, self._dialect)
+        kinds = {model.id: model.kind for model in self._before.models}
+        self._kind = lambda node_id: kinds.get(node_id) or uses.kind(node_id)
+        self._text = Rewriter(document, self._file.notes, self._known, self._spelled)
+        self._mission = tree.origin if isinstance(tree.origin, Source) else None
+
+    # -- what is what
+
+    def _find_renamed(self) -> dict[str, str]:
+        """New names by old ones, where one tree alone has another name."""
+        gone = [name for name in self._old if name not in self._new]
+        come = [name for name in self._new if name not in self._old and name not in self._elsewhere]
+        return {gone[0]: come[0]} if len(gone) == len(come) == 1 else {}
+
+    def _aligned(self) -> Alignment:
+        named = {self._renamed.get(name, name): root for name, root in self._old.items()}
+        roots = [(root, self._new[name]) for name, root in named.items() if name in self._new]
+        gone = [root for name, root in named.items() if name not in self._new]
+        come = [root for name, root in self._new.items() if name not in named and name not in self._elsewhere]
+        included = [(root, self._new[name]) for name, root in self._elsewhere.items() if name in self._new]
+        alignment = Alignment([*roots, *included], gone, come, _told)
+        wrong = [_in_other_file(name, root, self._new[name]) for name, root in self._elsewhere.items()
+                 if name in self._new and not alignment.is_equal(root, self._new[name])]  # fmt: skip
+        if wrong:
+            raise MissionError(wrong)
+        return alignment
+
+    def _written_ids(self) -> dict[str, str]:
+        """The ID of each tree in the file by its name, those of new trees as the file's dialect allows them."""
+        made = tree_ids(self._after, (node.id for node in self._after.walk()), self._dialect)
+        written = {name: head.written for name, head in self._heads.items() if head.written and name in self._new}
+        return made | written
+
+    def _known(self, node: Node) -> int | None:
+        old = self._alignment.old(node)
+        return self._elements.get(id(old)) if old is not None else None
+
+    def _spelled(self, node: Node) -> Spelling:
+        return SPELL[self._dialect](node, self._kind, self._ids)
+
+    def _spelled_before(self, node: Node) -> Spelling:
+        written = {name: head.written for name, head in self._heads.items() if head.written}
+        return SPELL[self._dialect](node, self._kind, written)
+
+    # -- writing
+
+    def written(self) -> str:
+        """See `written_onto`."""
+        for node in self._after.walk():
+            old = self._alignment.old(node)
+            if old is not None and id(old) in self._elements:
+                self._change(self._elements[id(old)], old, node)
+        self._name_trees()
+        self._change_comments()
+        trees = {head.index: self._root_of(name) for name, head in self._heads.items()}
+        known = {self._renamed.get(name, name) for name in self._old} | self._elsewhere.keys()
+        added = [(self._tree_attributes(name), root) for name, root in self._new.items() if name not in known]
+        return self._text.write(trees, added)
+
+    def _root_of(self, name: str) -> Node | None:
+        key = name if name in self._old else ""
+        return self._new.get(self._renamed.get(key, key))
+
+    def _tree_attributes(self, name: str) -> Pairs:
+        written = self._ids[name if name in self._ids else ""]
+        return (("ID", written),) if name == written else (("ID", written), (SPOKEN_NAME, name))
+
+    def _change(self, number: int, old: Node, new: Node) -> None:
+        tag, before = self._spelled_before(old)
+        other, after = self._spelled(new)
+        if tag != other and self._file.document.elements[number][0] == tag:
+            self._text.rename(number, other)
+        kept = tuple(pair for pair in before if not is_editors(pair[0]))
+        wanted = tuple(pair for pair in after if not is_editors(pair[0]))
+        if sorted(kept) != sorted(wanted):
+            self._text.attributes(number, kept, wanted)
+
+    def _name_trees(self) -> None:
+        """The IDs of trees that have other names now."""
+        for name, head in self._heads.items():
+            old = name if name in self._old else ""
+            new = self._renamed.get(old, old)
+            if not old and self._after.name != self._before.name:
+                new = self._after.name or MAIN_TREE
+                told = self._file.attributes.get(MAIN)
+                if told is not None:
+                    self._text.attributes(0, ((MAIN, told),), ((MAIN, self._ids[self._after.name]),))
+            elif new == old:
+                continue
+            there = self._file.document.attributes(head.index)
+            before = tuple((key, there[key]) for key in ("ID", SPOKEN_NAME) if key in there)
+            self._text.attributes(head.index, before, self._tree_attributes(new))
+
+    # -- comments
+
+    def _change_comments(self) -> None:
+        """Makes the comments those of the mission, where its text is there."""
+        if self._mission is None:
+            return
+        nodes = list(self._after.walk())
+        wanted = comments_by_line(self._mission, self._vocabulary.orthography, self._after)
+        first: dict[float, Node] = {}
+        for node in nodes:
+            first.setdefault(line_of(node), node)
+        top = HEAD if self._after.name else min((line for line in first if line), default=HEAD)
+        there, gone = self._comments_by_line(top)
+        come: Counter[str] = Counter()
+        left: Counter[str] = Counter()
+        for line in sorted({*there, *wanted}):
+            has = Counter(text for said in there.get(line, ()) for text in said.lines)
+            come += Counter(wanted.get(line, ())) - has
+            left += has - Counter(wanted.get(line, ()))
+        stays = come & left, come & left  # said in another statement, as English puts comments before whole ones
+        raw = {said.lines: said.note.text for said in gone}
+        for line in sorted({*there, *wanted}):
+            new = self._changed_line(there.get(line, []), wanted.get(line, []), stays, raw)
+            if line in (HEAD, FOOT):
+                self._text.add_around(new, at_end=line == FOOT)
+            elif new:
+                self._text.add_comments(first[line], new)
+
+    def _changed_line(
+        self, there: list[_Said], wanted: list[str], stays: tuple[Counter[str], Counter[str]], raw: Raw
+    ) -> list[str]:
+        """Changes the comments of one statement to those that are wanted; returns those that are new."""
+        has = [(said, at, text) for said in there for at, text in enumerate(said.lines)]
+        texts = [text for _, _, text in has]
+        if Counter(texts) == Counter(wanted):
+            return []
+        changed: defaultdict[int, dict[int, str | None]] = defaultdict(dict)
+        come: list[str] = []
+        for tag, first, last, begin, end in SequenceMatcher(a=texts, b=wanted, autojunk=False).get_opcodes():
+            if tag == "equal":
+                continue
+            old = [each for each in has[first:last] if not _taken(stays[0], each[2])]
+            new = [text for text in wanted[begin:end] if not _taken(stays[1], text)]
+            for (said, at, _), text in zip(old, new, strict=False):
+                changed[id(said)][at] = text
+            for said, at, _ in old[len(new) :]:
+                changed[id(said)][at] = None
+            come += new[len(old) :]
+        for said in there:
+            if id(said) in changed:
+                self._change_comment(said, changed[id(said)])
+        written = raw.get(tuple(come))
+        return [written] if written is not None else [f"<!-- {sound_comment(text)} -->" for text in come]
+
+    def _change_comment(self, said: _Said, lines: Mapping[int, str | None]) -> None:
+        if len(lines) == len(said.lines) and not any(lines.values()):
+            self._text.remove_comment(said.note)
+            return
+        start, end = self._text.span_of(said.note)
+        raw = self._file.document.source.text[start:end]
+        kept: list[str] = []
+        at = 0
+        for line in raw.removeprefix("<!--").removesuffix("-->").split("\n"):
+            if not lines_of((f"<!--{line}-->",)):
+                kept.append(line)
+                continue
+            text = lines.get(at, line)
+            if text is not None:
+                inner = line.strip()
+                kept.append(line if at not in lines else line.replace(inner, sound_comment(text)))
+            at += 1
+        inner = "\n".join(kept)
+        self._text.change(start, end, f"<!--{inner}-->")
+
+    def _comments_by_line(self, top: float) -> tuple[dict[float, list[_Said]], list[_Said]]:
+        """The comments of the file by the line of the mission in which their node is said; and those of nodes that are
+        gone. What stands before all trees belongs to the first statement.
+        """
+        found: defaultdict[float, list[_Said]] = defaultdict(list)
+        gone: list[_Said] = []
+
+        def put(notes: Iterable[Note], node: Node | None, line: float | None = None) -> None:
+            for note in notes:
+                lines = tuple(lines_of((note.text,))) if not note.is_text else ()
+                if lines and node is None and line is None:
+                    gone.append(_Said(note, lines))
+                    self._text.remove_comment(note)
+                elif lines:
+                    found[line_of(node) if node is not None else line].append(_Said(note, lines))  # type: ignore[index]
+
+        notes, document = self._file.notes, self._file.document
+        put(notes.before(0), None, top)
+        heads = {head.index: name for name, head in self._heads.items()}
+        waiting: list[Note] = []
+        for part in document.parts():
+            waiting += notes.before(part)
+            if part in heads:
+                root = self._root_of(heads[part])
+                put(waiting, root)
+                put(notes.inside(part), root)
+                waiting = []
+        put((*waiting, *notes.inside(0), *notes.inside(-1)), None, FOOT)
+        for root in self._old.values():
+            for old in Tree(root).walk():
+                number, new = self._elements[id(old)], self._alignment.new(old)
+                places = notes.before(number), notes.heading(number), notes.behind(number), notes.inside(number)
+                put((note for place in places for note in place), new)
+        return found, gone
+
+
+def _in_other_file(name: str, old: Node, new: Node) -> Diagnostic:
+    path = old.span.source.name if old.span is not None else ""
+    return diagnostic("BT135", new.span or NOWHERE, name=name, path=path)
+
+
+def _told(node: Node) -> list[tuple[str, str]]:
+    return [port for port in node.ports if not is_editors(port[0])]
+
+
+def _taken(counter: Counter[str], text: str) -> bool:
+    """Takes one of them, if there is one."""
+    if counter[text] <= 0:
+        return False
+    counter[text] -= 1
+    return True
+
+
+def _apart(root: Node) -> Node:
+    """The tree with no node in two places, as the body of a loop may be."""
+
+    def combine(node: Node, children: list[Node]) -> Node:
+        return node.replace(children=tuple(children))  # type: ignore[no-any-return]
+
+    return fold(root, lambda node: node.children, combine)

@@ -1,0 +1,35 @@
+"""English that goes back onto the XML file that it was made from."""
+
+from __future__ import annotations
+
+import os
+from codecs import BOM_UTF8
+
+from btlang.api import Mission
+from btlang.backends.files import write_file
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import read_bytes, read_source
+from btlang.frontends.btcpp.kept import digest_of, kept_in, with_digest
+from btlang.text.source import Source, Span
+
+
+def write_onto(mission: Mission, path: str, out: str | None = None, *, force: bool = False) -> None:
+    """Writes a mission onto an XML file at once, or what that gives into the file `out`.
+
+    If the mission's text tells of which state of the file it was made, and the file is another by now, this is refused
+    but with `force`; else the text gets to know the new state where it is in a file. Raises MissionError (BT136, and
+    those of reading and writing).
+    """
+    original = read_source(path)
+    source = mission.tree.origin
+    text = source.text if isinstance(source, Source) else ""
+    kept = kept_in(text)
+    if not force and kept.digest not in ("", digest_of(original.text)):
+        advice = f"Make it anew with 'btc compile {path} --to english', or write it all the same with --force."
+        raise MissionError([diagnostic("BT136", Span(original, 0, 0), path=path, advice=advice)])
+    made = str(mission.to("xml", onto=original))
+    mark = BOM_UTF8 if read_bytes(path).startswith(BOM_UTF8) else b""
+    write_file(out or path, mark + made.encode())
+    if isinstance(source, Source) and kept.digest and out is None and os.path.isfile(source.name):
+        write_file(source.name, with_digest(text, digest_of(made)))

@@ -1,0 +1,108 @@
+"""Edits in English give the smallest changes of the XML: samples, all trees there are, and random ones."""
+
+from __future__ import annotations
+
+from difflib import unified_diff
+from pathlib import Path
+
+import pytest
+from hypothesis import given, reject, settings
+from hypothesis import strategies as st
+
+from btlang.api import world_vocabulary
+from btlang.backends.btcpp import to_xml
+from btlang.backends.btcpp.onto import written_onto
+from btlang.backends.english import to_english
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import read_source
+from btlang.frontends.btcpp.reader import read_xml
+from btlang.frontends.mission.reader import read_mission
+from btlang.passes import lower_mission
+from btlang.text.source import Source
+from btlang.tree.dump import plain
+from btlang.tree.node import Tree
+from tests.backends.any_tree import trees
+from tests.corpus.test_team import FILES, edits_of, read
+
+WORDS = world_vocabulary()
+GOOD = sorted(Path(__file__).parent.parent.joinpath("corpus", "good").rglob("*.xml"))
+FURTHER_LINES = 2  # of a difference, beside those of the edit that a careful person makes by hand
+
+
+def mission_of(text: str) -> Tree:
+    """The tree of a text in English."""
+    return lower_mission(read_mission(Source(text, "mission.txt"), WORDS).mission, WORDS)
+
+
+def changed_lines(before: str, after: str) -> list[str]:
+    """The lines that a difference shows as gone or come."""
+    lines = unified_diff(before.split("\n"), after.split("\n"), n=0, lineterm="")
+    return [line for line in lines if line[:1] in "+-" and line[:3] not in ("---", "+++")]
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_edits_of_a_team_s_trees(path: Path) -> None:
+    """What stands in the edited file is said in English, and that is written onto the file as it was."""
+    before = read_source(str(path))
+    for number, (kind, text) in enumerate(edits_of(path), 1):
+        wanted = text.removeprefix("\ufeff")
+        tree = read(text, path)
+        made = written_onto(before, mission_of(to_english(tree, WORDS)), WORDS)
+        assert plain(read(made, path)) == plain(tree), f"edit {number}, {kind}"
+        most = len(changed_lines(before.text, wanted)) + FURTHER_LINES
+        assert len(changed_lines(before.text, made)) <= most, f"edit {number}, {kind}"
+
+
+@pytest.mark.parametrize("path", [*FILES, *GOOD], ids=lambda path: path.stem)
+def test_without_an_edit_no_byte_changes(path: Path) -> None:
+    source = read_source(str(path))
+    text = to_english(read_xml(source), WORDS)
+    assert written_onto(source, mission_of(text), WORDS) == source.text
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_comments_and_models_come_back_without_the_file(path: Path) -> None:
+    """English -> XML -> English: what a person reads is the same, and the models of the file are there again."""
+    tree = read_xml(read_source(str(path)))
+    text = to_english(tree, WORDS)
+    again = read_xml(Source(to_xml(mission_of(text), WORDS)))
+    assert _read_by_people(to_english(again, WORDS)) == _read_by_people(text)
+    written = {model.id: model for model in tree.models if f'ID="{model.id}"' in text.partition("#: <Tree")[2]}
+    kept = {model.id: model for model in again.models}
+    assert {name: kept[name] for name in written} == written
+
+
+def _read_by_people(text: str) -> list[str]:
+    return [line for line in text.split("\n") if not line.startswith("#:")]
+
+
+@settings(deadline=None)
+@given(trees(), trees())
+def test_any_tree_onto_any_other(before: Tree, after: Tree) -> None:
+    """Nothing that was written onto a file is lost, however much is edited at once."""
+    original = _written(before)
+    _written(after)
+    made = written_onto(original, after, WORDS)
+    assert plain(read_xml(Source(made))) == plain(after)
+    assert written_onto(Source(made), after, WORDS) == made
+
+
+@settings(deadline=None)
+@given(trees(), st.data())
+def test_a_changed_value_changes_one_line(tree: Tree, data: st.DataObject) -> None:
+    original = _written(tree)
+    lines = original.text.split("\n")
+    at = data.draw(st.sampled_from([number for number, line in enumerate(lines) if ' text="' in line] or [-1]))
+    if at < 0:
+        return
+    lines[at] = lines[at].replace(' text="', ' text="9', 1)
+    wanted = read_xml(Source("\n".join(lines)))
+    assert written_onto(original, wanted, WORDS) == "\n".join(lines)
+
+
+def _written(tree: Tree) -> Source:
+    """Of trees that XML can hold."""
+    try:
+        return Source(to_xml(tree, WORDS))
+    except MissionError:
+        reject()
