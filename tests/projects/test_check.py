@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import yaml
 
 from btlang.cli import main
 from btlang.diagnostics.codes import CODES
@@ -183,6 +182,7 @@ def test_github(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_the_hook_as_pre_commit_runs_it(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """It appends the names of changed files, some of them after the folder that is given as an argument."""
+    yaml = pytest.importorskip("yaml", reason="PyYAML is not installed")
     [hook] = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text("utf-8"))
     assert (hook["id"], hook["language"]) == ("btc-check", "python")
     names = ["sound/doors.xml", "mission.txt", "package.xml", "CMakeLists.txt", "docs/notes.md"]
