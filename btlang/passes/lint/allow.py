@@ -1,14 +1,14 @@
 """Comments that silence warnings: `# allow: two readings`, with commas between several names.
 
 Behind a statement such a comment counts for that statement, with the block that it opens; on a line of its own it
-counts for the whole mission.
+counts for the whole mission. In XML, `<!-- allow: never runs -->` counts for the whole file.
 """
 
 from __future__ import annotations
 
 import re
 from bisect import bisect
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from btlang.diagnostics.codes import NAMES
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -20,6 +20,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.trie import longest
 
 _ALLOW = r"(?i)#\s*allow\s*:(?P<names>[^\n]*)"
+_IN_XML = re.compile(r"(?i)<!--\s*allow\s*:([^<>]*)-->")
 _NAME = r"[^,\s](?:[^,]*[^,\s])?"
 
 
@@ -53,6 +54,27 @@ def silence(compilation: Compilation) -> Iterator[Diagnostic]:
         if warning.span.source is not source
         or not any(start <= warning.span.start < end for start, end in silent.get(warning.code, ()))
     ]
+
+
+def silence_in_xml(compilation: Compilation) -> Iterable[Diagnostic]:
+    """The same for a tree from XML, without BT056."""
+    if not compilation.is_text and any(warning.span.source.text[:1] == "<" for warning in compilation.warnings):
+        compilation.warnings = not_allowed(compilation.warnings)
+    return ()
+
+
+def not_allowed(problems: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Those that no comment of their XML file silences; errors stay."""
+    silent: dict[str, set[str]] = {}
+    left = []
+    for problem in problems:
+        text = problem.span.source.text
+        if text not in silent:
+            names = ",".join(_IN_XML.findall(text)).lower().split(",")
+            silent[text] = {NAMES.get(" ".join(name.split()), "") for name in names}
+        if problem.is_error or problem.code not in silent[text]:
+            left.append(problem)
+    return left
 
 
 def _scope(comment: Span, words: Words, vocabulary: Lexicon) -> tuple[int, int]:
