@@ -229,6 +229,8 @@ _ALL = (
     Code("BT236", "No main tree uses the tree '{name}'.", "Use it or remove it.", "warning", "unused tree"),
     Code("BT237", "{port}=\"0\" means that the child of this {id} never runs.",
          "Write how often it runs at most, or -1 for no limit.", "warning", "no rounds"),
+    Code("BT238", "BehaviorTree.CPP 4.10 refuses the ID '{id}', because it contains {what}.",
+         "Rename it in all files that use it.", "warning", "refused id"),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}
