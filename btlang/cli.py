@@ -201,18 +201,6 @@ def _compile(options: argparse.Namespace) -> int:
     return SUCCESS
 
 
-def _words(options: argparse.Namespace) -> int:
-    from btlang.vocabulary.listing import listing, overview
-
-    vocabulary = world_vocabulary(options.keywords, options.world, options.language)
-    search = " ".join(options.search)
-    if search or options.all:
-        show("\n".join(listing(vocabulary, search, listing_width())))
-    else:
-        show("\n".join(overview(vocabulary, listing_width())))
-    return SUCCESS
-
-
 def _grammar(options: argparse.Namespace) -> int:
     from btlang.backends.files import put
     from btlang.backends.grammar.targets import GRAMMARS
@@ -359,6 +347,7 @@ def _version(options: argparse.Namespace) -> int:
 _ELSEWHERE = {
     **dict.fromkeys(("replay", "why", "diff"), "btlang.recording.command"),
     "test": "btlang.testing.command",
+    "words": "btlang.cli_words",
     "mcp": "btlang.mcp_server",
     "new": "btlang.templates.command",
     "world": "btlang.maps.command",
@@ -381,7 +370,6 @@ _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "check": _check,
     "tree": _show_tree,
     "compile": _compile,
-    "words": _words,
     "grammar": _grammar,
     "examples": _examples,
     "explain": _explain,

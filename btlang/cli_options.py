@@ -272,6 +272,9 @@ def _compile_options(parser: argparse.ArgumentParser) -> None:
 def _listing_options(parser: argparse.ArgumentParser) -> None:
     _words_options(parser)
     parser.add_argument("--all", action="store_true", help="list everything, with what it does and an example")
+    about = "make words for the nodes of this XML file, by its TreeNodesModel and its trees; may be repeated"
+    parser.add_argument("--from", dest="sources", action="append", default=[], metavar="XML", help=about)
+    parser.add_argument("-o", dest="out", metavar="FILE", help="with --from: keyword file (default: standard output)")
     parser.add_argument("search", nargs="*", metavar="SEARCH", help="a topic, or words to search for")
 
 

@@ -6,7 +6,7 @@ BT07x worlds, BT08x the Python behind the words and what else has to be installe
 BT10x ROS 2, BT11x missions as ROS 2 nodes, BT12x trees in XML, BT13x trees that were not written as missions,
 BT14x nodes said by their ids, BT15x lists, words that stand for names, and what is forbidden,
 BT16x times of day, BT17x sentences that people mean in two ways, BT18x tests and robots
-that are up, BT19x tasks and schedules, BT20x the server, BT21x editors.
+that are up, BT19x tasks and schedules, BT20x the server, BT21x editors, BT24x files made of others.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
@@ -216,6 +216,8 @@ _ALL = (
     Code("BT220", "The tree can't be changed like this: {reason}."),
     Code("BT221", "'{words}' can't be tried: what it does stands in {file}, and might move a real robot.",
          "Test it with fakes: btc help test"),
+    Code("BT240", "There are no words for the node '{id}': {reason}.", "Missions say it by its id: do \"{id}\"", "warning",
+         "node without words"),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from btlang.diagnostics.codes import NAMES
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
-from btlang.text.source import Span
+from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
 from btlang.text.words import Words, split
 from btlang.vocabulary.lexicon import Lexicon
@@ -53,6 +53,12 @@ def silence(compilation: Compilation) -> Iterator[Diagnostic]:
         if warning.span.source is not source
         or not any(start <= warning.span.start < end for start, end in silent.get(warning.code, ()))
     ]
+
+
+def allowed_in(source: Source) -> frozenset[str]:
+    """The codes of the warnings that such comments name anywhere in a text that is no mission."""
+    names = (name for match in re.finditer(_ALLOW, source.text) for name in match["names"].split("--")[0].split(","))
+    return frozenset(code for name in names if (code := NAMES.get(" ".join(name.lower().split()))))
 
 
 def _scope(comment: Span, words: Words, vocabulary: Lexicon) -> tuple[int, int]:
