@@ -10,10 +10,13 @@ import pytest
 
 from btlang.api import parse_file, parse_tree, world_vocabulary
 from btlang.backends.keyword_pack import KeywordPack, keyword_pack, leaves_of
+from btlang.backends.keywords import is_unknown
 from btlang.backends.wording import SpokenPorts, phrases
 from btlang.cli import main
+from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.file_set import read_files
 from btlang.frontends.btcpp.models import nav2_models
+from btlang.printer.phrase import leaf_words
 from btlang.text.source import Source
 from btlang.tree.dump import plain
 from btlang.tree.model import NodeModel
@@ -146,3 +149,18 @@ def test_hostile_models_make_a_file_that_loads() -> None:
     pack = keyword_pack(leaves_of(models, (), vocabulary), vocabulary, vocabulary_with)
     made = vocabulary_with(Source(pack.text))
     assert not any(entry.call for id in names for entry in made.entries.get(id, ()))
+
+
+def test_most_leaves_have_a_phrase_that_says_all_of_their_ports() -> None:
+    """Where any name in braces is a value, at most 30 % are left that only their ids say."""
+    by_phrase = total = 0
+    for path in sorted((CORPUS / "team").glob("*.xml")):
+        read = read_files([read_source(str(path))])
+        known = world_vocabulary()
+        pack = keyword_pack(leaves_of(read.models, read.nodes(), known), known, vocabulary_with)
+        words = vocabulary_with(Source(pack.text)).with_references()
+        leaves = [node for node in read.nodes() if not node.children and is_unknown(node.id, known)]
+        said = [leaf_words(node.id, dict(node.ports), words, exactly=True) for node in leaves]
+        by_phrase, total = by_phrase + sum(map(bool, said)), total + len(leaves)
+    assert total > 100
+    assert by_phrase >= 0.7 * total
