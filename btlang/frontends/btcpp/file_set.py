@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.frontends.btcpp.file import XmlFile
+from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.models import subtree_defaults
 from btlang.frontends.btcpp.scan import scanned
 from btlang.record import Record
@@ -55,6 +55,7 @@ def read_files(sources: Iterable[Source]) -> FileSet:
         files.append(file)
         problems += file.problems
         file.problems.clear()
+        problems += _repeated(file)
     if problems:
         raise MissionError(problems)
     names = {head.written or head.name: head.name for file in files for head in file.heads}
@@ -66,3 +67,11 @@ def read_files(sources: Iterable[Source]) -> FileSet:
     if problems:
         raise MissionError(problems)
     return FileSet(tuple(files), tuple(models.values()), kinds)
+
+
+def _repeated(file: XmlFile) -> Iterator[Diagnostic]:
+    """BT127 for trees of one file with the same ID; those of several files may be of several robots."""
+    first: dict[str, TreeHead] = {}
+    for head in file.heads:
+        if first.setdefault(head.name, head) is not head:
+            yield diagnostic("BT127", head.span, ((first[head.name].span, "the first one"),), name=head.name)
