@@ -12,7 +12,7 @@ from importlib import import_module
 
 import btlang
 from btlang.api import Mission, format_mission, world_vocabulary
-from btlang.cli_input import add_robot_files, hinting, mission_of, parsed_mission, source_of, typed_source
+from btlang.cli_input import add_robot_files, hinting, mission_of, typed_source
 from btlang.cli_options import parsed, show_help, verb_parsers
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
@@ -24,8 +24,6 @@ from btlang.text.source import Source
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
-
-    from btlang.diagnostics.diagnostic import Diagnostic
 
 SUCCESS, FAILED, UNFORMATTED, BAD_INPUT, CRASHED, INTERRUPTED = 0, 1, 1, 2, 70, 130
 
@@ -116,48 +114,6 @@ def _groot(port: int | None) -> Callable[..., Any] | None:
     from btlang.monitor.command import groot_monitor
 
     return partial(groot_monitor, port)
-
-
-def _check(options: argparse.Namespace) -> int:
-    if options.fix or options.then:
-        _mend(options)
-    source = source_of(options)
-    if is_test_file(source.name):
-        from btlang.testing.test_file import check_tests  # most files are missions
-
-        options.report.add(check_tests(source))
-    else:
-        mission_of(options, source).check(options.robot)
-    if not options.report.is_json:
-        show("No problems found.")
-    return SUCCESS
-
-
-def _mend(options: argparse.Namespace) -> None:
-    """Writes corrections into the file; of a text, and of standard input, shows what it becomes, and reads that."""
-    from btlang.backends.files import replace_text
-    from btlang.diagnostics.mending import mended
-
-    aside = sys.stderr if options.report.is_json else sys.stdout
-
-    def problems_of(source: Source) -> Sequence[Diagnostic]:
-        try:
-            if is_test_file(source.name):
-                from btlang.testing.test_file import check_tests
-
-                return check_tests(source)
-            return parsed_mission(source, options).warnings
-        except MissionError as error:
-            return error.diagnostics
-
-    source, count = mended(source_of(options), problems_of, fix=options.fix, then=options.then)
-    if options.text is None and options.file != "-":
-        if count:
-            replace_text(source.name, source.text)
-            show(f"Corrected {source.name}: {count} change{'s' * (count > 1)}.", stream=aside)
-    else:
-        options.text, options.file = source.text, None
-        show(source.text.rstrip("\n"), stream=aside)
 
 
 def _show_tree(options: argparse.Namespace) -> int:
@@ -325,6 +281,7 @@ def _version(options: argparse.Namespace) -> int:
 
 _ELSEWHERE = {
     **dict.fromkeys(("replay", "why", "diff"), "btlang.recording.command"),
+    "check": "btlang.cli_check",
     "test": "btlang.testing.command",
     "compile": "btlang.cli_compile",
     "words": "btlang.cli_words",
@@ -347,7 +304,6 @@ _ELSEWHERE = {
 _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "repl": _repl,
     "run": _run,
-    "check": _check,
     "tree": _show_tree,
     "grammar": _grammar,
     "examples": _examples,

@@ -11,7 +11,7 @@ from importlib import import_module
 from itertools import takewhile
 
 from btlang.arguments import between, duration, picture, speed
-from btlang.diagnostics.report import FORMATS
+from btlang.diagnostics.report import CHECK_FORMATS, FORMATS
 from btlang.frontends.mission.reader import DEFAULT_PARSER, PARSERS
 from btlang.option_parser import OptionParser
 from btlang.robots.options import add_robot_words, add_world
@@ -182,9 +182,23 @@ def _mission_options(parser: argparse.ArgumentParser, *, several: bool = False) 
 
 
 def _check_options(parser: argparse.ArgumentParser) -> None:
-    _mission_options(parser)
-    parser.add_argument("--fix", action="store_true", help="write the corrections that are certain into the file")
+    _reading_options(parser)
+    about = "format of messages: text; json, sarif or github for programs (default: text)"
+    parser.add_argument("--format", choices=CHECK_FORMATS, default="text", help=about)
+    _main_option(parser)
+    parser.add_argument(
+        "--models",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="XML file with models of nodes (TreeNodesModel); may be repeated",
+    )
+    parser.add_argument("--fix", action="store_true", help="write the corrections that are certain into the files")
     parser.add_argument("--then", action="store_true", help="write 'then' where 'and' stands on the way (BT069)")
+    several = parser.add_mutually_exclusive_group(required=True)
+    about = "mission, tree or folder of trees, or - for standard input; all XML files are one project"
+    several.add_argument("file", nargs="*", default=[], metavar="FILE", help=about)
+    several.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
 
 
 def _speed_option(parser: argparse.ArgumentParser) -> None:
@@ -339,7 +353,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "why": ("tell what happened in a recorded run, and why it failed", _elsewhere(_RECORDING, "add_recording_file")),
     "test": ("run tests of missions, written in English", _elsewhere("btlang.testing.options", "add_test_options")),
     "diff": ("tell what differs between two missions, trees or recorded runs", _diff_options),
-    "check": ("report the mistakes in a mission", _check_options),
+    "check": ("report the mistakes in missions and trees", _check_options),
     "tree": ("print the behavior tree of a mission", _tree_options),
     "compile": ("write the tree of a mission as XML, English, JSON, a picture ...", _compile_options),
     "words": ("list what missions can say", _listing_options),

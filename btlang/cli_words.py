@@ -38,7 +38,7 @@ def _make(options: argparse.Namespace) -> None:
     from btlang.backends.keyword_pack import keyword_pack, leaves_of
     from btlang.diagnostics.reading import read_source
     from btlang.frontends.btcpp.file_set import read_files
-    from btlang.passes.lint.allow import allowed_in
+    from btlang.passes.lint.allow import not_allowed
     from btlang.vocabulary.load import vocabulary_with
 
     read = read_files([read_source(path) for path in options.sources])
@@ -46,5 +46,5 @@ def _make(options: argparse.Namespace) -> None:
     leaves = leaves_of(read.models, read.nodes(), vocabulary)
     load = partial(vocabulary_with, keywords=options.keywords, language=options.language)
     pack = keyword_pack(leaves, vocabulary, load, read.place)
-    options.report.add(warning for warning in pack.warnings if warning.code not in allowed_in(warning.span.source))
+    options.report.add(not_allowed([*read.warnings, *pack.warnings]))
     put(pack.text, options.out)

@@ -12,10 +12,10 @@ from importlib.util import find_spec
 
 import btlang
 from btlang.api import Mission, parse_tree, world_vocabulary
+from btlang.diagnostics.data import as_data
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError, in_order
 from btlang.diagnostics.reading import MOST_BYTES
-from btlang.diagnostics.report import as_data
 from btlang.recording.trial import simulated
 from btlang.run.lines import Lines
 from btlang.text.source import Source, Span

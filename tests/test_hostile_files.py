@@ -48,7 +48,7 @@ TEXTS = {
     "NUL": json.dumps({"format": 1, "trees": [{"nodes": [{"id": "Say", "ports": {"text": "a\0b"}}]}]}),
     "a lone surrogate": json.dumps({"format": 1, "trees": [{"nodes": [{"id": "Say", "ports": {"text": "\ud800"}}]}]}),
     "JSON of escaped quotes": "{" + '"' + '\\"' * 500_000,
-    "many ports": XML.format("<Foo " + " ".join(f'p{number}="1"' for number in range(3000)) + "/>"),
+    "many ports": XML.format("<Wave " + " ".join(f'p{number}="1"' for number in range(3000)) + "/>"),
 }
 
 

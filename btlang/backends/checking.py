@@ -34,7 +34,7 @@ def tree_problems(
     `bind` and `services` are those of a run, by default what a keyword entry says, without the robot: a `call` that
     cannot be loaded here is no problem then, as it may be there on the robot.
     """
-    found = faults(tree, bind or cache(partial(_bound, vocabulary)), services or {"robot": None})
+    found = faults(tree, bind or cache(partial(bound, vocabulary)), services or {"robot": None})
     found.sort(key=_place)  # so that an entry is told where it is missed first
     entries = drafts(tree, vocabulary) if any(isinstance(error, UnknownNode) for error in found) else {}
     problems = []
@@ -105,7 +105,7 @@ def _entry(node: Node, entries: dict[str, Draft | None]) -> str:
     return f"This entry of a keyword file would define it:\n{draft.text()}"
 
 
-def _bound(vocabulary: Lexicon, node_id: str) -> LeafBinding | None:
+def bound(vocabulary: Lexicon, node_id: str) -> LeafBinding | None:
     """A leaf that takes the ports of its `call`, and does nothing."""
     entries = vocabulary.entries.get(node_id, ())
     if not entries:

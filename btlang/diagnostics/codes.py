@@ -6,7 +6,8 @@ BT07x worlds, BT08x the Python behind the words and what else has to be installe
 BT10x ROS 2, BT11x missions as ROS 2 nodes, BT12x trees in XML, BT13x trees that were not written as missions,
 BT14x nodes said by their ids, BT15x lists, words that stand for names, and what is forbidden,
 BT16x times of day, BT17x sentences that people mean in two ways, BT18x tests and robots
-that are up, BT19x tasks and schedules, BT20x the server, BT21x editors, BT24x files made of others.
+that are up, BT19x tasks and schedules, BT20x the server, BT21x editors, BT23x what is allowed in XML but
+probably not meant, BT24x what is made of files of others.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
@@ -216,6 +217,18 @@ _ALL = (
     Code("BT220", "The tree can't be changed like this: {reason}."),
     Code("BT221", "'{words}' can't be tried: what it does stands in {file}, and might move a real robot.",
          "Test it with fakes: btc help test"),
+    Code("BT230", "{what} {problem}.", "{advice}", "warning", "odd xml"),
+    Code("BT231", "No model describes the node '{id}', which is used {times}.",
+         "Give its model in <TreeNodesModel>, or in another file: btc check --models FILE.xml", "warning", "unknown node"),
+    Code("BT232", "'{port}' isn't a port of {id}."),
+    Code("BT233", "'{text}' can't be the port {port} of {id}: {wanted} is needed."),
+    Code("BT234", "The port {port} of {id} is missing.", "Give it, or give it a default in the model.",
+         "warning", "missing port"),
+    Code("BT235", "Nothing reads '{key}', which the port {port} of {id} sets.", "Leave the port out, or use the value.",
+         "warning", "unread value"),
+    Code("BT236", "No main tree uses the tree '{name}'.", "Use it or remove it.", "warning", "unused tree"),
+    Code("BT237", "{port}=\"0\" means that the child of this {id} never runs.",
+         "Write how often it runs at most, or -1 for no limit.", "warning", "no rounds"),
     Code("BT240", "There are no words for the node '{id}': {reason}.", "Missions say it by its id: do \"{id}\"", "warning",
          "node without words"),
 )  # fmt: skip

@@ -48,8 +48,12 @@ def pointer(codes: Iterable[str]) -> str:
 
 def all_codes() -> Table:
     """Each code with the title of its page."""
-    titles = (_page(code).partition("\n")[0].removeprefix("# ") for code in sorted(CODES))
-    return Table(tuple(tuple(title.split(": ", 1)) for title in titles))
+    return Table(tuple((code, title_of(code)) for code in sorted(CODES)))
+
+
+def title_of(code: str) -> str:
+    """The title of its page."""
+    return _page(code).partition("\n")[0].partition(": ")[2]
 
 
 def _plain(name: str) -> str:

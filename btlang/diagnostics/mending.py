@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.text.source import Source, Span
@@ -43,12 +43,33 @@ def _changed(
 ) -> tuple[Source, int]:
     count = 0
     for _ in range(_ROUNDS):
-        changes = [change for change in choose(problems_of(source)) if change[0].source.name == source.name]
-        made, text, before = 0, source.text, len(source.text) + 1
-        for span, words in sorted(changes, key=lambda change: (change[0].start, change[0].end), reverse=True):
-            if span.end <= before and text[span.start : span.end] != words:
-                text, before, made = text[: span.start] + words + text[span.end :], span.start, made + 1
+        source, made = _applied(source, choose(problems_of(source)))
         if not made:
             break
-        source, count = source.with_text(text), count + made
+        count += made
     return source, count
+
+
+def mended_together(
+    sources: Sequence[Source], problems_of: Callable[[Sequence[Source]], Iterable[Diagnostic]]
+) -> list[tuple[Source, int]]:
+    """Sources that are read together, with all corrections that leave no choice, and the number of each."""
+    counts = [0] * len(sources)
+    for _ in range(_ROUNDS):
+        changes = _certain(problems_of(sources))
+        done = [_applied(source, changes) for source in sources]
+        if not any(made for _, made in done):
+            break
+        sources = [source for source, _ in done]
+        counts = [count + made for count, (_, made) in zip(counts, done, strict=True)]
+    return list(zip(sources, counts, strict=True))
+
+
+def _applied(source: Source, changes: Iterable[Change]) -> tuple[Source, int]:
+    """The source with the changes that are its own, and their number."""
+    made, text, before = 0, source.text, len(source.text) + 1
+    own = [change for change in changes if change[0].source.name == source.name]
+    for span, words in sorted(own, key=lambda change: (change[0].start, change[0].end), reverse=True):
+        if span.end <= before and text[span.start : span.end] != words:
+            text, before, made = text[: span.start] + words + text[span.end :], span.start, made + 1
+    return (source.with_text(text), made) if made else (source, 0)

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 
 from btlang.engine.instance import blackboard_key
 from btlang.frontends.btcpp.models import nav2_models
-from btlang.tree.catalogue import CATALOGUE
+from btlang.tree.catalogue import CATALOGUE, POST_CONDITIONS, PRE_CONDITIONS
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 
 READS, SETS = "reads", "sets"
-_SCRIPTS = ("_skipIf", "_failureIf", "_successIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post")
+_SCRIPTS = (*PRE_CONDITIONS, *POST_CONDITIONS)
 _CODE = (("Script", "code"), ("ScriptCondition", "code"), ("Precondition", "if"))
 _NAMES_KEY = ("SetBlackboard", "output_key")
 _TEXT = re.compile(r"'[^']*'")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from btlang.diagnostics.data import as_data
 from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.report import as_data
 from btlang.text.source import Source, Span
 
 TYPE_CHECKING = False

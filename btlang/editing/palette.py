@@ -12,10 +12,8 @@ from btlang.editing.words import Words
 from btlang.frontends.mission.reader import lexed, read_mission
 from btlang.frontends.table import frontend_of
 from btlang.passes import compile_mission
-from btlang.printer.exact import node_head
+from btlang.printer.exact import quoted
 from btlang.text.source import Source
-from btlang.tree.ast import Exact
-from btlang.tree.catalogue import SUBTREE
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.items import Item, items
 from btlang.vocabulary.lexicon import Lexicon
@@ -61,7 +59,7 @@ def _names(source: Source, vocabulary: Lexicon) -> Iterator[dict[str, str]]:
             types = dict(definitions.types.get(header.body, ()))
             insert = _filled(name_form(header.name), types, vocabulary)
             if header.is_quoted:
-                insert = node_head(Exact(SUBTREE, (("ID", header.name),), "", (), False, header.span), vocabulary)
+                insert = f"{vocabulary.word('do')} {quoted(header.name, vocabulary)}"
             yield {"words": header.name, "help": "", "example": "", "sort": "name", "insert": insert}
 
 

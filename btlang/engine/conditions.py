@@ -28,7 +28,8 @@ from btlang.engine.nodes.constants import skipped
 from btlang.engine.nodes.script_nodes import read_script
 from btlang.engine.script.script import truth
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.tree.catalogue import SUBTREE
+from btlang.text.spelling import distance
+from btlang.tree.catalogue import POST_CONDITIONS, PRE_CONDITIONS, SUBTREE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -44,9 +45,18 @@ _DECIDES = {
     "_skipIf": (True, SKIPPED),
     "_while": (False, SKIPPED),
 }  # in the order in which they are asked: the answer that decides, and what it decides
-_AFTER = ("_onSuccess", "_onFailure", "_onHalted", "_post")
-OF_EDITORS = frozenset(("_description", "_fullpath", "_uid"))
-"""Attributes that Groot2 and BehaviorTree.CPP write into every node; they do nothing."""
+_NEAR = 2  # one letter, as `distance` counts
+
+
+def is_of_editors(port: str) -> bool:
+    """Whether an attribute does nothing: editors write such as `_uid` and `_collapsed` for themselves.
+
+    A misspelt condition such as `_skipif` isn't one of these.
+    """
+    if port[:1] != "_" or port == "_autoremap":
+        return False
+    written, known = port.lower(), [condition.lower() for condition in (*PRE_CONDITIONS, *POST_CONDITIONS)]
+    return not any(distance(written, each) <= _NEAR or each.startswith(written) for each in known)
 
 
 def conditioned(instance: NodeInstance, compiled: Compiled) -> Compiled:
@@ -55,9 +65,9 @@ def conditioned(instance: NodeInstance, compiled: Compiled) -> Compiled:
     for port, text in instance.node.ports:
         if port[:1] != "_":
             continue
-        if port in _DECIDES or port in _AFTER:
+        if port in PRE_CONDITIONS or port in POST_CONDITIONS:
             texts[port] = text
-        elif port not in OF_EDITORS and (port != "_autoremap" or instance.node.id != SUBTREE):
+        elif not is_of_editors(port) and (port != "_autoremap" or instance.node.id != SUBTREE):
             raise instance.error(f"{instance.node.id} takes no port {port}")
     if texts.get("_skipIf") == "false":
         del texts["_skipIf"]

@@ -75,7 +75,7 @@ def _check(options: argparse.Namespace, files: list[str], body: Body) -> int:
         except MissionError as error:
             problems += error.diagnostics
     options.report.add(problems)
-    if not problems and not options.report.is_json:
+    if not problems and not options.report.is_for_programs:
         show("No problems found.")
     return _BAD_INPUT if problems else 0
 
@@ -89,7 +89,7 @@ def _import(options: argparse.Namespace, files: list[str], body: Body) -> int:
     for note in notes:
         show(one_line(f"Warning: {note}"), sys.stderr)
     write_file(options.out, text)
-    if not options.report.is_json:
+    if not options.report.is_for_programs:
         show(f"Wrote {options.out}.")
     return 0
 

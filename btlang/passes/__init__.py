@@ -10,11 +10,12 @@ from collections.abc import Iterable
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.errors import MissionError, in_order
 from btlang.passes.compilation import Compilation, Pass
-from btlang.passes.lint.allow import silence
+from btlang.passes.lint.allow import silence, silence_in_xml
 from btlang.passes.lint.asked_once import asked_once
 from btlang.passes.lint.busy import busy_loops
 from btlang.passes.lint.cut_off import cut_off
 from btlang.passes.lint.line_end import line_ends
+from btlang.passes.lint.no_rounds import no_rounds
 from btlang.passes.lint.only_rules import only_rules
 from btlang.passes.lint.starts_again import starts_again
 from btlang.passes.lint.two_readings import two_readings
@@ -46,10 +47,12 @@ PASSES = (
     Pass("only rules", only_rules, needs_text=True),
     Pass("unused", unused_names, needs_text=True),
     Pass("never runs", never_runs),
+    Pass("no rounds", no_rounds),
     Pass("busy loop", busy_loops),
     Pass("cut off", cut_off),
     Pass("line end", line_ends, needs_text=True),
     Pass("allow", silence, needs_text=True),
+    Pass("allow in XML", silence_in_xml),
 )
 
 

@@ -24,7 +24,7 @@ class Compilation:
     """A syntax tree that becomes a tree, or a tree from XML or JSON, which has no syntax tree.
 
     A mission that needs no command may only define names; its tree does nothing. One that `grows` isn't whole yet, so
-    that nothing is said of names that nothing uses. `warnings` begins with those of reading the text.
+    that nothing is said of names that nothing uses. `warnings` begins with those of reading the text or tree.
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class Compilation:
         self.grows = grows
         self.origins = origins
         """The nodes by their identities, each with the syntax that it was made of; noted only where this is a dict."""
-        self.warnings: list[Diagnostic] = list(warnings)
+        self.warnings: list[Diagnostic] = [*warnings, *(tree.warnings if tree is not None else ())]
         self.ordered: list[Definition] = []
         """The definitions, used ones before their users."""
         self._mission = mission

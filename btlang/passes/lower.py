@@ -13,10 +13,11 @@ from btlang.passes.scripts import assignment, behind, chosen, comparison, prepar
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, ON_SUCCESS, SUBTREE
-from btlang.tree.model import NodeModel
+from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.entry import MEASURED
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
 
 TYPE_CHECKING = False
@@ -41,10 +42,25 @@ def lower_names(compilation: Compilation) -> Iterator[Diagnostic]:
         yield diagnostic("BT005", mission.span, example=example)
         return
     root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, scope).node
-    exact = (node for body in ast.bodies(mission) for node in compilation.syntax(body) if isinstance(node, ast.Exact))
-    conditions = dict.fromkeys(node.id for node in exact if node.is_condition)
-    models = tuple(NodeModel("Condition", id) for id in conditions)
+    exact = [node for body in ast.bodies(mission) for node in compilation.syntax(body) if isinstance(node, ast.Exact)]
+    models = _models(exact, compilation.vocabulary)
     compilation.tree = Tree(root, tuple(scope.bodies), mission.name, models, mission.span.source)
+
+
+def _models(exact: Sequence[ast.Exact], vocabulary: Lexicon) -> tuple[NodeModel, ...]:
+    """What a mission says of leaves by their ids: what they are, and the ports that they give values to."""
+    known = {node.id for node in exact if node.items} | vocabulary.nodes.keys()
+    outputs: dict[str, dict[str, None]] = {}
+    for node in exact:
+        if node.is_condition or (node.id not in known and vocabulary.entry(node.id) is None):
+            outputs.setdefault(node.id, {}).update(dict.fromkeys(node.outputs))
+    conditions = {node.id for node in exact if node.is_condition}
+    return tuple(
+        NodeModel(
+            "Condition" if node_id in conditions else "Action", node_id, tuple(PortModel(p, "output") for p in ports)
+        )
+        for node_id, ports in outputs.items()
+    )
 
 
 def lower(root: ast.Ast, scope: Scope) -> Lowered:

@@ -12,9 +12,11 @@ from collections.abc import Callable, Iterable, Iterator
 
 from btlang.printer.exact import exact_block
 from btlang.printer.naming import definition_head, each_head
-from btlang.printer.pieces import COLON, Pieces, is_longer, mark
+from btlang.printer.pieces import COLON, COMMA, Pieces, is_longer, mark
 from btlang.printer.printer import THEN, Doc, Printer
 from btlang.printer.sentence import is_flat_fallback, paced_rounds, rule_word, statements
+from btlang.text.source import Source
+from btlang.text.words import split
 from btlang.tree import ast
 from btlang.tree.catalogue import SEQUENCE
 
@@ -42,7 +44,7 @@ def lines_of(
     while stack:
         depth, item, among = stack.pop()
         if isinstance(item, str):
-            found.append(INDENT * depth + item)
+            found += _wrapped(INDENT * depth + item, INDENT * (depth + 2), width, printer)
             continue
         kept = printer.kept_lines(item)
         if kept:
@@ -64,6 +66,22 @@ def lines_of(
         found += (f"{INDENT * depth}# {text}" for text in printer.comments(item, whole=not below))
         stack.extend(reversed(below or [(depth, line or printer.line(item, said, among), "")]))
     return found
+
+
+def _wrapped(line: str, margin: str, width: float, printer: Printer) -> Iterator[str]:
+    """A line that is too long as several, where it has commas: behind one it goes on below."""
+    if len(line) <= width:
+        yield line
+        return
+    words = split(Source(line), printer.vocabulary.orthography)
+    ends = [end for word, end in zip(words.words, words.ends, strict=True) if word == COMMA]
+    begin, before, head = 0, 0, ""
+    for end in (*ends, len(line)):
+        if len(head) + end - begin > width and before > begin:
+            yield head + line[begin:before]
+            begin, head = before + 1, margin
+        before = end
+    yield head + line[begin:]
 
 
 def _sections(node: ast.Ast, said: Doc, among: str, unclear: bool) -> Callable[[Any, Printer], Iterator[Section]]:

@@ -1,4 +1,4 @@
-"""Nodes that no phrase says, by their ids: `do "OpenGripper" called "first" with width 0.05`, `do recovery node:`.
+"""Nodes that no phrase says, by their ids: `do open gripper called "first" with width 0.05, speed 2`, `do "Move_To"`.
 
 What is said is read back as it stands, by btlang/frontends/mission/symbols/nodes.py.
 """
@@ -6,15 +6,21 @@ What is said is read back as it stands, by btlang/frontends/mission/symbols/node
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from btlang.printer.pieces import COLON, Pieces, mark
 from btlang.printer.printer import WHOLE, Doc, Printer
+from btlang.text.source import Source
+from btlang.text.words import split
 from btlang.tree import ast
 from btlang.tree.catalogue import SUBTREE
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.node_words import id_of_name, is_port, said_id, subtree_named
+from btlang.vocabulary.trie import longest
 
 _BARE = re.compile(r"-?\d+(\.\d+)?|\{[A-Za-z_][A-Za-z0-9_]*\}")
+_KEY = re.compile(r"\{[A-Za-z_][A-Za-z0-9_]*\}")
+_IDENTIFIER = re.compile(r"(?=\w*_|\w+[A-Z])[A-Za-z_]\w*", re.ASCII)
 _WORDS = re.compile(r"[a-z][a-z0-9]*(_[a-z][a-z0-9]*)*")
 # A text as pieces: what double quotes can hold, marks that would end it, and what no quotes can hold.
 _PIECE = re.compile(r'(?P<plain>[^"“”„«»\x00-\x1f\x7f\ufeff]+)|(?P<marks>["“”„«»]+)|(?P<odd>.)', re.DOTALL)
@@ -22,7 +28,7 @@ _PIECE = re.compile(r'(?P<plain>[^"“”„«»\x00-\x1f\x7f\ufeff]+)|(?P<marks
 
 def exact(node: ast.Exact, _parts: list[Doc], printer: Printer) -> Doc:
     """A node without children is a command; one with children needs lines."""
-    head = mark(node_head(node, printer.vocabulary))
+    head = mark(node_head(node, printer))
     if not node.items:
         return Doc((head,), WHOLE)
     return Doc((head, mark(COLON)), WHOLE, in_lines=True)
@@ -31,28 +37,67 @@ def exact(node: ast.Exact, _parts: list[Doc], printer: Printer) -> Doc:
 def exact_block(node: ast.Exact, printer: Printer) -> Iterator[tuple[Pieces, Iterator[tuple[ast.Ast, str]]]]:
     """Its words, and its children as the lines below it."""
     if node.items:
-        yield (mark(node_head(node, printer.vocabulary)),), ((item, "children") for item in node.items)
+        yield (mark(node_head(node, printer)),), ((item, "children") for item in node.items)
 
 
-def node_head(node: ast.Exact, vocabulary: Lexicon) -> str:
+def node_head(node: ast.Exact, printer: Printer) -> str:
     """The node with its name and its ports, without its children."""
-    ports = list(node.ports)
-    parts = [vocabulary.word("test" if node.is_condition else "do")]
-    words, subtree = vocabulary.nodes.get(node.id), dict(ports).get("ID")
-    if words is None or (node.id == SUBTREE and subtree is None):
-        parts.append(quoted(node.id, vocabulary))
-    else:
-        parts.append(words)
-        if node.id == SUBTREE and subtree is not None:
-            parts.append(quoted(subtree, vocabulary))
-            ports.remove(("ID", subtree))
+    vocabulary, ports = printer.vocabulary, dict(node.ports)
+    head = _head(node, ports, printer)
     if node.name:
-        parts += [vocabulary.word("called"), quoted(node.name, vocabulary)]
-    for name, text in ports:
-        key = name.replace("_", " ") if _is_words(name, vocabulary) else quoted(name, vocabulary)
+        head += f" {vocabulary.word('called')} {quoted(node.name, vocabulary)}"
+    gives = {key: ports.pop(key) for key in node.outputs if _KEY.fullmatch(ports.get(key, ""))}
+    head += _ports("with", ports, printer)
+    if [f"{{{key}}}" for key in gives] == [*gives.values()] and len(gives) == 1:
+        return f"{head} {vocabulary.word('giving')} {''.join(gives.values())}"
+    return head + _ports("giving", gives, printer)
+
+
+def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
+    """`do` and what names the node; the port that names a subtree is taken out of its ports."""
+    vocabulary, subtrees = printer.vocabulary, printer.subtrees
+    role = "test" if node.is_condition else "do"
+    word, words = vocabulary.word(role), vocabulary.nodes.get(node.id)
+    if node.id == SUBTREE and "ID" in ports and words is not None:
+        name = ports.pop("ID")
+        said = _in_words(id_of_name(name), name, role, printer)
+        if name in subtrees:
+            return f"{word} {said or quoted(name, vocabulary)}"
+        return f"{word} {words} {quoted(name, vocabulary)}"
+    if words is not None and node.id != SUBTREE:
+        return f"{word} {words}"
+    said = _in_words(node.id, "", role, printer)
+    if said:
+        return f"{word} {said}"
+    if not node.is_condition and node.id in subtrees:
+        return f"{word} {vocabulary.word('node')} {quoted(node.id, vocabulary)}"
+    return f"{word} {quoted(node.id, vocabulary)}"
+
+
+def _in_words(node_id: str, subtree: str, role: str, printer: Printer) -> str:
+    """The words of an id, "" where they are read as anything else than it, or than this subtree."""
+    said = said_id(node_id, role, printer.vocabulary)
+    if not said or (role == "do" and subtree_named(node_id, printer.subtrees, in_words=True) != subtree):
+        return ""
+    text = split(Source(f"{printer.vocabulary.word(role)} {said}"), printer.vocabulary.orthography)
+    places = (0, len(text.words) - 2 - len(said.split()))
+    names, context = printer.names, printer.vocabulary.context
+    return said if not names or all(longest(names, text, at, context) is None for at in places) else ""
+
+
+def _ports(role: str, ports: Mapping[str, str], printer: Printer) -> str:
+    """`with width 0.05, speed 2`; the word again where a name behind a comma would be read as a command."""
+    vocabulary, said = printer.vocabulary, ""
+    for name, text in ports.items():
+        key = name if _IDENTIFIER.fullmatch(name) else quoted(name, vocabulary)
+        key = name.replace("_", " ") if _is_words(name, vocabulary) else key
         value = text if _BARE.fullmatch(text) else quoted(text, vocabulary)
-        parts += [vocabulary.word("with"), key, value]
-    return " ".join(parts)
+        begin = split(Source(f"{key} {value}"), vocabulary.orthography)
+        is_free = said and is_port(
+            begin, 0, len(split(Source(key), vocabulary.orthography).words) - 2, vocabulary, printer.names
+        )
+        said += f", {key} {value}" if is_free else f" {vocabulary.word(role)} {key} {value}"
+    return said
 
 
 def quoted(text: str, vocabulary: Lexicon) -> str:

@@ -1,7 +1,8 @@
 """The canonical layout of a mission: indentation, spaces and empty lines. Words, comments and line ends stay.
 
-Two spaces a block level; one space between words; none before `,` `;` `:` `.` `)` and behind `(`; two before a comment
-behind a command; nothing at the ends of lines; at most one empty line in a row and none at the ends of the text.
+Two spaces a block level, and four more where a line goes on with the one before it; one space between words; none
+before `,` `;` `:` `.` `)` and behind `(`; two before a comment behind a command; nothing at the ends of lines; at most
+one empty line in a row and none at the ends of the text.
 """
 
 from __future__ import annotations
@@ -26,11 +27,15 @@ _MARGIN = re.compile(rf"{_BLANK}*")
 
 
 class _Row(Record):
-    """A line of the text: what stands on it without its margin, the column where that starts, its words if any."""
+    """A line of the text: what stands on it without its margin, the column where that starts, its words if any.
+
+    One that `goes_on` has the words of the line before it.
+    """
 
     content: str
     column: int
     words: Line | None
+    goes_on: bool = False
 
 
 def laid_out(source: Source, orthography: Orthography) -> str:
@@ -56,14 +61,17 @@ def _rows(source: Source, words: Words) -> Iterator[_Row]:
         for word, start, end in zip(words.words, words.starts, words.ends, strict=True)
         if word.startswith('"') or source.text.find(",", start, end - 1) > start  # `1,5` is one number
     ]
-    by_end = {words.ends[line.last]: line for line in words.lines}
-    at = 0
+    waiting = words.lines[::-1]
+    at, last = 0, -1  # where the words of the line end that has begun
     for text in source.text.split("\n"):
         end = at + len(text)
         inside = quotes[bisect_left(quotes, (at, at)) : bisect_left(quotes, (end, end))]
         content = _content(text, [(start - at, stop - at) for start, stop in inside])
         column = len(_MARGIN.match(text).group().replace("\r", "").expandtabs(4))  # type: ignore[union-attr]
-        yield _Row(content, column, by_end.get(end))
+        begins = bool(waiting) and words.starts[waiting[-1].first] <= end
+        yield _Row(content, column, waiting[-1] if begins else None, not begins and at <= last)
+        if begins:
+            last = words.ends[waiting.pop().last]
         at = end + 1
 
 
@@ -101,6 +109,9 @@ def _levels(rows: list[_Row]) -> list[int]:
     columns: list[int] = []  # of the blocks that are open, the outermost first
     waiting: list[int] = []  # lines without words, until the next words come
     for i, row in enumerate(rows):
+        if row.goes_on:
+            levels[i] = levels[i - 1] + (0 if rows[i - 1].goes_on else 2)
+            continue
         if row.words is None:
             if row.content:
                 waiting.append(i)

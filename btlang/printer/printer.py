@@ -74,6 +74,8 @@ class Printer:
         self.all_brackets = brackets == "all"
         self.is_clear = brackets == "clear"
         self.names: TrieNode = {}
+        self.subtrees: set[str] = set()
+        """The names in quotes."""
         self._said: dict[int, tuple[ast.Ast, Doc]] = {}  # with its node, whose id is then that of no other
         self._forms: dict[str, Form] = {}
         self._leaves: dict[tuple[str, tuple[tuple[str, str], ...]], str] = {}
@@ -86,7 +88,9 @@ class Printer:
                 (defined.name, dict(defined.parameters)) if isinstance(defined, ast.Definition) else (defined, {})
             )
             self._parameters[name] = types
-            if not (isinstance(defined, ast.Definition) and defined.is_quoted):
+            if isinstance(defined, ast.Definition) and defined.is_quoted:
+                self.subtrees.add(name)
+            else:
                 add(self.names, name_form(name), types, Meaning("name"))
 
     def say(self, node: ast.Ast) -> Doc:

@@ -1,4 +1,4 @@
-"""What `btc edit` does: a page for one file, until Ctrl-C."""
+"""What `btc edit` does: a page for one file, until Ctrl-C; or an XML file in English in an editor."""
 
 from __future__ import annotations
 
@@ -11,6 +11,10 @@ if TYPE_CHECKING:
 
 def serve(options: argparse.Namespace) -> int:
     """Does the verb `edit`; returns the exit code. Raises MissionError."""
+    if options.editor:
+        from btlang.editing.in_editor import edit_xml
+
+        return edit_xml(options)
     require_server("edit")
     from btlang.server.editor import edit
 

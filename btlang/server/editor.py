@@ -29,7 +29,7 @@ from btlang.server.bodies import JsonResponse, json_object, text_in
 from btlang.server.certificate import write_private
 from btlang.server.door import listening
 from btlang.server.door import serve as serve_door
-from btlang.server.files import Files, TreeFiles, english_beside, tree_sort
+from btlang.server.files import Files, TreeFiles, XmlFiles, english_beside, tree_sort
 from btlang.server.links import Robots
 from btlang.server.pages import BUILT
 from btlang.server.roles import Role
@@ -55,10 +55,11 @@ def edit(options: argparse.Namespace) -> int:
         options.refuse("it needs a file, which it saves to")
     if not PAGE.is_file():
         raise MissionError([diagnostic("BT211", NOWHERE)])
-    is_tree = bool(tree_sort(options.file))
-    file = english_beside(options.file) if is_tree else options.file
+    sort = tree_sort(options.file)
+    file = english_beside(options.file) if sort else options.file
     words = Words(options.keywords, options.world, options.language, file=file)
-    files = TreeFiles(words, options.file, options.main) if is_tree else Files(words)
+    trees = {"xml": XmlFiles, "json": TreeFiles}.get(sort)
+    files = trees(words, options.file, options.main) if trees is not None else Files(words)
     files.read(files.name)  # what can't be opened says so at once
     door = listening(_HOST, options.port)
     with (

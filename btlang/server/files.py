@@ -1,6 +1,6 @@
 """The file that `btc edit` opens, and those that it includes: read, and saved without losing what others wrote.
 
-A tree in XML or JSON is opened as a mission in English beside it, and saved as a copy beside it.
+A tree in XML is opened as a mission in English, and saved onto itself; one in JSON is saved as a copy beside it.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from btlang.backends.targets import target_of
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import MOST_DEEP, read_included, read_source, unwritable
+from btlang.editing.onto import write_onto
 from btlang.editing.words import Words
 from btlang.frontends.mission.symbols.includes import find_includes
 from btlang.frontends.table import FRONTENDS, frontend_of
@@ -107,8 +108,8 @@ class Files:
 
 
 class TreeFiles(Files):
-    """A mission that is, until it is saved, the English of a tree in XML or JSON. Saving it also writes its tree into a
-    copy of that one, which itself stays as it is. `main` is the ID of one of several trees.
+    """A mission that is, until it is saved, the English of a tree in JSON. Saving it also writes its tree into a copy
+    of that one, which itself stays as it is. `main` is the ID of one of several trees.
     """
 
     def __init__(self, words: Words, tree: str, main: str = "") -> None:
@@ -154,8 +155,54 @@ class TreeFiles(Files):
         return read_source(self._copy).text if os.path.isfile(self._copy) else None
 
     def _english(self) -> str:
-        source = read_source(self._tree)
-        return _of_fair_size(str(self._words.mission(source, main=self._main).to("english")), source)
+        return _english_of(self._tree, self._words, self._main)
+
+
+class XmlFiles(Files):
+    """A tree in XML in English, which saving writes onto it. A text that doesn't compile yet is kept beside it until it
+    does. `main` is the ID of one of several trees.
+    """
+
+    def __init__(self, words: Words, tree: str, main: str = "") -> None:
+        super().__init__(words)
+        self._tree, self._main = tree, main
+
+    def read(self, name: str) -> dict[str, Any]:
+        """As for any file. Raises MissionError for a tree that can't be read or said, too."""
+        if name != self.name:
+            return super().read(name)
+        text = _text(self.path)
+        text = _english_of(self._tree, self._words, self._main) if text is None else text
+        return {"text": text, "revision": self._state(), "tree": os.path.basename(self._tree)}
+
+    def save(self, name: str, text: str, revision: str) -> Answer:
+        """As for any file; `problem` says why the tree wasn't written, for which the text has to compile."""
+        if name != self.name:
+            return super().save(name, text, revision)
+        tree, before = os.path.basename(self._tree), self.read(name)
+        if revision != before["revision"]:
+            problem = refused(f"The file '{tree}'", "was changed by another program, or in another window")
+            data = {**before, "diff": differences(before["text"], text)}
+            return Answer(False, str(problem), data, problem.diagnostics[0].code)
+        try:
+            write_onto(self._words.mission(self._words.source(text)), self._tree, force=True)
+        except MissionError as error:
+            write_file(self.path, text)
+            told = f"{tree} is not written: {error.diagnostics[0].message}"
+            data = {"revision": self._state(), "tree": tree, "problem": told}
+            return Answer(True, f"Kept {name}. {told}", data)
+        with suppress(FileNotFoundError):
+            os.remove(self.path)
+        return Answer(True, f"Saved {tree}.", {"revision": self._state(), "tree": tree})
+
+    def _state(self) -> str:
+        """The revision of the tree, and that of the text that is kept beside it."""
+        return f"{_revision(read_source(self._tree).text)} {_revision(_text(self.path))}"
+
+
+def _english_of(tree: str, words: Words, main: str) -> str:
+    source = read_source(tree)
+    return _of_fair_size(str(words.mission(source, main=main).to("english")), source)
 
 
 def tree_sort(path: str) -> str:

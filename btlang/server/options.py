@@ -37,8 +37,9 @@ def add_edit_options(parser: argparse.ArgumentParser) -> None:
         "--no-browser", action="store_false", dest="browser", help="print the address without opening the browser"
     )
     parser.add_argument("--main", default="", metavar="ID", help="which tree to edit if the file holds several")
+    parser.add_argument("--editor", action="store_true", help="in the editor that EDITOR names, not in the browser")
     parser.add_argument(
-        "file", metavar="FILE", help="mission, there or not; or a tree in XML or JSON, a copy of which is saved"
+        "file", metavar="FILE", help="mission, there or not; or a tree in XML, or in JSON, a copy of which is saved"
     )
 
 

@@ -2,8 +2,8 @@
 
 A word is kept in lower case; quoted text keeps its case behind a leading `"`; a unit is a word of its own
 ("2m" is `2`, `m`), and so is each punctuation mark but the colon of a time of day (`18:30`). Articles leave no word,
-only a note of where they stood, and the mark of a list item (`- `, `1. `) leaves nothing. `Orthography` holds what
-languages differ in.
+only a note of where they stood, and the mark of a list item (`- `, `1. `) leaves nothing. A line that ends in a comma
+goes on in the next one with words where that is indented more. `Orthography` holds what languages differ in.
 """
 
 from __future__ import annotations
@@ -160,7 +160,8 @@ def split(source: Source, orthography: Orthography) -> Words:
     articles, spellings = orthography.articles, orthography.spellings
     first = 0
     margin = _MARGIN.match(text).group()  # type: ignore[union-attr]
-    indent, is_item = _indent(margin)
+    indent, is_item = below = _indent(margin)
+    held = -1  # where a line ended in a comma, until the next words come
 
     def end_line(at: int) -> None:
         nonlocal first
@@ -175,6 +176,11 @@ def split(source: Source, orthography: Orthography) -> Words:
         kind = match.lastindex or _OTHER
         word = match[kind]
         start, end = match.span(kind)
+        if held >= 0 and kind not in (_LINE, _COMMENT):
+            if below[0] <= indent or below[1]:
+                end_line(held)
+                indent, is_item = below
+            held = -1
         if kind == _WORD:
             word = word.lower() if word.isascii() and not spellings else orthography.word(word)
             if word in articles and not (
@@ -183,8 +189,12 @@ def split(source: Source, orthography: Orthography) -> Words:
                 result.articles[len(words)] = (start, end)
                 continue
         elif kind == _LINE:
-            end_line(start)
-            indent, is_item = _indent(word[1:])
+            below = _indent(word[1:])
+            if len(words) > first and words[-1] == ",":
+                held = start if held < 0 else held
+            else:
+                end_line(start)
+                indent, is_item = below
             continue
         elif kind == _STOP:
             if len(words) == first or words[-1] == END_OF_STATEMENT:
@@ -209,7 +219,7 @@ def split(source: Source, orthography: Orthography) -> Words:
         words.append(word)
         starts.append(start)
         ends.append(end)
-    end_line(len(text))
+    end_line(len(text) if held < 0 else held)
     words.append(END_OF_TEXT)  # so that looking one word ahead is always possible
     starts.append(len(text))
     ends.append(len(text))

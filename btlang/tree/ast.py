@@ -285,7 +285,10 @@ class Fail(Ast):
 
 
 class Exact(Ast):
-    """A node said by its id: it, its ports and its instance name are as they stand; `items` are its children."""
+    """A node said by its id: it, its ports and its instance name are as they stand; `items` are its children.
+
+    `outputs` are the ports that it gives values to.
+    """
 
     id: str
     ports: tuple[tuple[str, str], ...]
@@ -293,6 +296,7 @@ class Exact(Ast):
     items: tuple[Ast, ...]
     is_condition: bool
     span: Span
+    outputs: tuple[str, ...] = ()
     parts = ("items",)
 
 

@@ -21,6 +21,10 @@ SEQUENCE, SUBTREE = "Sequence", "SubTree"
 ON_SUCCESS, ON_FAILURE = "SUCCESS", "FAILURE"
 BEHAVIOR_TREE_CPP, NAV2, BTLANG = "BehaviorTree.CPP", "Nav2", "btlang"
 
+PRE_CONDITIONS = ("_failureIf", "_successIf", "_skipIf", "_while")
+POST_CONDITIONS = ("_onSuccess", "_onFailure", "_onHalted", "_post")
+"""Scripts in ports that every node may have."""
+
 MOST_NODES = 1_000_000
 """Of a tree with its subtrees filled in."""
 _INT = 2**31 - 1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree.model import NodeModel
@@ -31,12 +32,13 @@ class Node(Record, uncompared=("span",)):
         return default
 
 
-class Tree(Record, uncompared=("models", "origin")):
+class Tree(Record, uncompared=("models", "origin", "warnings")):
     """A main tree and the named subtrees that its SubTree nodes (port `ID`) refer to, in the order defined.
 
     `name` is that of the main tree, "" for the usual one (`MainTree` in XML); no two trees have the same. `models` tell
     of kinds of nodes what a front end has read of them. `origin` is what a front end knows beside the tree, for its own
     back end: such as the comments of an XML file, and how its tags were written; of a mission it is its Source.
+    `warnings` are those of reading it.
     """
 
     root: Node
@@ -44,6 +46,7 @@ class Tree(Record, uncompared=("models", "origin")):
     name: str = ""
     models: tuple[NodeModel, ...] = ()
     origin: object = None
+    warnings: tuple[Diagnostic, ...] = ()
 
     def walk(self) -> Iterator[Node]:
         """Every node of the main tree, then of each subtree, parents before children; SubTree nodes are not entered."""

@@ -134,7 +134,7 @@ class Lexicon:
             values = self.values.with_names(pairs, features)
             words = (word for pair in chain(*pairs.values()) for word in pair[0].lower().split())
             written = self.orthography.with_words(word for word in words if not word.isascii())
-            return self._with(values=values, context=ReadingContext(values), orthography=written)
+            return self.replaced(values=values, context=ReadingContext(values), orthography=written)
 
         known = (*((kind, tuple(listed)) for kind, listed in names.items()), *(features or {}).items())
         return recent(self._with_names, known, made)
@@ -149,13 +149,14 @@ class Lexicon:
 
     def with_references(self) -> Lexicon:
         """The same words, where any name in braces is read as a value."""
-        return self._with(context=self.context.with_references())
+        return self.replaced(context=self.context.with_references())
 
     def with_known(self, known: Mapping[str, Known]) -> Lexicon:
         """The same words, where these values are known by their keys."""
-        return self._with(context=ReadingContext(self.values, known))
+        return self.replaced(context=ReadingContext(self.values, known))
 
-    def _with(self, **changed: object) -> Lexicon:
+    def replaced(self, **changed: object) -> Lexicon:
+        """The same words, with other values of attributes."""
         made = Lexicon.__new__(Lexicon)  # what `copy` does, which takes long to import
         made.__dict__.update(self.__dict__, _with_names={}, **changed)
         return made

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from hypothesis import strategies as st
 
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
-from btlang.tree.model import NodeModel
+from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
 
 SHAPES = {node_id: (kind.least, min(kind.most, kind.least + 2)) for node_id, kind in CATALOGUE.items()}
@@ -68,8 +68,14 @@ _COMPUTED = (
     (("_3 := count * 1000",), "Sleep", "msec"),
     (("_1 := 'to ' .. goal",), "GoTo", "place"),
 )
-MODELS = (NodeModel("Condition", "IsPathValid"), NodeModel("Action", "FollowPath"))
-_OWN_LEAVES = ("FollowPath", "open_gripper", "2fast", "Do It", "IsOk", "Then", "tür", "A")
+MODELS = (
+    NodeModel("Condition", "IsPathValid"),
+    NodeModel("Action", "FollowPath", (PortModel("a", "output"), PortModel("goal_pose", "output"))),
+)
+_OWN_LEAVES = (
+    "FollowPath", "open_gripper", "2fast", "Do It", "IsOk", "Then", "tür", "A", "OpenBox", "CheckDoor", "GraspObject",
+    "ApproachShelf", "PickAndPlace", "WaveTwice", "GoTo",
+)  # fmt: skip
 texts = st.one_of(
     st.sampled_from(
         ["", "1", "1.0", "-5", "{key}", "{a b}", "{=}", "true", "x := 1; y := 'a'", 'say "hi"', "“so”", "it's"]
@@ -77,13 +83,26 @@ texts = st.one_of(
     st.text(st.characters(codec="utf-8", exclude_categories=["Cs"]), max_size=8),
 )
 _SUBTREES = (
-    "patrol", "big dance", "GraspObject", "then", "wave", "it's {x}", "greet {who}", "visit {stop} {n}", "each_stop",
-    "each_stop", "each_n_2",
+    "patrol", "big dance", "GraspObject", "Approach Shelf", "then", "wave", "it's {x}", "greet {who}",
+    "visit {stop} {n}", "each_stop", "each_stop", "each_n_2",
 )  # fmt: skip
 _GIVEN = ("Alice", "lab", "3", "two words", "{goal}", "{count}", "{who}", "{_1}", "a}")
 _keys = st.one_of(
     st.sampled_from(
-        ["num_cycles", "msec", "_skipIf", "_onSuccess", "value", "a", "newline", "width", "goal_pose", "X1"]
+        [
+            "num_cycles",
+            "msec",
+            "_skipIf",
+            "_uid",
+            "value",
+            "a",
+            "say",
+            "newline",
+            "width",
+            "goal_pose",
+            "goal_pose",
+            "X1",
+        ]
     ),
     st.from_regex(r"[A-Za-z_][A-Za-z0-9_.-]{0,6}", fullmatch=True),
 )

@@ -6,13 +6,14 @@ from difflib import unified_diff
 from pathlib import Path
 
 import pytest
-from hypothesis import given, reject, settings
+from hypothesis import given, reject
 from hypothesis import strategies as st
 
 from btlang.api import world_vocabulary
 from btlang.backends.btcpp import to_xml
 from btlang.backends.btcpp.onto import written_onto
 from btlang.backends.english import to_english
+from btlang.backends.english.editors import without_editors
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.reader import read_xml
@@ -20,9 +21,10 @@ from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission
 from btlang.text.source import Source
 from btlang.tree.dump import plain
-from btlang.tree.node import Tree
+from btlang.tree.node import Node, Tree
 from tests.backends.any_tree import trees
 from tests.corpus.test_team import FILES, edits_of, read
+from tests.profiles import searches
 
 WORDS = world_vocabulary()
 GOOD = sorted(Path(__file__).parent.parent.joinpath("corpus", "good").rglob("*.xml"))
@@ -42,13 +44,13 @@ def changed_lines(before: str, after: str) -> list[str]:
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_edits_of_a_team_s_trees(path: Path) -> None:
-    """What stands in the edited file is said in English, and that is written onto the file as it was."""
+    """What English says of the edited file is written onto the file as it was; attributes of editors stay its own."""
     before = read_source(str(path))
     for number, (kind, text) in enumerate(edits_of(path), 1):
         wanted = text.removeprefix("\ufeff")
         tree = read(text, path)
         made = written_onto(before, mission_of(to_english(tree, WORDS)), WORDS)
-        assert plain(read(made, path)) == plain(tree), f"edit {number}, {kind}"
+        assert plain(without_editors(read(made, path))) == plain(without_editors(tree)), f"edit {number}, {kind}"
         most = len(changed_lines(before.text, wanted)) + FURTHER_LINES
         assert len(changed_lines(before.text, made)) <= most, f"edit {number}, {kind}"
 
@@ -56,47 +58,38 @@ def test_edits_of_a_team_s_trees(path: Path) -> None:
 @pytest.mark.parametrize("path", [*FILES, *GOOD], ids=lambda path: path.stem)
 def test_without_an_edit_no_byte_changes(path: Path) -> None:
     source = read_source(str(path))
-    try:
-        text = to_english(read_xml(source), WORDS)
-    except MissionError as error:
-        assert error.diagnostics[0].code == "BT142"
-        return
+    text = to_english(read_xml(source), WORDS)
     assert written_onto(source, mission_of(text), WORDS) == source.text
 
 
-@pytest.mark.parametrize("path", [*FILES, *GOOD], ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_comments_and_models_come_back_without_the_file(path: Path) -> None:
     """English -> XML -> English: what a person reads is the same, and the models of the file are there again."""
     tree = read_xml(read_source(str(path)))
-    try:
-        text = to_english(tree, WORDS)
-    except MissionError as error:
-        assert error.diagnostics[0].code == "BT142"
-        return
+    text = to_english(tree, WORDS)
     again = read_xml(Source(to_xml(mission_of(text), WORDS)))
+    assert _read_by_people(to_english(again, WORDS)) == _read_by_people(text)
+    written = {model.id: model for model in tree.models if f'ID="{model.id}"' in text.partition("#: <Tree")[2]}
     kept = {model.id: model for model in again.models}
-    if path in FILES:
-        assert _read_by_people(to_english(again, WORDS)) == _read_by_people(text)
-        written = {model.id: model for model in tree.models if f'ID="{model.id}"' in text.partition("#: <Tree")[2]}
-        assert {name: kept[name] for name in written} == written
+    assert {name: kept[name] for name in written} == written
 
 
 def _read_by_people(text: str) -> list[str]:
     return [line for line in text.split("\n") if not line.startswith("#:")]
 
 
-@settings(deadline=None)
+@searches(40, 3000, deadline=None)
 @given(trees(), trees())
 def test_any_tree_onto_any_other(before: Tree, after: Tree) -> None:
     """Nothing that was written onto a file is lost, however much is edited at once."""
     original = _written(before)
     _written(after)
     made = written_onto(original, after, WORDS)
-    assert plain(read_xml(Source(made))) == plain(after)
+    assert _in_any_order(read_xml(Source(made))) == _in_any_order(after)
     assert written_onto(Source(made), after, WORDS) == made
 
 
-@settings(deadline=None)
+@searches(40, 1000, deadline=None)
 @given(trees(), st.data())
 def test_a_changed_value_changes_one_line(tree: Tree, data: st.DataObject) -> None:
     original = _written(tree)
@@ -107,6 +100,12 @@ def test_a_changed_value_changes_one_line(tree: Tree, data: st.DataObject) -> No
     lines[at] = lines[at].replace(' text="', ' text="9', 1)
     wanted = read_xml(Source("\n".join(lines)))
     assert written_onto(original, wanted, WORDS) == "\n".join(lines)
+
+
+def _in_any_order(tree: Tree) -> tuple[Node, str, dict[str, Node]]:
+    """What is said of a tree: a file keeps the order of its trees, and what editors wrote."""
+    bare = without_editors(tree)
+    return bare.root, bare.name, dict(bare.subtrees)
 
 
 def _written(tree: Tree) -> Source:

@@ -1,6 +1,6 @@
 """XML in all its dialects: `good/` is read, written and read again without loss; `bad/` gets its messages.
 
-Beside each good file stands its tree, beside each bad one what `btc check` says of it.
+Beside each good file stands its tree, beside each bad one what `btc run` says of it.
 """
 
 from __future__ import annotations
@@ -24,6 +24,8 @@ from tests.corpus.same import content, read, written
 CORPUS = Path(__file__).parent
 GOOD = sorted((CORPUS / "good").glob("*.xml"))
 BAD = sorted((CORPUS / "bad").glob("*.xml"))
+CHECKED_AS_PROJECTS = ("no_tree", "several_main_trees", "include_with_mistakes")
+"""Which can't run, but may be parts of a project, or have more mistakes there."""
 
 
 def name(path: Path) -> str:
@@ -86,7 +88,7 @@ def test_the_canonical_form_gives_the_tree_back(path: Path, dialect: int) -> Non
 def test_message(path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(path.parent)
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
-    assert main(["check", path.name]) == 2
+    assert main(["run", path.name]) == 2
     printed = capsys.readouterr()
     assert printed.out == ""
     matches_golden(without_pointer(printed.err), path.with_suffix(".out"))
@@ -99,11 +101,11 @@ def test_other_commands_say_the_same(
     monkeypatch.chdir(path.parent)
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
     said = []
-    for command in ("check", "run", "tree", "explain"):
+    for command in ("run", "tree", "explain", *(["check"] if path.stem not in CHECKED_AS_PROJECTS else [])):
         assert main([command, path.name]) == 2
         said.append(capsys.readouterr())
     assert said == [said[0]] * len(said)
 
 
 def test_the_corpus_is_large() -> None:
-    assert len(GOOD) + len(BAD) >= 60
+    assert len(GOOD) + len(BAD) >= 58

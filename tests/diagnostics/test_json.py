@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from btlang.cli import main
-from btlang.diagnostics.report import as_json
+from btlang.diagnostics.data import as_json
 from btlang.text.source import Source
 from tests.diagnostics.samples import sample_diagnostics
 

@@ -217,7 +217,7 @@ def test_all_of_the_palette_can_be_put_in(world: str | None) -> None:
     topics = palette(Source(text), words)["topics"]
     own, *others = topics
     assert [each["insert"] for each in own["items"]][:1] == ["look"]
-    assert own["items"][2]["insert"] == 'do subtree "quick"'
+    assert own["items"][2]["insert"] == 'do "quick"'
     assert {"motion", "power", "repeating"} <= {each["topic"] for each in others}
     for topic in topics:
         for item in topic["items"]:

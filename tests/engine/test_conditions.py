@@ -131,7 +131,12 @@ def test_ten_thousand_levels_with_conditions() -> None:
     assert world.ticks(engine, 2) == "rs"
 
 
-@pytest.mark.parametrize("port", ["_onHalt", "_skipif", "_private"])
-def test_other_ports_with_an_underscore_are_unknown(port: str) -> None:
+@pytest.mark.parametrize("port", ["_uid", "_fullpath", "_description", "_collapsed", "_path"])
+def test_what_editors_write_does_nothing(port: str) -> None:
+    assert World().engine(n("Sequence", n("AlwaysSuccess"), **{port: "1"})).tick() == SUCCESS
+
+
+@pytest.mark.parametrize("port", ["_onHalt", "_skipif", "_onsucces", "_autoremap"])
+def test_misspelt_conditions_are_unknown(port: str) -> None:
     with pytest.raises(EngineError, match=f"Sequence takes no port {port}"):
         World().engine(n("Sequence", n("AlwaysSuccess"), **{port: "1"}))

@@ -13,10 +13,10 @@ from prompt_toolkit.input import create_pipe_input
 from prompt_toolkit.output import DummyOutput
 
 import btlang
+from btlang.diagnostics.data import as_data
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.render import render
-from btlang.diagnostics.report import as_data
 from btlang.frontends.mission.completion.completer import completions
 from btlang.repl.draft import MissionDraft
 from btlang.repl.screen import Screen

@@ -28,7 +28,6 @@ def mended(text: str) -> str:
         ('do open the gripper called "left" and wave', 'do "open the gripper" called "left" and wave'),
         ("if test A, wave", 'if test "A", wave'),
         ("do recovery nodee:\n  wave\n  nod", "do recovery node:\n  wave\n  nod"),
-        ("patrol is wave\ndo patrol then wave", "patrol is wave\npatrol then wave"),
         ("move forward 2 then wave", "move forward 2 m then wave"),
         ("wave within 5", "wave within 5 s"),
         ("say hello dear friends", 'say "hello dear friends"'),

@@ -132,7 +132,9 @@ LAYOUTS = [
     ("say “Hello ,  you”", "say “Hello ,  you”\n"),
     ("wave and\u00a0nod\f", "wave and nod\n"),
     ("bow is wave", "bow is wave\n"),
-]
+    ("if bumped:\n wave,  # one\n  # two\n   nod,\n  then stop\n wave",
+     "if bumped:\n  wave,  # one\n      # two\n      nod,\n      then stop\n  wave\n"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("text", "expected"), LAYOUTS, ids=[repr(text) for text, _ in LAYOUTS])

@@ -1,4 +1,4 @@
-"""Trees in XML and JSON with `btc edit`: in English beside them, and copies that are saved."""
+"""Trees in XML and JSON with `btc edit`: in English, saved onto the XML and into a copy of the JSON."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 
 from btlang.api import parse_tree
 from btlang.editing.words import Words
-from btlang.server.files import TreeFiles, english_beside, tree_sort
+from btlang.server.files import TreeFiles, XmlFiles, english_beside, tree_sort
 
 TREE = """<root BTCPP_format="4" main_tree_to_execute="Main">
   <BehaviorTree ID="Main"><Sequence><!-- both --><Open door="kitchen"/><SubTree ID="Grab"/></Sequence></BehaviorTree>
@@ -19,21 +19,59 @@ TREE = """<root BTCPP_format="4" main_tree_to_execute="Main">
 """
 
 
-def test_a_tree_is_opened_in_english_and_saved_as_a_copy(tmp_path: Path) -> None:
+def test_a_tree_in_xml_is_opened_in_english_and_saved_onto_itself(tmp_path: Path) -> None:
+    tree, beside = tmp_path / "tree.xml", tmp_path / "tree.edited.txt"
+    tree.write_text(TREE)
+    files = XmlFiles(Words(file=english_beside(str(tree))), str(tree))
+    assert (files.name, tree_sort(str(tree))) == (beside.name, "xml")
+    first = files.read(files.name)
+    assert first["tree"] == "tree.xml"
+    assert "# both\n" in first["text"]
+    changed = first["text"].replace("3 times", "5 times")
+    saved = files.save(files.name, changed, first["revision"])
+    assert (saved.ok, saved.data.get("problem")) == (True, None)
+    assert tree.read_text() == TREE.replace('"3"', '"5"')
+    assert not beside.exists()
+
+    unfinished = files.save(files.name, changed + "wavee\n", saved.data["revision"])
+    assert unfinished.ok
+    assert "wavee" in unfinished.data["problem"]
+    assert (tree.read_text(), beside.read_text()) == (TREE.replace('"3"', '"5"'), changed + "wavee\n")
+    again = files.read(files.name)
+    assert (again["text"], again["revision"]) == (changed + "wavee\n", unfinished.data["revision"])
+    assert files.save(files.name, first["text"], again["revision"]).ok
+    assert tree.read_text() == TREE
+    assert not beside.exists()
+
+
+def test_what_others_have_changed_stays(tmp_path: Path) -> None:
     tree = tmp_path / "tree.xml"
     tree.write_text(TREE)
-    files = TreeFiles(Words(file=english_beside(str(tree))), str(tree))
-    assert (files.name, tree_sort(str(tree))) == ("tree.edited.txt", "xml")
+    files = XmlFiles(Words(file=english_beside(str(tree))), str(tree))
     first = files.read(files.name)
-    assert (first["tree"], first["copy"], first["revision"]) == ("tree.xml", "tree.edited.xml", "")
-    assert "# both\n" in first["text"]
+    by_hand = TREE.replace('"kitchen"', '"lab"')
+    tree.write_text(by_hand)
+    stale = files.save(files.name, first["text"], first["revision"])
+    assert (stale.ok, stale.code, tree.read_text()) == (False, "BT187", by_hand)
+    assert "kitchen" in stale.data["diff"]
+    assert files.save(files.name, files.read(files.name)["text"], stale.data["revision"]).ok
+    assert tree.read_text() == by_hand
+
+
+def test_a_tree_in_json_is_saved_as_a_copy(tmp_path: Path) -> None:
+    tree = tmp_path / "tree.json"
+    tree.write_text(str(parse_tree(TREE).to("json")))
+    files = TreeFiles(Words(file=english_beside(str(tree))), str(tree))
+    assert (files.name, tree_sort(str(tree))) == ("tree.edited.txt", "json")
+    first = files.read(files.name)
+    assert (first["tree"], first["copy"], first["revision"]) == ("tree.json", "tree.edited.json", "")
     assert parse_tree(first["text"]).tree == parse_tree(TREE).tree
     changed = first["text"].replace("3 times", "5 times") + "# the end\n"
     saved = files.save(files.name, changed, "")
     assert (saved.ok, saved.data.get("problem")) == (True, None)
-    copy = tmp_path / "tree.edited.xml"
+    copy = tmp_path / "tree.edited.json"
     assert parse_tree(copy.read_text()).tree == parse_tree(TREE.replace('"3"', '"5"')).tree
-    assert tree.read_text() == TREE
+    assert parse_tree(tree.read_text()).tree == parse_tree(TREE).tree
     assert files.read(files.name)["text"] == changed  # with what no tree holds
 
     before = copy.read_text()
@@ -44,22 +82,22 @@ def test_a_tree_is_opened_in_english_and_saved_as_a_copy(tmp_path: Path) -> None
     stale = files.save(files.name, changed, saved.data["revision"])
     assert (stale.ok, stale.code, copy.read_text()) == (False, "BT187", before)
 
-    copy.write_text(before + "<!-- by hand -->\n")
+    copy.write_text(before + "\n")
     kept = files.save(files.name, changed, unfinished.data["revision"])
     assert (kept.ok, "another program" in kept.data["problem"]) == (True, True)
-    assert copy.read_text() == before + "<!-- by hand -->\n"
+    assert copy.read_text() == before + "\n"
     copy.unlink()
     assert "problem" not in files.save(files.name, changed, kept.data["revision"]).data
     assert copy.read_text() == before
 
     assert "problem" not in files.read(files.name)
     os.utime(tree, (time.time() + 9, time.time() + 9))
-    assert "tree.xml has changed since" in files.read(files.name)["problem"]
+    assert "tree.json has changed since" in files.read(files.name)["problem"]
 
 
 def test_a_file_that_has_the_name_of_a_copy_stays(tmp_path: Path) -> None:
-    tree, copy = tmp_path / "tree.xml", tmp_path / "tree.edited.xml"
-    tree.write_text(TREE)
+    tree, copy = tmp_path / "tree.json", tmp_path / "tree.edited.json"
+    tree.write_text(str(parse_tree(TREE).to("json")))
     copy.write_text("mine")
     files = TreeFiles(Words(file=english_beside(str(tree))), str(tree))
     assert "another program" in files.save(files.name, files.read(files.name)["text"], "").data["problem"]

@@ -9,6 +9,7 @@ import re
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.frontends.btcpp.fragments import IN_TEXTS
 from btlang.frontends.btcpp.models import why_no_port
 from btlang.frontends.btcpp.origin import Element, Markup
 from btlang.frontends.btcpp.spelling import is_xml_name
@@ -23,7 +24,6 @@ _DEEPEST = 60  # levels; what is deeper is not indented further, or a deep tree 
 _IN_VALUES = str.maketrans({
     "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\t": "&#9;", "\r": "&#13;"
 })  # fmt: skip
-_IN_TEXTS = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;"})
 _NO_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
@@ -93,7 +93,7 @@ class Markers:
                     lines.append(f"{head}/>")
                 elif all(isinstance(inner, str) for inner in item.items):
                     text = "".join(inner for inner in item.items if isinstance(inner, str))
-                    lines.append(f"{head}>{text.translate(_IN_TEXTS)}</{item.tag}>")
+                    lines.append(f"{head}>{text.translate(IN_TEXTS)}</{item.tag}>")
                 else:
                     lines.append(f"{head}>")
                     stack.append((f"</{item.tag}>", level))
@@ -102,4 +102,4 @@ class Markers:
 
 
 def _escaped(item: Element | Markup | str) -> Element | Markup | str:
-    return item.strip().translate(_IN_TEXTS) if isinstance(item, str) else item
+    return item.strip().translate(IN_TEXTS) if isinstance(item, str) else item

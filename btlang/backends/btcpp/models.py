@@ -36,9 +36,12 @@ class Uses:
             for key, _ in node.ports:
                 if key == "name":
                     self.misnamed.append(node)
-        strange = [node_id for node_id in self._ports if node_id not in self._known and not vocabulary.entry(node_id)]
-        if strange:
-            self._known |= nav2_models(strange)
+        strange = [
+            node_id for node_id in self._ports if not vocabulary.entry(node_id) and not self._is_described(node_id)
+        ]
+        for model in nav2_models(strange).values() if strange else ():
+            if self._known.get(model.id, model).kind == model.kind:
+                self._known[model.id] = model
         self._trees = {name for name, _ in tree.subtrees} | {tree.name}
         self._kinds: dict[str, str] = {}
 
@@ -46,6 +49,11 @@ class Uses:
     def ids(self) -> list[str]:
         """The ids of those nodes."""
         return list(self._ports)
+
+    def _is_described(self, node_id: str) -> bool:
+        """Whether more is known of a node than a mission tells: its kind and its outputs."""
+        model = self._known.get(node_id)
+        return model is not None and (bool(model.text) or any(port.type or port.text for port in model.ports))
 
     def _add(self, node: Node) -> None:
         ports = self._ports.setdefault(node.id, {})

@@ -54,11 +54,12 @@ class _Said(Record):
 class _Onto:
     def __init__(self, original: Source, tree: Tree, vocabulary: Lexicon) -> None:
         self._vocabulary = vocabulary
-        self._before = read_xml(original)
+        self._file = XmlFile(scanned(original))
+        is_there = tree.name in (head.name for head in self._file.heads)  # then it is the main tree, whatever is told
+        self._before = read_xml(original, tree.name if is_there else "")
         self._after = tree.replace(
             root=_apart(tree.root), subtrees=[(name, _apart(root)) for name, root in tree.subtrees]
         )
-        self._file = XmlFile(scanned(original))
         document = self._file.document
         self._dialect = self._file.dialect
         self._heads = {head.name: head for head in self._file.heads}
@@ -78,7 +79,7 @@ class _Onto:
         kinds = {model.id: model.kind for model in self._before.models}
         self._kind = lambda node_id: kinds.get(node_id) or uses.kind(node_id)
         self._text = Rewriter(document, self._file.notes, self._known, self._spelled)
-        self._mission = next((node.span.source for node in self._after.walk() if node.span is not None), None)
+        self._mission = tree.origin if isinstance(tree.origin, Source) else None
 
     # -- what is what
 

@@ -67,6 +67,7 @@ class Rewriter:
         told = [note for note in document.notes if not note.is_text]
         self._spans = {id(note): span for note, span in zip(told, self._layout.notes, strict=True)}
         self._parents: list[int] = []
+        self._before: list[int] = []  # the element before each inside the same one, -1 for none
         self._children: list[list[int]] = [[] for _ in document.elements]
         self._find_children()
         self.line_end = "\r\n" if "\r\n" in self._text else "\n"
@@ -79,8 +80,9 @@ class Rewriter:
         for number, depth in enumerate(self._document.depths):
             del opened[depth:]
             self._parents.append(opened[-1] if opened else -1)
-            if opened:
-                self._children[opened[-1]].append(number)
+            siblings = self._children[opened[-1]] if opened else []
+            self._before.append(siblings[-1] if siblings else -1)
+            siblings.append(number)
             opened.append(number)
 
     def span_of(self, note: Note) -> tuple[int, int]:
@@ -112,9 +114,8 @@ class Rewriter:
 
     def _lead(self, number: int) -> int:
         """Where the blanks and comments before an element begin."""
-        parent = self._parents[number]
-        at = self._children[parent].index(number)
-        return self._ended(self._children[parent][at - 1]) if at else self._opened(parent)
+        before = self._before[number]
+        return self._ended(before) if before >= 0 else self._opened(self._parents[number])
 
     def _is_in_line(self, number: int) -> bool:
         """Whether the elements inside one stand on its line."""

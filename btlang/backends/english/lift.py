@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from btlang.backends.english.candidate import Candidate, Checked
@@ -26,6 +27,14 @@ from btlang.tree.visit import fold
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 
+_ASKING = frozenset((
+    "Sequence", "Fallback", "ReactiveSequence", "ReactiveFallback", "IfThenElse", "WhileDoElse", "Whenever", "Inverter",
+))  # fmt: skip
+"""Nodes whose first child is a condition as a rule."""
+_QUESTION = re.compile(
+    r"(?:[Ii]s|[Hh]as|[Cc]an|[Aa]re|[Ww]as|[Ww]ere|[Dd]oes|[Dd]id|[Ss]hould|[Ww]ould|[Cc]heck)(?=[A-Z0-9_ ])"
+)
+
 
 class _Place(Record):
     """A node, and what is known where it stands."""
@@ -46,15 +55,19 @@ class Lifter:
         self._natural = natural
         self._known = known
         self.refused: set[str] = set()
-        heads = [ast.Definition(name, known.parameters(name), ast.Nothing(NOWHERE), NOWHERE, NOWHERE)
-                 for name in sorted(known.names)]  # fmt: skip
+        bodies = {loop.name for loop in known.loops.values()}
+        names = [name for name, _ in tree.subtrees if name not in bodies]
+        heads = [ast.Definition(name, known.parameters(name), ast.Nothing(NOWHERE), NOWHERE, NOWHERE,
+                                name not in known.names) for name in names]  # fmt: skip
         self.printer = Printer(PRINTERS, vocabulary, heads, "clear")
         self._node_kinds = {model.id: model.kind for model in tree.models}
+        for node_id in _asked(tree):
+            if vocabulary.entry(node_id) is None:
+                self._node_kinds.setdefault(node_id, "Condition")
+        self._outputs = _outputs(tree)
         self._comments = comments
         self._conditions: set[str] = set()  # the names that stand for conditions
         self._loops: dict[str, Candidate] = {}
-        bodies = {loop.name for loop in known.loops.values()}
-        names = [name for name, _ in tree.subtrees if name not in bodies]
         self._checked = Checked(Scope(names, vocabulary.types), known.around(""))
 
     def definition(self, name: str, root: Node) -> ast.Definition:
@@ -129,7 +142,7 @@ class Lifter:
             made: ast.Ast = ast.Check(condition, NOWHERE)
         else:
             items = tuple(child.command for child in children)
-            made = ast.Exact(node.id, node.ports, node.name, items, False, NOWHERE)
+            made = ast.Exact(node.id, node.ports, node.name, items, False, NOWHERE, self._given(node))
         assert self._checked.says(made, node)
         return made
 
@@ -218,15 +231,17 @@ class Lifter:
             yield from self._phrase(node, "condition")
 
     def _exact_condition(self, node: Node) -> ast.Ast | None:
-        """None for what is no condition: an action would be asked, and a subtree done."""
-        known = self._kind(node.id)
-        if known not in ("", "Condition") or node.id == SUBTREE or node.id in INVERSE_RULES:
+        """None for what is no condition, or not known to be one: read again it would be one everywhere."""
+        if self._kind(node.id) != "Condition" and not _asks(node):
             return None
-        if not known and node.id in self._vocabulary.nodes and not _asks(node):
-            return None
-        made = ast.Exact(node.id, node.ports, node.name, (), True, NOWHERE)
+        made = ast.Exact(node.id, node.ports, node.name, (), True, NOWHERE, self._given(node))
         assert self._checked.says(made, node)
         return made
+
+    def _given(self, node: Node) -> tuple[str, ...]:
+        """The ports of a leaf that its model says it gives values to."""
+        outputs = self._outputs.get(node.id, ()) if not node.children else ()
+        return tuple(name for name, _ in node.ports if name in outputs)
 
     def _is_condition(self, node: Node, children: tuple[Candidate, ...]) -> bool:
         if node.children:
@@ -270,6 +285,21 @@ def _first_line(said: ast.Ast) -> ast.Ast:
     """The statement that stands first where all of it are lines."""
     is_chain = isinstance(said, ast.Chain) and said.operator == "sequence"
     return ast.parts(said)[0] if is_chain else said
+
+
+def _asked(tree: Tree) -> Iterator[str]:
+    """The leaves that stand where a condition does and have the name of one: `IsDoorOpen`."""
+    for node in tree.walk():
+        first = node.children[0] if node.children and node.id in _ASKING else None
+        if first is not None and not first.children and first.id not in CATALOGUE and _QUESTION.match(first.id):
+            yield first.id
+
+
+def _outputs(tree: Tree) -> dict[str, set[str]]:
+    found: dict[str, set[str]] = {}
+    for model in tree.models:
+        found.setdefault(model.id, set()).update(port.name for port in model.ports if port.direction == "output")
+    return found
 
 
 def _asks(node: Node) -> bool:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from btlang.backends.btcpp.markup import Markers
 from btlang.backends.english.comments import Comments, comments_of
+from btlang.backends.english.editors import without_editors
 from btlang.backends.english.lift import Lifter
 from btlang.backends.english.names import Names, Refused
 from btlang.diagnostics.diagnostic import diagnostic
@@ -38,9 +39,10 @@ def to_english(
 ) -> str:
     """A mission that compiles to an equal tree: natural words where the language has them, else nodes by their ids.
 
-    It begins with what it `needs` and the `facts`, whose places it may name. Raises MissionError (BT142) for a tree
-    that no text can say, such as one with a line end in the name of a subtree.
+    Attributes of editors are left out. It begins with what it `needs` and the `facts`, whose places it may name. Raises
+    MissionError (BT142) for a tree that no text can say, such as one with a line end in the name of a subtree.
     """
+    tree = without_editors(tree)
     names = [name for name, _ in tree.subtrees] + [name for node in tree.walk() for name, _ in node.ports]
     odd = next((name for name in names if not is_one_piece(name)), None)
     if odd is not None:

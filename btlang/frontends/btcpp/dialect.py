@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from btlang.frontends.btcpp.scan import Document
 from btlang.frontends.btcpp.spelling import AUTOREMAP, AUTOREMAP_3, PORTS_TO_4, SHARED, TO_4, without_dollar
-from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE
+from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, POST_CONDITIONS, PRE_CONDITIONS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -13,8 +13,12 @@ if TYPE_CHECKING:
     Shape: TypeAlias = tuple[str, ...]
     """A tag and the names of its attributes."""
 
+ONLY_IN_3 = frozenset((
+    "BlackboardCheckBool", "BlackboardCheckDouble", "BlackboardCheckInt", "BlackboardCheckString", "ManualSelector",
+))  # fmt: skip
+"""Nodes of BehaviorTree.CPP that format 4 doesn't have, under any name."""
 _NODES = {
-    3: TO_4.keys() | {"BlackboardCheckBool", "BlackboardCheckDouble", "BlackboardCheckInt", "BlackboardCheckString"},
+    3: TO_4.keys() | ONLY_IN_3 - {"ManualSelector"},
     4: frozenset(
         kind.id
         for kind in CATALOGUE.values()
@@ -24,10 +28,8 @@ _NODES = {
 """Tags that only one version has. Kind tags tell nothing: `<Action ID="Script"/>` may be a node that somebody made."""
 _KEYS = {
     3: frozenset((SHARED, AUTOREMAP_3)),
-    4: frozenset((
-        AUTOREMAP, "_skipIf", "_failureIf", "_successIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post",
-    )),
-}  # fmt: skip
+    4: frozenset((AUTOREMAP, *PRE_CONDITIONS, *POST_CONDITIONS)),
+}
 _PORTS: dict[int, dict[str, frozenset[str]]] = {
     3: {node_id: frozenset((*names, "threshold")) for node_id, names in PORTS_TO_4.items()},
     4: {node_id: frozenset(names.values()) for node_id, names in PORTS_TO_4.items()}

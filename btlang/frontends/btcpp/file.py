@@ -6,8 +6,8 @@ from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.btcpp.dialect import dialect_of
-from btlang.frontends.btcpp.fragments import Notes, as_items, fragment
-from btlang.frontends.btcpp.models import ModelReader, among
+from btlang.frontends.btcpp.fragments import Notes, as_written, fragment
+from btlang.frontends.btcpp.models import ModelReader, among, odd
 from btlang.frontends.btcpp.nodes import NodeReader
 from btlang.frontends.btcpp.origin import Element, Markup, TreeOrigin
 from btlang.frontends.btcpp.scan import Document, Note
@@ -41,7 +41,8 @@ class TreeHead(Record):
 
 
 class XmlFile:
-    """What a document holds. `problems` is what is wrong with it; then the rest may lack parts.
+    """What a document holds. `problems` is what is wrong with it; then the rest may lack parts. `warnings` tell of what
+    BehaviorTree.CPP takes no notice of.
 
     Nodes are read by `read_trees`, when the trees of all included files are known. `within` is the dialect of the file
     that includes it.
@@ -51,6 +52,9 @@ class XmlFile:
         self.document = document
         self.notes = Notes(document)
         self.problems: list[Diagnostic] = []
+        self.warnings: list[Diagnostic] = []
+        self.is_sound = True
+        """Whether its trees can be read, as far as that is known before."""
         self.heads: list[TreeHead] = []
         self.includes: list[tuple[dict[str, str], Span]] = []
         self.models: dict[str, NodeModel] = {}
@@ -78,12 +82,17 @@ class XmlFile:
             )
             return
         models = ModelReader(document, self.notes)
+        described = -1
         self._parts = document.parts()
         for at, end in pairwise((*self._parts, len(document.elements))):
             tag, attributes = document.elements[at][0], document.attributes(at)
             if tag == "BehaviorTree":
                 self._add_tree(at, end, attributes)
+            elif tag == MODEL and described >= 0:
+                told = "Put all models into the first one."
+                self._wrong("BT122", document.span(at), what=f"A second <{tag}>", problem="isn't allowed", advice=told)
             elif tag == MODEL:
+                described = at
                 for model in models.read(at):
                     self.models.setdefault(model.id, model)
             elif tag == "include":
@@ -91,8 +100,9 @@ class XmlFile:
             else:
                 told = among(tag, _PARTS)
                 self._wrong("BT122", document.span(at), what=f"<{tag}>", problem="isn't allowed in <root>", advice=told)
-        self.problems += models.problems
+        self.warnings += models.warnings
         self._find_texts()
+        self._find_gaps()
 
     def _add_tree(self, index: int, end: int, attributes: dict[str, str]) -> None:
         written = attributes.get("ID", "")
@@ -107,14 +117,22 @@ class XmlFile:
             self._wrong("BT122", span, what=span.text, problem=problem, advice=advice)
 
     def _find_texts(self) -> None:
-        """Texts stand in models alone."""
+        """Texts that tell nothing: those of models are descriptions."""
         elements = self.document.elements
         ends = [(at, self.document.end(at)) for at in self._parts if elements[at][0] == MODEL]
         for note, inside in self.notes.texts:
             if not any(first < inside < end for first, end in ends):
-                span = self._text_span(note)
-                tag = elements[inside][0]
-                self._wrong("BT122", span, what="This text", problem=f"isn't allowed in <{tag}>", advice=_TEXT_ADVICE)
+                what = f"This text in <{elements[inside][0]}>"
+                self.warnings.append(odd(self._text_span(note), what, "has no effect", _TEXT_ADVICE))
+
+    def _find_gaps(self) -> None:
+        """Attributes without a blank before them."""
+        source = self.document.source
+        for start in self.document.gaps:
+            span = Span(source, start, source.text.find("=", start))
+            fix = (Span(source, start, start), " ")
+            told = "BehaviorTree.CPP reads it, but other programs don't."
+            self.warnings.append(odd(span, f"'{span.text.strip()}'", "has no blank before it", told, fix))
 
     def _text_span(self, note: Note) -> Span:
         """Its first line, looked for behind the tag before it."""
@@ -140,12 +158,10 @@ class XmlFile:
             reader.uses.clear()
             notes = self.notes
             before, inside, heading, behind = (
-                {at - first: tuple(note.text for note in told) for at in range(first, end) if (told := find(at))}
-                if notes
-                else {}
+                {at - first: as_written(told) for at in range(first, end) if (told := find(at))} if notes else {}
                 for find in (notes.before, notes.inside, notes.heading, notes.behind)
             )
-            after = tuple(note.text for note in notes.inside(head.index))
+            after = as_written(notes.inside(head.index))
             attributes = tuple(document.attributes(head.index).items())
             self.origins[head.name] = TreeOrigin(attributes, tags, before, inside, heading, behind, after)
         self.problems += reader.problems
@@ -155,9 +171,9 @@ class XmlFile:
         found: Items = []
         heads = {head.index: head.name for head in self.heads}
         for at in self._parts:
-            found += as_items(self.notes.before(at))
+            found += map(Markup, as_written(self.notes.before(at)))
             found.append(heads[at] if at in heads else fragment(self.document, self.notes, at))
-        found += as_items(self.notes.inside(0))
+        found += map(Markup, as_written(self.notes.inside(0)))
         return tuple(found)
 
     def head(self) -> tuple[str, ...]:

@@ -19,12 +19,13 @@ from btlang.tree.node import Node, Tree
 class FileSet(Record):
     """The files with their trees, and the models of all of them: those of the first file that has one.
 
-    `kinds` are those that models and tags tell, by the id of a node.
+    `kinds` are those that models and tags tell, by the id of a node; `warnings` are of what has no effect.
     """
 
     files: tuple[XmlFile, ...]
     models: tuple[NodeModel, ...]
     kinds: dict[str, str]
+    warnings: tuple[Diagnostic, ...] = ()
 
     def nodes(self) -> Iterator[Node]:
         """Every node of every tree."""
@@ -66,7 +67,8 @@ def read_files(sources: Iterable[Source]) -> FileSet:
         problems += file.problems
     if problems:
         raise MissionError(problems)
-    return FileSet(tuple(files), tuple(models.values()), kinds)
+    warnings = tuple(warning for file in files for warning in file.warnings)
+    return FileSet(tuple(files), tuple(models.values()), kinds, warnings)
 
 
 def _repeated(file: XmlFile) -> Iterator[Diagnostic]:

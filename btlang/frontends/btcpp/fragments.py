@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     Items: TypeAlias = list[Element | Markup | str]
 
 
+IN_TEXTS = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", "\r": "&#13;"})
 _NODES = 2  # elements around nodes: <root> and <BehaviorTree>
 
 
@@ -91,6 +92,11 @@ class Notes:
 def as_items(notes: list[Note]) -> Items:
     """Texts and comments."""
     return [note.text if note.is_text else Markup(note.text) for note in notes]
+
+
+def as_written(notes: list[Note]) -> tuple[str, ...]:
+    """Comments as they are written, and texts as they can be."""
+    return tuple(note.text.strip().translate(IN_TEXTS) if note.is_text else note.text for note in notes)
 
 
 def fragment(document: Document, notes: Notes, index: int) -> Element:

@@ -10,6 +10,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.btcpp.fragments import Notes
 from btlang.frontends.btcpp.scan import Document
 from btlang.frontends.btcpp.spelling import KINDS, is_xml_name
+from btlang.text.source import Span
 from btlang.text.spelling import nearest
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.model import NodeModel, PortModel
@@ -31,10 +32,10 @@ _MARKS = {"<": "output", "=": "inout"}
 
 
 class ModelReader:
-    """Reads the models of one file. `problems` is what is wrong with them."""
+    """Reads the models of one file. `warnings` tell of what is left out."""
 
     def __init__(self, document: Document, notes: Notes) -> None:
-        self.problems: list[Diagnostic] = []
+        self.warnings: list[Diagnostic] = []
         self._document = document
         self._notes = notes
 
@@ -45,11 +46,9 @@ class ModelReader:
             tag = document.elements[at][0]
             node_id = document.attributes(at).get("ID", "")
             if tag not in MODEL_KINDS:
-                self._wrong(
-                    "BT122", at, what=f"<{tag}>", problem="isn't allowed in <TreeNodesModel>", advice=among(tag)
-                )
-            elif not node_id:
-                self._wrong("BT123", at, tag=tag, attribute="ID", advice="Name the node that it describes.")
+                self._odd(at, f"<{tag}> in <TreeNodesModel>", "has no effect", among(tag))
+            elif not node_id.strip():
+                self._odd(at, f"This <{tag}>", "describes no node", "Give it the ID of one, or remove it.")
             else:
                 yield NodeModel(tag, node_id, tuple(self._ports(at)), self._description(at))
 
@@ -62,9 +61,9 @@ class ModelReader:
             name = attributes.get("name", attributes.get("label", ""))
             reason = why_no_port(name)
             if not name:
-                self._wrong("BT123", at, tag=self._document.elements[at][0], attribute="name", advice="")
+                self._odd(at, f"This <{self._document.elements[at][0]}>", "has no name", "Name the port, or remove it.")
             elif reason:
-                self._wrong("BT129", at, words=name, reason=reason)
+                self._odd(at, f"'{name}'", f"can't be a port: {reason}", "Rename the port, or remove it.")
             else:
                 text = self._text(at) or attributes.get("description", "")
                 yield PortModel(name, direction, attributes.get("type", ""), attributes.get("default"), text)
@@ -89,8 +88,13 @@ class ModelReader:
     def _text(self, index: int) -> str:
         return " ".join(" ".join(note.text.split()) for note in self._notes.inside(index) if note.is_text)
 
-    def _wrong(self, code: str, index: int, **arguments: str) -> None:
-        self.problems.append(diagnostic(code, self._document.span(index), (), None, **arguments))
+    def _odd(self, index: int, what: str, problem: str, advice: str) -> None:
+        self.warnings.append(odd(self._document.span(index), what, problem, advice))
+
+
+def odd(span: Span, what: str, problem: str, advice: str, fix: tuple[Span, str] | None = None) -> Diagnostic:
+    """That BehaviorTree.CPP takes no notice of a part of a file (BT230)."""
+    return diagnostic("BT230", span, (), fix, what=what, problem=problem, advice=advice)
 
 
 def among(tag: str, known: Iterable[str] = MODEL_KINDS) -> str:

@@ -22,7 +22,7 @@ class Element(Record):
 
 
 class Markup(Record):
-    """A comment or processing instruction as it is written."""
+    """A comment, processing instruction or text as it is written."""
 
     text: str
 
@@ -30,9 +30,9 @@ class Markup(Record):
 class TreeOrigin(Record):
     """How a BehaviorTree was written. Nodes are known by their number in preorder, 0 for the root.
 
-    `tags` are those nodes whose tag or attributes are not the usual ones; `before` and `inside` are comments before a
-    node and behind its last child, `heading` and `behind` those on the line of its start tag and of its end, and
-    `after` those behind the root.
+    `tags` are those nodes whose tag or attributes are not the usual ones; `before` and `inside` are comments and texts
+    before a node and behind its last child, as XML, `heading` and `behind` those on the line of its start tag and of
+    its end, and `after` those behind the root.
     """
 
     attributes: Pairs

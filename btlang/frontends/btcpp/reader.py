@@ -7,12 +7,11 @@ from collections.abc import Collection, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included, real_path
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
+from btlang.frontends.btcpp.files import XmlFiles
 from btlang.frontends.btcpp.kept import digest_of
 from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models, subtree_defaults
 from btlang.frontends.btcpp.origin import XmlOrigin
-from btlang.frontends.btcpp.scan import scanned
 from btlang.frontends.btcpp.spelling import MAIN_TREE, MODEL, TO_4
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
@@ -25,7 +24,6 @@ _NO_NODES = CATALOGUE.keys() | TO_4.keys() | {"root", "BehaviorTree", MODEL, *MO
 """Tags that are no ids of nodes that somebody made."""
 MAIN = "main_tree_to_execute"
 """The attribute of <root> with the ID of the main tree."""
-_ROS_FOLDERS = "AMENT_PREFIX_PATH"  # where ROS 2 has its packages
 
 
 def read_xml(source: Source, main: str = "") -> Tree:
@@ -42,10 +40,11 @@ class _Reader:
         self._main = main
         self._problems: list[Diagnostic] = []
         self._files: list[XmlFile] = []
-        self._read: set[str] = set()
 
     def read(self, source: Source) -> Tree:
-        self._add(source, (real_path(source.name),))
+        found = XmlFiles()
+        found.add(source)
+        self._problems, self._files = found.problems, found.files
         self._stop_where_wrong()
         file = self._files[0]
         heads = self._distinct()
@@ -66,58 +65,11 @@ class _Reader:
         subtrees = tuple(tree for tree in trees.items() if tree[0] != main)
         tree = Tree(trees[main], subtrees, "" if is_usual else main, tuple(_known(models, kinds, trees, self._files)))
         asked = (heads[main].written or main) if self._main else ""
-        return tree.replace(origin=_origin(file, tree, asked))  # type: ignore[no-any-return]
+        return tree.replace(origin=_origin(file, tree, asked), warnings=tuple(found.warnings))  # type: ignore[no-any-return]
 
     def _stop_where_wrong(self) -> None:
         if self._problems:
             raise MissionError(self._problems)
-
-    def _add(self, source: Source, within: tuple[str, ...], dialect: int = 3) -> None:
-        """Reads a file and what it includes; `within` are the files around it, its own last, `dialect` is theirs."""
-        try:
-            file = XmlFile(scanned(source), dialect)
-        except MissionError as error:
-            self._problems += error.diagnostics
-            return
-        self._problems += file.problems
-        file.problems.clear()
-        self._files.append(file)
-        self._read.add(within[-1])
-        for attributes, span in file.includes:
-            if "path" not in attributes:
-                self._problems.append(diagnostic("BT123", span, tag="include", attribute="path", advice=""))
-                continue
-            self._include(attributes, span, within, file.dialect)
-
-    def _include(self, attributes: dict[str, str], span: Span, within: tuple[str, ...], dialect: int) -> None:
-        path, source = attributes["path"], span.source
-        if "ros_pkg" in attributes and source.roots:
-            folder = _package_folder(attributes["ros_pkg"])
-            if folder is None:
-                self._not_included(span, path=path, reason=_no_package(attributes["ros_pkg"]))
-                return
-            # an installed package may be included from anywhere
-            source = Source("", folder=folder, hides_includes=source.hides_includes)
-        _, real = included_path(path, source)
-        if real in within:
-            circle = " -> ".join(map(os.path.basename, (*within[within.index(real) :], real)))
-            self._not_included(span, path=path, reason=f"it includes itself: {circle}")
-        elif len(within) >= MOST_DEEP:
-            self._not_included(span, path=path, reason=TOO_DEEP)
-        elif real not in self._read:
-            try:
-                included = read_included(path, source)
-            except MissionError as error:
-                [problem] = error.diagnostics
-                if problem.code != "BT001":
-                    self._problems.append(problem)
-                    return
-                self._not_included(span, path=path, reason=dict(problem.arguments)["reason"])
-                return
-            self._add(included, (*within, real), dialect)
-
-    def _not_included(self, span: Span, *, path: str, reason: str) -> None:
-        self._problems.append(diagnostic("BT128", span, path=path, reason=reason))
 
     def _distinct(self) -> dict[str, TreeHead]:
         """The trees by name; a name that stands twice is wrong."""
@@ -129,9 +81,7 @@ class _Reader:
                     note = ((first.span, "the first one"),)
                     self._problems.append(diagnostic("BT127", head.span, note, name=head.name))
         if not heads:
-            span = self._files[0].root_span
-            told = {"problem": "contains no BehaviorTree", "advice": 'Add one: <BehaviorTree ID="MainTree">'}
-            self._problems.append(diagnostic("BT122", span, (), None, what="<root>", **told))
+            self._problems.append(empty_file(self._files[0]))
         return heads
 
     def _main_tree(self, trees: dict[str, Node], heads: dict[str, TreeHead], names: dict[str, str]) -> str:
@@ -163,25 +113,20 @@ class _Reader:
             self._problems.append(diagnostic("BT124", heads[circle[0]].span, name=circle[0], circle=told))
 
 
+def empty_file(file: XmlFile) -> Diagnostic:
+    """That a file has no tree (BT122)."""
+    advice = 'Add one: <BehaviorTree ID="MainTree">'
+    if file.models:
+        advice = "It only describes nodes. For trees with them: btc check TREE.xml --models FILE.xml"
+    told = {"problem": "contains no BehaviorTree", "advice": advice}
+    return diagnostic("BT122", file.root_span, (), None, what="<root>", **told)
+
+
 def no_tree(span: Span, name: str, trees: Collection[str]) -> Diagnostic:
     """That none of the trees has this name (BT126)."""
     near = nearest(name, trees)
     told = f"Similar: {', '.join(near)}" if near else f"There are: {', '.join(list(trees)[:8])}"
     return diagnostic("BT126", span, name=name, help=told)
-
-
-def _package_folder(package: str) -> str | None:
-    """The folder of a ROS 2 package, None where it is not installed."""
-    for prefix in os.environ.get(_ROS_FOLDERS, "").split(os.pathsep):
-        found = os.path.join(prefix, "share", package)
-        if prefix and os.path.isdir(found) and package == os.path.basename(package) and package.strip("."):
-            return found
-    return None
-
-
-def _no_package(package: str) -> str:
-    where = "not in any folder of" if os.environ.get(_ROS_FOLDERS) else "because there is no"
-    return f"the ROS package {package} is not found, {where} {_ROS_FOLDERS}"
 
 
 def _known(

@@ -3,11 +3,15 @@
 BehaviorTree.CPP reads its files with tinyxml2, which takes `<` and `&` in attribute values and `--` in comments as they
 are, and keeps the line ends and tabs of values. Here such characters give way to others that the text does not hold;
 after the parse, `restored` brings them back. The length stays, so that places in the one text are places in the other.
+Where no blank stands between two attributes, only `spaced`, the text for the parser, has one.
 """
 
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
+from collections.abc import Sequence
+from itertools import pairwise
 
 _ODD_VALUE = re.compile(r"""=\s*(?:"[^">\n\r\t]*|'[^'>\n\r\t]*)[>\n\r\t]""")
 """What a strict parser would change in a value, and `>`, which would look like the end of its tag."""
@@ -23,6 +27,7 @@ _PARTS = re.compile(
     re.VERBOSE | re.DOTALL,
 )
 _VALUE = re.compile(r""""[^"]*"|'[^']*'""")
+_BEHIND = " \t\r\n/?>"  # what may follow the value of an attribute
 _REFERENCE = re.compile(r"&(?!(?:amp|lt|gt|quot|apos|#\d{1,7}|#x[0-9a-fA-F]{1,6});)")
 _SWAPPED = "<>&-\n\t\r"
 _DECLARED_LATE = re.compile(r"\s+<\?xml\b.*?\?>", re.DOTALL)
@@ -31,13 +36,26 @@ _DECLARED_LATE = re.compile(r"\s+<\?xml\b.*?\?>", re.DOTALL)
 class Repaired:
     """A text that an XML parser is given in place of another, and the way back for what it gives."""
 
-    def __init__(self, text: str, swaps: dict[str, str] | None = None) -> None:
+    def __init__(self, text: str, swaps: dict[str, str] | None = None, gaps: Sequence[int] = ()) -> None:
         self.text = text
+        self.gaps = gaps
+        """Places of attributes that stand right behind another one."""
+        self._blanks = [place + number for number, place in enumerate(gaps)]
         self._back = str.maketrans({there: here for here, there in (swaps or {}).items()})
         self._line_end = ""
         if swaps:
             self._line_end = swaps["\r"] + swaps["\n"]
             self._back[ord(swaps["\r"])] = "\n"
+
+    @property
+    def spaced(self) -> str:
+        """The text with a blank in each gap."""
+        bounds = (0, *self.gaps, len(self.text))
+        return " ".join(self.text[start:end] for start, end in pairwise(bounds))
+
+    def place(self, spaced: int) -> int:
+        """The place in the text of one in `spaced`."""
+        return spaced - bisect_left(self._blanks, spaced)
 
     def restored(self, value: str) -> str:
         """A value or comment as it stands in the file; a line end is a newline, as tinyxml2 has it."""
@@ -59,6 +77,7 @@ def repaired(text: str) -> Repaired:
     swaps = dict(zip(_SWAPPED, _unused(text), strict=False))
     in_values = str.maketrans({here: there for here, there in swaps.items() if here not in "&-"})
     pieces: list[str] = []
+    gaps: list[int] = []
     late = _DECLARED_LATE.match(text)
     done = late.end() if late is not None else 0
     if done:
@@ -70,6 +89,8 @@ def repaired(text: str) -> Repaired:
             break
         piece = match[0]
         comment = match["comment"]
+        if match["tag"] is not None or piece.startswith("<?xml"):
+            gaps += [done + value.end() for value in _VALUE.finditer(piece) if piece[value.end()] not in _BEHIND]
         if comment is not None and ("--" in comment or comment.endswith("-")):
             piece = f"<!--{comment.replace('-', swaps['-'])}-->"
         elif match["tag"] is not None:
@@ -78,7 +99,7 @@ def repaired(text: str) -> Repaired:
             piece = _REFERENCE.sub(swaps["&"], piece)
         pieces.append(piece)
         done = match.end()
-    return Repaired("".join(pieces), swaps)
+    return Repaired("".join(pieces), swaps, gaps)
 
 
 def _unused(text: str) -> list[str]:

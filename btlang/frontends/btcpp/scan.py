@@ -70,6 +70,8 @@ class Document:
         self.text = readable.text
         self.restored = readable.restored
         self.is_repaired = readable.text is not source.text
+        self.gaps = readable.gaps
+        """Places of attributes without a blank before them."""
         self.elements: list[Element] = []
         self.depths: list[int] = []
         """How many elements each element stands in."""
@@ -128,6 +130,7 @@ class _Refused(Exception):
 class _Scanner:
     def __init__(self, source: Source, readable: Repaired) -> None:
         self._document = Document(source, readable)
+        self._readable = readable
         self._ends: list[str] = []
         self._texts: list[str] = []
         self._parser = expat.ParserCreate()
@@ -160,11 +163,12 @@ class _Scanner:
         parser.XmlDeclHandler = self._declared
         parser.StartDoctypeDeclHandler = self._doctype
         try:
+            document.text = self._readable.spaced
             parser.Parse(document.text, True)
         except expat.ExpatError as error:
             raise MissionError([self._broken(error.code)]) from None
         except UnicodeEncodeError as error:
-            place = Span(document.source, error.start, error.start + 1)
+            place = self._span(error.start, error.start + 1)
             raise MissionError([diagnostic("BT120", place, reason="unexpected character")]) from None
         except _Refused:
             what, advice = self._refused
@@ -172,8 +176,10 @@ class _Scanner:
         document.depths = [at - element[3] for at, element in enumerate(elements)]
         if max(document.depths) >= MOST_DEEP + _AROUND:
             raise MissionError([self._too_deep()])
-        if not document.text.isascii():
-            _count_characters(document)
+        if document.gaps or not document.text.isascii():
+            self._count_characters()
+        else:
+            document.text = self._readable.text
         if document.is_repaired:
             document.elements = [
                 (tag, [document.restored(text) for text in flat], start, ended)
@@ -183,7 +189,7 @@ class _Scanner:
 
     def _too_deep(self) -> Diagnostic:
         document = self._document
-        _count_characters(document)
+        self._count_characters()
         place = document.span(document.depths.index(MOST_DEEP + _AROUND))
         what = f"more than {MOST_DEEP:,} levels of nodes"
         return diagnostic("BT121", place, what=what, advice="Move the inner ones into named trees.")
@@ -210,18 +216,22 @@ class _Scanner:
 
     def _here(self) -> Span:
         """The tag where the parser is, as far as it stands on the line."""
-        source, text = self._document.source, self._document.text
+        text = self._document.text
         index = max(self._parser.CurrentByteIndex, 0)
         inside = len(text.encode()[:index].decode(errors="ignore"))
         start = max(text.rfind("<", 0, inside + 1), 0)
         ends = (text.find(">", inside) + 1, text.find("\n", inside))
-        return Span(source, start, min((end for end in ends if end > inside), default=len(text)))
+        return self._span(start, min((end for end in ends if end > inside), default=len(text)))
+
+    def _span(self, start: int, end: int) -> Span:
+        """Of places in the text that the parser got."""
+        return Span(self._document.source, self._readable.place(start), self._readable.place(end))
 
     def _broken(self, code: int) -> Diagnostic:
         document = self._document
         start = len(document.text.encode()[: max(self._parser.ErrorByteIndex, 0)].decode(errors="ignore"))
         length = len(_WORD.match(document.text, start)[0]) if code == _TWICE else 1  # type: ignore[index]
-        place = Span(document.source, start, min(start + length, len(document.text)))
+        place = self._span(start, min(start + length, len(document.text)))
         reason = _BY_NUMBER.get(code, expat.ErrorString(code))
         if code == _INVALID:
             reason = _why_invalid(document.text, start) or reason
@@ -242,8 +252,23 @@ class _Scanner:
         return next((i for i in range(len(elements) - 1, -1, -1) if i - elements[i][3] == depth), None)
 
     def _opening(self, index: int) -> Span:
-        _count_characters(self._document)
+        self._count_characters()
         return self._document.span(index)
+
+    def _count_characters(self) -> None:
+        """Places from bytes of UTF-8 to characters, without the blanks that the parser got, in one pass."""
+        document, place = self._document, self._readable.place
+        data = document.text.encode()
+        places = sorted([element[2] for element in document.elements] + [note.start for note in document.notes])
+        bytes_done = characters = 0
+        counted: dict[int, int] = {}
+        for start in places:
+            characters += len(data[bytes_done:start].decode())
+            bytes_done = start
+            counted[start] = place(characters)
+        document.elements = [(tag, flat, counted[start], ended) for tag, flat, start, ended in document.elements]
+        document.notes = [note.replace(start=counted[note.start]) for note in document.notes]
+        document.text = self._readable.text
 
 
 def _why_invalid(text: str, start: int) -> str:
@@ -256,17 +281,3 @@ def _why_invalid(text: str, start: int) -> str:
     if text[start] in "/>" and before[-1:].isalnum():
         return "an attribute needs a value"
     return ""
-
-
-def _count_characters(document: Document) -> None:
-    """Places from bytes of UTF-8 to characters, in one pass."""
-    data = document.text.encode()
-    places = sorted([element[2] for element in document.elements] + [note.start for note in document.notes])
-    bytes_done = characters = 0
-    counted: dict[int, int] = {}
-    for start in places:
-        characters += len(data[bytes_done:start].decode())
-        bytes_done = start
-        counted[start] = characters
-    document.elements = [(tag, flat, counted[start], ended) for tag, flat, start, ended in document.elements]
-    document.notes = [note.replace(start=counted[note.start]) for note in document.notes]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 
-from btlang.tree.catalogue import CATALOGUE, SUBTREE
+from btlang.tree.catalogue import CATALOGUE, POST_CONDITIONS, PRE_CONDITIONS, SUBTREE
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -38,22 +38,19 @@ SHARED = "__shared_blackboard"
 AUTOREMAP_3 = "__autoremap"
 AUTOREMAP = "_autoremap"
 TRUE = frozenset(("1", "true", "TRUE", "True"))
+_OF_NODES = frozenset((AUTOREMAP, AUTOREMAP_3, SHARED, *PRE_CONDITIONS, *POST_CONDITIONS))
 
-_MEANT = frozenset((
-    AUTOREMAP, AUTOREMAP_3, SHARED,
-    "_skipIf", "_failureIf", "_successIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post",
-))  # fmt: skip
 _NAME = re.compile(r"[^\W\d][\w.\-]*")  # of the names that XML allows, those without a colon
-
-
-def is_editors(attribute: str) -> bool:
-    """Whether an attribute tells editors something, such as `_uid`, and the robot nothing."""
-    return attribute[:1] == "_" and attribute not in _MEANT
 
 
 def is_xml_name(text: str) -> bool:
     """Whether a text can be a tag or the name of an attribute."""
     return _NAME.fullmatch(text) is not None
+
+
+def is_editors(attribute: str) -> bool:
+    """Whether an attribute is one that editors write for themselves, such as `_uid` or `_collapsed`, and no port."""
+    return attribute[:1] == "_" and attribute not in _OF_NODES
 
 
 def is_reference(text: str) -> bool:

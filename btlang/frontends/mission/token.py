@@ -90,11 +90,12 @@ class Each(Record):
 
 
 class NodeCall(Record):
-    """A node by its id, its ports and its name, as they are."""
+    """A node by its id, its ports and its name, as they are; `outputs` are the ports that it gives values to."""
 
     id: str
     ports: tuple[tuple[str, str], ...]
     name: str
+    outputs: tuple[str, ...] = ()
 
 
 class Header(Record):

@@ -1,25 +1,26 @@
 """Comments that silence warnings: `# allow: two readings`, with commas between several names.
 
 Behind a statement such a comment counts for that statement, with the block that it opens; on a line of its own it
-counts for the whole mission.
+counts for the whole mission. In XML, `<!-- allow: never runs -->` counts for the whole file.
 """
 
 from __future__ import annotations
 
 import re
 from bisect import bisect
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from btlang.diagnostics.codes import NAMES
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
-from btlang.text.source import Source, Span
+from btlang.text.source import Span
 from btlang.text.spelling import nearest
 from btlang.text.words import Words, split
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.trie import longest
 
 _ALLOW = r"(?i)#\s*allow\s*:(?P<names>[^\n]*)"
+_IN_XML = re.compile(r"(?i)<!--\s*allow\s*:([^<>]*)-->")
 _NAME = r"[^,\s](?:[^,]*[^,\s])?"
 
 
@@ -55,10 +56,25 @@ def silence(compilation: Compilation) -> Iterator[Diagnostic]:
     ]
 
 
-def allowed_in(source: Source) -> frozenset[str]:
-    """The codes of the warnings that such comments name anywhere in a text that is no mission."""
-    names = (name for match in re.finditer(_ALLOW, source.text) for name in match["names"].split("--")[0].split(","))
-    return frozenset(code for name in names if (code := NAMES.get(" ".join(name.lower().split()))))
+def silence_in_xml(compilation: Compilation) -> Iterable[Diagnostic]:
+    """The same for a tree from XML, without BT056."""
+    if not compilation.is_text and any(warning.span.source.text[:1] == "<" for warning in compilation.warnings):
+        compilation.warnings = not_allowed(compilation.warnings)
+    return ()
+
+
+def not_allowed(problems: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Those that no comment of their XML file silences; errors stay."""
+    silent: dict[str, set[str]] = {}
+    left = []
+    for problem in problems:
+        text = problem.span.source.text
+        if text not in silent:
+            names = ",".join(_IN_XML.findall(text)).lower().split(",")
+            silent[text] = {NAMES.get(" ".join(name.split()), "") for name in names}
+        if problem.is_error or problem.code not in silent[text]:
+            left.append(problem)
+    return left
 
 
 def _scope(comment: Span, words: Words, vocabulary: Lexicon) -> tuple[int, int]:

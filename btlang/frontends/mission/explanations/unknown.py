@@ -22,6 +22,7 @@ from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
+from btlang.vocabulary.node_words import near_commands
 from btlang.vocabulary.pattern import forms, spelled
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
@@ -102,7 +103,8 @@ def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
 
 
 _NOT_OFFERED = NOT_ALONE | {
-    *NODE_ROLES, "never", "called", "with", "newline", "character", "main_name", "needs_world", "needs_words",
+    *NODE_ROLES, "never", "called", "with", "giving", "node", "newline", "character", "main_name", "needs_world",
+    "needs_words",
 }  # fmt: skip
 """Roles that say nothing alone or are for texts that programs write: what is like their words was hardly meant so."""
 
@@ -263,6 +265,11 @@ def _unknown_phrase(
         rest = text.span(at + 1, meant.last).text
         whole = text.span(at, meant.last)
         return diagnostic("BT010", span, fix=(whole, rest), kind=kind, words=span.text, help=nearest_known([rest]))
+    is_lower = span.text[1:] == span.text[1:].lower()
+    near_node = near_commands(text.words[at + 1 : end], vocabulary) if is_node and is_lower else []
+    if near_node and near_node[0] not in vocabulary.nodes.values():  # `do wavee`
+        return diagnostic("BT010", span, fix=(span, near_node[0]), kind=kind, words=span.text,
+                          help=nearest_known(near_node[:3]))  # fmt: skip
     node = misread_node(text, at, vocabulary) if is_node else None
     if node is not None:
         advice = f"A node by its id: {' or '.join(node[1])}"

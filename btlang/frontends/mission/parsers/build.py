@@ -85,7 +85,7 @@ class Builder:
         if isinstance(value, Remembered):
             return Remember(value.key, value.entry, value.arguments, span)
         if isinstance(value, NodeCall):
-            return Exact(value.id, value.ports, value.name, (), is_condition, span)
+            return Exact(value.id, value.ports, value.name, (), is_condition, span, value.outputs)
         assert isinstance(value, Listed)
         operators = ("any", "all") if is_condition else ("fallback", "sequence")
         items = tuple(_called(value.entry, arguments, span) for arguments in value.arguments)
@@ -148,7 +148,7 @@ class Builder:
             return ForEach(value.key, value.kind, value.values, body, span)
         if isinstance(value, NodeCall):
             children = body.items if isinstance(body, Chain) and body.operator == "children" else (body,)
-            return Exact(value.id, value.ports, value.name, children, False, span)
+            return Exact(value.id, value.ports, value.name, children, False, span, value.outputs)
         if kind == "try":
             return Try(body, otherwise, span)
         tried_span = span if otherwise is None else Span(self.source, opener.start, tried_end)

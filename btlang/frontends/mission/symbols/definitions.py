@@ -42,6 +42,8 @@ class Definitions:
         self.trie: TrieNode = {}
         self.types: dict[int, tuple[tuple[str, str], ...]] = {}
         """The parameters with their types of those in the trie, by the first word of the body."""
+        self.subtrees: set[str] = set()
+        """The names in quotes, those of included missions too."""
         self.problems: list[Diagnostic] = []
 
 
@@ -58,7 +60,8 @@ def find_definitions(
     """
     found = Definitions()
     text, vocabulary = phrases.text, phrases.vocabulary
-    quoted = {definition.name for definition in included if definition.is_quoted}
+    included, quoted = list(included), found.subtrees
+    quoted.update(definition.name for definition in included if definition.is_quoted)
     for definition in included:
         if not definition.is_quoted:
             _add(found.trie, definition.name, dict(definition.parameters))
@@ -222,7 +225,7 @@ def _defining_word(phrases: Phrases, first: int, last: int) -> int | None:
             if role == _WEAK and at == first and match.meaning.role == "command" and _says(match, text, at, choices):
                 return None  # `tell me what is on the desk`
             if match.meaning.role in NODE_ROLES:
-                at = _behind_node(text, match, last, vocabulary)
+                at = _behind_node(text, match, last, vocabulary, in_words=at > first and match.meaning.role == "test")
                 continue
             # a command phrase inside a name is no reason against it: `go home is ...`
             at = match.last if match.meaning.role != "command" else max(at + 1, _stop(text, at, match, choices))
@@ -235,10 +238,10 @@ def _says(match: Match, text: Words, first: int, choices: list[str]) -> bool:
     return any(text.words[at] in choices for at in range(first, match.last) if at not in values)
 
 
-def _behind_node(text: Words, head: Match, last: int, vocabulary: Lexicon) -> int:
+def _behind_node(text: Words, head: Match, last: int, vocabulary: Lexicon, *, in_words: bool) -> int:
     """Where a node ends that is said by its id: what defines is a word in it like any other."""
     try:
-        read = read_node(text, head.last, head.meaning, vocabulary)
+        read = read_node(text, head.last, head.meaning, vocabulary, in_words=in_words)
     except Unreadable as problem:
         return min(problem.at + 1, last)
     return read[1] if read is not None else head.last

@@ -1,4 +1,4 @@
-"""Nodes that are said by their ids: `do "OpenGripper" called "first" with width 0.05`, `do recovery node:`.
+"""Nodes that are said by their ids: `do open gripper called "first" with width 0.05, speed 2`, `do recovery node:`.
 
 What is in quotes is kept as it stands; several quoted texts, `newline` and `character 9` behind each other make one.
 """
@@ -6,7 +6,7 @@ What is in quotes is kept as it stands; several quoted texts, `newline` and `cha
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -17,6 +17,8 @@ from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, statements
 from btlang.tree.catalogue import SUBTREE
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.node_words import is_port, read_id, role_end, subtree_named
+from btlang.vocabulary.trie import TrieNode
 
 _MOST_WORDS = 12  # of the name of a port
 _IDENTIFIER = re.compile(r"(?=\w*_|\w+[A-Z])[A-Za-z_]\w*", re.ASCII)  # `maxSpeed`, `_skipIf`: no word of English
@@ -32,36 +34,43 @@ class Unreadable(Exception):
         self.wanted = wanted
 
 
-def read_node(text: Words, at: int, meaning: Meaning, vocabulary: Lexicon) -> tuple[NodeCall, int] | None:
+def read_node(
+    text: Words,
+    at: int,
+    meaning: Meaning,
+    vocabulary: Lexicon,
+    subtrees: Collection[str] = (),
+    names: TrieNode | None = None,
+    *,
+    in_words: bool = True,
+) -> tuple[NodeCall, int] | None:
     """The node whose head (`do`, or `do` and the words of a node) ends before a word, and where it ends.
 
-    None where no id follows the head, so that these are words like any other. Raises Unreadable.
+    `subtrees` are those with a name in quotes, `names` the others. None where no id follows the head, so that these
+    are words like any other; so they are without `in_words` where the id is not in quotes. Raises Unreadable.
     """
-    reader = _Reader(text, vocabulary)
-    node_id = meaning.node
-    ports: list[tuple[str, str]] = []
+    reader = _Reader(text, vocabulary, names)
+    node_id, ports, is_named = meaning.node, dict[str, str](), False
     if not node_id:
-        found = reader.quoted(at)
-        if found is None:
+        found = reader.id(at)
+        if found is None or (found[2] == "words" and not in_words):
             return None
-        node_id, at = found
+        node_id, at, way = found
+        is_named = meaning.role == "do" and way != "node"
+        subtree = subtree_named(node_id, subtrees, in_words=way == "words") if is_named else ""
+        if subtree:
+            node_id, ports["ID"] = SUBTREE, subtree
     elif node_id == SUBTREE:
-        found = reader.quoted(at)
-        if found is None:
+        quoted = reader.quoted(at)
+        if quoted is None:
             raise Unreadable(at, "the name of the subtree in quotes")
-        name, at = found
-        ports.append(("ID", name))
+        ports["ID"], at = quoted
     name = ""
     called = reader.word("called", at)
     if called:
         name, at = reader.text(called)
-    while following := reader.word("with", at):
-        key, value_at = reader.key(following)
-        if any(key == known for known, _ in ports):
-            raise Unreadable(following, f"another port than {key}")
-        value, at = reader.text(value_at)
-        ports.append((key, value))
-    return NodeCall(node_id, tuple(ports), name), at
+    outputs, at = reader.ports(at, ports)
+    return NodeCall(node_id, tuple(ports.items()), name, tuple(outputs)), at
 
 
 def find_main_names(text: Words, vocabulary: Lexicon) -> Iterator[tuple[str, int, int]]:
@@ -116,17 +125,56 @@ def _rest(words: Sequence[str], at: int) -> Iterator[str]:
 
 
 class _Reader:
-    def __init__(self, text: Words, vocabulary: Lexicon) -> None:
+    def __init__(self, text: Words, vocabulary: Lexicon, names: TrieNode | None = None) -> None:
         self._text = text
         self._vocabulary = vocabulary
+        self._names = names
 
     def word(self, role: str, at: int) -> int:
         """Where the words of a role end that begin at a word; 0 where there are none."""
-        for phrase in self._vocabulary.roles[role]:
-            words = phrase.split()
-            if self._text.words[at : at + len(words)] == words:
-                return at + len(words)
-        return 0
+        return role_end(self._text, at, (role,), self._vocabulary)
+
+    def id(self, at: int) -> tuple[str, int, str] | None:
+        """An id, where it ends, and whether it stands in "words", in quotes, or behind the word "node"."""
+        behind = self.word("node", at)
+        for way, found in (("", self.quoted(at)), ("node", self.quoted(behind) if behind else None)):
+            if found is not None:
+                return *found, way
+        words = read_id(self._text, at, self._vocabulary)
+        return (*words, "words") if words is not None else None
+
+    def ports(self, at: int, ports: dict[str, str]) -> tuple[list[str], int]:
+        """Reads `with width 0.05, speed 2 giving {path}` into `ports`; those behind `giving`, and where it ends."""
+        outputs: list[str] = []
+        begins = gives = False
+        while True:
+            with_at, giving_at = self.word("with", at), self.word("giving", at)
+            following = with_at or giving_at or (self._another(at) if begins else 0)
+            if not following:
+                return outputs, at
+            begins, gives = True, bool(giving_at) or (gives and not with_at)
+            if giving_at and self._text.words[following] == "{":
+                value, at = self.text(following)
+                key = value[1:-1].strip()
+            else:
+                key, value_at = self.key(following)
+                value, at = self.text(value_at)
+            if key in ports:
+                raise Unreadable(following, f"another port than {key}")
+            ports[key] = value
+            outputs += [key] if gives else []
+
+    def _another(self, at: int) -> int:
+        """Where a port begins behind a comma; 0 where something else does."""
+        if self._text.words[at] != ",":
+            return 0
+        following = self.word("with", at + 1)
+        try:
+            value_at = self.key(following or at + 1)[1]
+            self.text(value_at)
+        except Unreadable:
+            return 0
+        return following or (at + 1 if is_port(self._text, at + 1, value_at, self._vocabulary, self._names) else 0)
 
     def key(self, at: int) -> tuple[str, int]:
         """The name of a port, in quotes or as words: `number of retries`; and where its text begins."""

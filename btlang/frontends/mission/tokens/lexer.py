@@ -310,9 +310,13 @@ class Lexer:
 
     def _node(self, head: Match, at: int) -> int:
         """A node that is said by its id. Returns where to go on, 0 where the words are no such node."""
-        text = self.text
+        text, names = self.text, self.names.definitions.trie
+        named = longest(names, text, at, self.context) if names else None
+        if named is not None and named.last > head.last and text.words[head.last][0] != '"':
+            return 0  # `do twist is turn right`
         try:
-            read = read_node(text, head.last, head.meaning, self.vocabulary)
+            definitions = self.names.definitions
+            read = read_node(text, head.last, head.meaning, self.vocabulary, definitions.subtrees, definitions.trie)
         except Unreadable as problem:
             self.problems.append(unreadable(text, at, problem))
             end = self._unknown_end(at, bisect_right(text.starts, span_of(text, at).end - 1))
@@ -321,6 +325,9 @@ class Lexer:
         if read is None:
             return 0
         call, end = read
+        named = longest(names, text, head.last, self.context) if names and head.meaning.role == "do" else None
+        if named is not None and named.last >= end and not head.meaning.node:
+            return head.last  # `do patrol`
         kind = "condition" if head.meaning.role == "test" else "node" if text.words[end] == ":" else "command"
         self.tokens.append(Token(kind, text.starts[at], text.ends[end - 1], call))
         return end

@@ -217,7 +217,7 @@ class Desk {
   private tell(): void {
     const { tree, copy, problem } = this.keeping.kept;
     fill(this.state, this.keeping.state);
-    fill(this.origin, tree && copy && t("write.of_tree", { tree, copy }), problem && h("span", { class: "problem", lang: "en" }, problem));
+    fill(this.origin, tree && (copy ? t("write.of_tree", { tree, copy }) : t("write.onto_tree", { tree })), problem && h("span", { class: "problem", lang: "en" }, problem));
     this.context.presence.write(this.keeping.name, this.keeping.isChanged);
   }
 

@@ -1,0 +1,135 @@
+"""The verb `check`: missions and files of tests one by one, all trees in XML together as a project."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from btlang.api import world_vocabulary
+from btlang.cli_input import hinting, mission_of, parsed_mission, typed_source
+from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import read_source
+from btlang.frontends.table import frontend_of
+from btlang.testing.names import is_test_file
+from btlang.text.output import show
+from btlang.text.source import Source
+
+_SUCCESS, _BAD_INPUT = 0, 2
+
+
+def serve(options: argparse.Namespace) -> int:
+    """Does the verb; returns the exit code: 2 where there is an error in any of the files."""
+    check = _Check(options)
+    check.read()
+    if options.fix or options.then:
+        check.mend()
+    check.check()
+    if not check.failed and not options.report.is_for_programs:
+        show("No problems found.")
+    return _BAD_INPUT if check.failed else _SUCCESS
+
+
+class _Check:
+    """What is found goes to the report; `failed`: there are errors."""
+
+    def __init__(self, options: argparse.Namespace) -> None:
+        self.failed = False
+        self._options = options
+        self._alone: list[Source] = []
+        self._trees: list[Source] = []
+
+    def read(self) -> None:
+        """Reads the files; what isn't a tree in XML is checked alone."""
+        if self._options.text is not None:
+            self._add(typed_source(self._options))
+            return
+        from btlang.projects.files import named_files
+
+        with self._told():
+            for path in named_files(self._options.file):
+                with self._told(), hinting(path, "check"):
+                    self._add(read_source(path, self._options.include_root))
+
+    def _add(self, source: Source) -> None:
+        is_tree = not is_test_file(source.name) and frontend_of(source) == "xml"
+        (self._trees if is_tree else self._alone).append(source)
+
+    def mend(self) -> None:
+        """Writes corrections into the files; of a text, and of standard input, shows what it becomes."""
+        from btlang.diagnostics.mending import mended, mended_together
+
+        options = self._options
+        done = [mended(source, self._problems_alone, fix=options.fix, then=options.then) for source in self._alone]
+        self._alone = [source for source, _ in done]
+        if self._trees and options.fix:
+            done += (both := mended_together(self._trees, self._problems_together))
+            self._trees = [source for source, _ in both]
+        for source, count in done:
+            with self._told():
+                self._put(source, count)
+
+    def _put(self, source: Source, count: int) -> None:
+        from btlang.backends.files import replace_text
+
+        aside = sys.stderr if self._options.report.is_for_programs else sys.stdout
+        if self._options.text is not None or source.name == "-":
+            show(source.text.rstrip("\n"), stream=aside)
+        elif count:
+            replace_text(source.name, source.text)
+            show(f"Corrected {source.name}: {count} change{'s' * (count > 1)}.", stream=aside)
+
+    def check(self) -> None:
+        """Reports what is wrong now."""
+        report, robot = self._options.report, self._options.robot
+        for source in self._alone:
+            with self._told():
+                if is_test_file(source.name):
+                    from btlang.testing.test_file import check_tests  # most files are missions
+
+                    report.add(check_tests(source))
+                else:
+                    mission_of(self._options, source).check(robot)
+        if self._trees:
+            with self._told():
+                problems = self._problems_together(self._trees)
+                report.add(problems)
+                self.failed |= any(problem.is_error for problem in problems)
+        for source in self._trees if robot and not self.failed else ():
+            with self._told():
+                parsed_mission(source, self._options).check(robot)
+
+    @contextmanager
+    def _told(self) -> Iterator[None]:
+        """Errors go to the report, and the rest is checked all the same."""
+        try:
+            yield
+        except MissionError as error:
+            self.failed = True
+            self._options.report.add(error.diagnostics)
+
+    def _problems_alone(self, source: Source) -> Sequence[Diagnostic]:
+        try:
+            if is_test_file(source.name):
+                from btlang.testing.test_file import check_tests  # most files are missions
+
+                return check_tests(source)
+            return parsed_mission(source, self._options).warnings
+        except MissionError as error:
+            return error.diagnostics
+
+    def _problems_together(self, sources: Sequence[Source]) -> Sequence[Diagnostic]:
+        from btlang.frontends.btcpp.files import XmlFiles
+        from btlang.frontends.btcpp.project import read_project
+        from btlang.projects.checking import project_problems
+
+        options = self._options
+        palettes, files = XmlFiles(), XmlFiles(sources)
+        for path in options.models:
+            palettes.add(read_source(path, options.include_root))
+        for source in sources:
+            files.add(source)
+        vocabulary = world_vocabulary(options.keywords, options.world, options.language)
+        return project_problems(read_project(files, palettes, options.main), vocabulary)

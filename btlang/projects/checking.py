@@ -1,0 +1,140 @@
+"""What is wrong with a project of trees: by its models where they describe a node, by the words of btlang elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from btlang.backends.checking import anything, bound, misnamed, tree_problems
+from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.errors import in_order
+from btlang.engine.leaves.leaf import LeafBinding
+from btlang.frontends.btcpp.models import nav2_models
+from btlang.frontends.btcpp.project import XmlProject
+from btlang.passes import PASSES
+from btlang.passes.compilation import Compilation
+from btlang.passes.lint.allow import not_allowed
+from btlang.projects.ports import port_problems, subtree_problems
+from btlang.projects.unknown import unknown_nodes
+from btlang.projects.unused import keys_read, unread_outputs, unused_trees
+from btlang.text.source import Span
+from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SEQUENCE, SUBTREE
+from btlang.tree.node import Node, Tree
+from btlang.tree.visit import fold
+from btlang.vocabulary.lexicon import Lexicon
+
+
+def project_problems(project: XmlProject, vocabulary: Lexicon) -> list[Diagnostic]:
+    """Errors and warnings of all files, in order, without those that comments allow."""
+    found = list(project.problems)
+    if project.trees and not project.is_round:
+        found += _Check(project, vocabulary).problems()
+    wrong = {_place(problem.span) for problem in found if problem.is_error and problem.code != "BT132"}
+    return in_order(not_allowed(each for each in found if each.code != "BT132" or _place(each.span) not in wrong))
+
+
+def _place(span: Span) -> tuple[str, int]:
+    return span.source.name, span.start
+
+
+class _Check:
+    def __init__(self, project: XmlProject, vocabulary: Lexicon) -> None:
+        self._project = project
+        self._nodes = [node for root in project.trees.values() for node in Tree(root).walk()]
+        self._models = {id: model for id, model in project.models.items() if id not in CATALOGUE}
+        elsewhere = self._ids_from_elsewhere(vocabulary)
+        own = {id: known for id, known in vocabulary.entries.items() if id not in elsewhere}
+        self._vocabulary = vocabulary.replaced(entries=own)
+        self._words = vocabulary.entries.keys()
+        ids = {node.id for node in self._nodes} - self._models.keys()
+        self._described = {*CATALOGUE, *self._models, *nav2_models(ids)}
+
+    def problems(self) -> Iterator[Diagnostic]:
+        """Of the trees; only warnings where there is an error that would mislead them."""
+        yield from unknown_nodes(self._nodes, self._described, self._words, self._project.dialects)
+        yield from self._wrong_ports()
+        yield from unused_trees(self._project)
+        yield from unread_outputs(self._nodes, self._models, keys_read(self._nodes, self._models))
+        yield from self._faults()
+        compilation = Compilation(self._vocabulary, tree=self._whole(self._project.trees))
+        for one in PASSES:
+            if not one.needs_text:
+                yield from one.run(compilation)
+
+    def _ids_from_elsewhere(self, vocabulary: Lexicon) -> set[str]:
+        """The ids of leaves that aren't the vocabulary's: their models differ, or their files have others, too."""
+        own = {id for id in vocabulary.entries if self._fits(id, vocabulary)}
+        by_file: dict[str, set[str]] = {}
+        for node in self._nodes:
+            if node.id not in CATALOGUE and node.span is not None:
+                by_file.setdefault(node.span.source.name, set()).add(node.id)
+        return {id for ids in by_file.values() if not ids <= own for id in ids}
+
+    def _fits(self, node_id: str, vocabulary: Lexicon) -> bool:
+        """Whether a model, if there is one, describes the entry of this id."""
+        model = self._models.get(node_id)
+        slots = {slot.name for entry in vocabulary.entries[node_id] for slot in entry.slots}
+        return model is None or all(port.name in slots for port in model.ports)
+
+    def _wrong_ports(self) -> Iterator[Diagnostic]:
+        trees = self._project.models
+        for node in self._nodes:
+            model = trees.get(node.port("ID")) if node.id == SUBTREE else self._models.get(node.id)
+            if model is None or node.id in self._vocabulary.entries:
+                continue
+            if node.id != SUBTREE and model.kind != SUBTREE:
+                yield from port_problems(node, model)
+            elif node.id == SUBTREE and model.kind == SUBTREE and self._dialect(node) == 4:
+                yield from subtree_problems(node, model)
+
+    def _dialect(self, node: Node) -> int:
+        return self._project.dialects.get(node.span.source.name, 4) if node.span is not None else 4
+
+    def _faults(self) -> Iterator[Diagnostic]:
+        """What the engine would refuse, but for trees that are elsewhere, and nodes that aren't ours."""
+        described = {id for id, model in self._project.models.items() if model.kind == SUBTREE} | self._project.unread
+        replaced: dict[tuple[str, int], Node] = {}
+        own = {name: fold(root, _children, lambda node, inner: self._stand_in(node, inner, replaced))
+               for name, root in self._project.trees.items()}  # fmt: skip
+        for problem in tree_problems(self._whole(own), self._vocabulary, self._bind):
+            told = dict(problem.arguments)
+            if (problem.code == "BT126" and told["name"] in described) or self._is_older(
+                problem.span, told.get("id", "")
+            ):
+                continue
+            node = replaced.get(_place(problem.span))
+            if node is not None and problem.code == "BT132" and told["id"] == SEQUENCE:
+                reason = told["reason"].replace(SEQUENCE, node.id, 1)
+                problem = problem.replace(arguments=(("id", node.id), ("reason", reason)))
+            yield problem
+        if self._vocabulary.entries:
+            yield from misnamed(self._whole(self._project.trees), self._vocabulary)
+
+    def _is_older(self, span: Span, node_id: str) -> bool:
+        """Whether a node of version 3 only has the name of one that format 4 brought."""
+        kind = CATALOGUE.get(node_id)
+        is_new = kind is not None and kind.origin == BEHAVIOR_TREE_CPP and not kind.tags_3
+        return is_new and self._project.dialects.get(span.source.name) == 3
+
+    def _stand_in(self, node: Node, inner: list[Node], replaced: dict[tuple[str, int], Node]) -> Node:
+        """A node of the engine for one that isn't, around the same children."""
+        if not inner:
+            return node
+        own: Node = node.replace(children=tuple(inner))
+        if node.id in CATALOGUE or node.id in self._vocabulary.entries:
+            return own
+        if node.span is not None:
+            replaced[_place(node.span)] = node
+        ports = tuple((name, text) for name, text in node.ports if name[:1] == "_")
+        return own.replace(id=SEQUENCE, ports=ports)  # type: ignore[no-any-return]
+
+    def _bind(self, node_id: str) -> LeafBinding:
+        return bound(self._vocabulary, node_id) or LeafBinding(anything)
+
+    def _whole(self, trees: Mapping[str, Node]) -> Tree:
+        """One tree that uses them all."""
+        uses = tuple(Node(SUBTREE, ports=(("ID", name),)) for name in trees)
+        return Tree(Node(SEQUENCE, uses, span=next(iter(trees.values())).span), tuple(trees.items()))
+
+
+def _children(node: Node) -> tuple[Node, ...]:
+    return node.children

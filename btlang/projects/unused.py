@@ -1,0 +1,69 @@
+"""BT235 and BT236: what nothing in a project reads or uses."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.engine.instance import blackboard_key
+from btlang.frontends.btcpp.project import XmlProject
+from btlang.projects.places import attribute_value
+from btlang.tree.catalogue import POST_CONDITIONS, PRE_CONDITIONS, SUBTREE
+from btlang.tree.model import NodeModel
+from btlang.tree.node import Node
+from btlang.tree.visit import subtree_names
+
+_WORD = re.compile(r"[^\W\d]\w*")
+
+
+def keys_read(nodes: Iterable[Node], models: Mapping[str, NodeModel]) -> frozenset[str]:
+    """Every key that a port, a script or a SubTree may read, in whatever tree: a key has other names in other trees."""
+    read: set[str] = set()
+    for node in nodes:
+        outputs = _outputs(node, models)
+        for name, text in node.ports:
+            if name in PRE_CONDITIONS or name in POST_CONDITIONS or name in ("code", "if"):
+                read.update(_WORD.findall(text))
+            elif name not in outputs:
+                key = blackboard_key(name, text)
+                read.update((key,) if key is not None else _WORD.findall(text))
+            if node.id == SUBTREE:
+                read.add(name)
+    return frozenset(read)
+
+
+def unread_outputs(
+    nodes: Iterable[Node], models: Mapping[str, NodeModel], read: frozenset[str]
+) -> Iterator[Diagnostic]:
+    """BT235 for the keys that only output ports name."""
+    for node in nodes:
+        outputs = _outputs(node, models)
+        for name, text in node.ports if outputs else ():
+            key = blackboard_key(name, text) if name in outputs else None
+            if key is not None and key not in read and key[:1] != "@":
+                yield diagnostic("BT235", attribute_value(node, name), key=key, port=name, id=node.id)
+
+
+def _outputs(node: Node, models: Mapping[str, NodeModel]) -> set[str]:
+    model = models.get(node.id)
+    return {port.name for port in model.ports if port.direction == "output"} if model is not None else set()
+
+
+def unused_trees(project: XmlProject) -> Iterator[Diagnostic]:
+    """BT236 for trees that no main tree reaches, where a main tree uses others, in the files of what it reaches."""
+    uses = {name: [used for used in subtree_names(root) if used in project.trees]
+            for name, root in project.trees.items()}  # fmt: skip
+    if not any(uses[name] for name in project.mains):
+        return
+    reached: set[str] = set()
+    waiting = list(project.mains)
+    while waiting:
+        name = waiting.pop()
+        if name not in reached:
+            reached.add(name)
+            waiting += uses[name]
+    files = {project.heads[name].span.source.name for name in reached}
+    for name, head in project.heads.items():
+        if name in project.trees and name not in reached and head.span.source.name in files:
+            yield diagnostic("BT236", head.span, name=head.written or name)

@@ -1,0 +1,140 @@
+"""Nodes that no phrase says, in words: where the words of an id end, and which words could be a port behind a comma."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+from functools import lru_cache
+from itertools import takewhile
+
+from btlang.text.source import Source
+from btlang.text.spelling import respellings
+from btlang.text.words import Words, split
+from btlang.vocabulary.language_tables import NOT_ALONE
+from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
+from btlang.vocabulary.pattern import Slot, forms
+from btlang.vocabulary.trie import Match, TrieNode, longest
+
+_ID = re.compile(r"(?:[A-Z][a-z0-9]*)+")
+_PART = re.compile(r"[A-Z][a-z0-9]*")
+_WORD = re.compile(r"[a-z][a-z0-9]*")
+_BEHIND = ("called", "with", "giving")
+_LEAST = 3  # letters of what can be a misspelling
+
+
+@lru_cache(maxsize=1024)
+def said_id(node_id: str, role: str, vocabulary: Lexicon) -> str:
+    """`OpenGripper` as `open gripper`; "" where these words behind `do` or `test` are read as anything else.
+
+    So they are where a command goes on behind them with a value, and where a line would define something.
+    """
+    said = " ".join(word.lower() for word in _PART.findall(node_id)) if _ID.fullmatch(node_id) else ""
+    if role == "do" and any(word in vocabulary.roles[define] for define in DEFINING for word in said.split()):
+        return ""
+    text = split(Source(f"{vocabulary.word(role)} {said}"), vocabulary.orthography)
+    head = longest(vocabulary.trie, text, 0, vocabulary.context)
+    if not said or said in _phrases(vocabulary)[1] or head is None or head.meaning.role != role or head.meaning.node:
+        return ""
+    return said if read_id(text, head.last, vocabulary) == (node_id, len(text.words) - 2) else ""
+
+
+def id_of_name(name: str) -> str:
+    """The id that the words of a name make: `Approach shelf` as `ApproachShelf`."""
+    return "".join(map(_capital, name.split()))
+
+
+def subtree_named(written: str, subtrees: Collection[str], *, in_words: bool) -> str:
+    """The subtree that an id means, as it stands or by its words; "" where that is none, or more than one."""
+    if not in_words:
+        return written if written in subtrees else ""
+    found = [name for name in subtrees if written == id_of_name(name)]
+    return found[0] if len(found) == 1 else ""
+
+
+def read_id(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, int] | None:
+    """The id that the words from a place on make, and where they end: at a mark, a number or a connective.
+
+    None for what is a command or a condition, or a misspelt one.
+    """
+    words = text.words
+    if not _WORD.fullmatch(words[at]) or role_end(text, at, _BEHIND, vocabulary):
+        return None
+    last = at + 1
+    while _WORD.fullmatch(words[last]) and not _ends(text, last, vocabulary):
+        last += 1
+    written = text.source.text[text.starts[at] : text.ends[last - 1]]
+    match = _phrase(text, at, vocabulary)
+    is_phrase = match is not None and match.last >= last
+    is_node = _is_near(" ".join(words[at:last]), _phrases(vocabulary)[2])
+    if is_phrase or is_node or written != written.lower():
+        return None
+    if _is_misspelt(words[at:last], _phrases(vocabulary)[0], vocabulary):
+        return None
+    return "".join(map(_capital, words[at:last])), last
+
+
+def near_commands(words: list[str], vocabulary: Lexicon) -> list[str]:
+    """What can be said without a value and was probably meant by words that are no command."""
+    return respellings(" ".join(words), _phrases(vocabulary)[0])
+
+
+def is_port(text: Words, at: int, last: int, vocabulary: Lexicon, names: TrieNode | None) -> bool:
+    """Whether the words up to `last` (exclusive) can name a port behind a comma: no command begins with them."""
+    match = _phrase(text, at, vocabulary)
+    if match is not None and match.meaning.role not in NOT_ALONE:
+        return False
+    if names and longest(names, text, at, vocabulary.context.with_references()) is not None:
+        return False
+    return not _is_misspelt(text.words[at:last], _phrases(vocabulary)[1], vocabulary)
+
+
+def _capital(word: str) -> str:
+    return word[0].upper() + word[1:]
+
+
+def role_end(text: Words, at: int, roles: tuple[str, ...], vocabulary: Lexicon) -> int:
+    """Where the words of one of some roles end that begin at a word; 0 where there are none."""
+    for role in roles:
+        for phrase in vocabulary.roles[role]:
+            words = phrase.split()
+            if text.words[at : at + len(words)] == words:
+                return at + len(words)
+    return 0
+
+
+def _phrase(text: Words, at: int, vocabulary: Lexicon) -> Match | None:
+    """The longest phrase that begins at a word, whatever values the mission has."""
+    return longest(vocabulary.trie, text, at, vocabulary.context.with_references())
+
+
+def _ends(text: Words, at: int, vocabulary: Lexicon) -> bool:
+    """Whether what ends an id begins at a word: a connective, or what is said of the node."""
+    match = _phrase(text, at, vocabulary)
+    joins = match is not None and match.meaning.entry is None and match.meaning.role not in (*NODE_ROLES, *NOT_ALONE)
+    return joins or role_end(text, at, _BEHIND, vocabulary) > 0
+
+
+@lru_cache(maxsize=4)
+def _phrases(vocabulary: Lexicon) -> tuple[frozenset[str], frozenset[str], frozenset[str]]:
+    """What can be said without a value, the words up to the first value of all else, and the words of nodes."""
+    whole, heads = set(vocabulary.nodes.values()), set[str]()
+    said = [phrase for entries in vocabulary.entries.values() for entry in entries for phrase in entry.phrases]
+    for phrase in [*said, *(phrase for phrases in vocabulary.roles.values() for phrase in phrases)]:
+        for form in forms(phrase, vocabulary.articles):
+            head = " ".join(str(part) for part in takewhile(lambda part: not isinstance(part, Slot), form))
+            (heads if any(isinstance(part, Slot) for part in form) else whole).add(head)
+    return frozenset(whole), frozenset(heads), frozenset(vocabulary.nodes.values())
+
+
+@lru_cache(maxsize=4096)  # a file has few ids and ports, each many times
+def _is_near(written: str, known: frozenset[str]) -> bool:
+    return bool(respellings(written, known))
+
+
+def _is_misspelt(words: list[str], known: frozenset[str], vocabulary: Lexicon) -> bool:
+    written = " ".join(words)
+    if len(written) < _LEAST or not _is_near(written, known):
+        return False
+    from btlang.vocabulary.correct_words import correct_words  # hardly ever
+
+    return not correct_words(vocabulary.word_list).issuperset(words)

@@ -1,0 +1,90 @@
+"""`btc compile --onto` and `btc edit --editor`, as a user types them."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from btlang.cli import main
+
+TREE = b"""\xef\xbb\xbf<?xml version="1.0"?>\r
+<root BTCPP_format="4">\r
+    <BehaviorTree ID="MainTree" _description="says hello">\r
+        <Sequence> <!-- first -->\r
+            <Say   text='hello'/> <!-- loudly -->\r
+            <Open_Door door="{door}"></Open_Door>\r
+        </Sequence>\r
+    </BehaviorTree>\r
+    <!-- the end -->\r
+</root>\r
+"""
+
+
+@pytest.fixture
+def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A file, in the current folder."""
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "tree.xml"
+    path.write_bytes(TREE)
+    return path
+
+
+def test_an_edit_changes_what_was_edited(tree: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    english = tree.with_suffix(".txt")
+    assert main(["compile", "tree.xml", "-o", "tree.txt"]) == 0
+    english.write_text(english.read_text().replace("# loudly", "# softly").replace("hello", "good-bye"))
+    assert main(["compile", "tree.txt", "--onto", "tree.xml", "-o", "other.xml"]) == 0
+    changed = TREE.replace(b"loudly", b"softly").replace(b"'hello'", b"'good-bye'")
+    assert (tree.with_name("other.xml").read_bytes(), tree.read_bytes()) == (changed, TREE)
+    for _ in range(2):  # the text knows what it was written onto
+        assert main(["compile", "tree.txt", "--onto", "tree.xml"]) == 0
+        assert tree.read_bytes() == changed
+    tree.write_bytes(changed.replace(b"the end", b"END"))
+    assert main(["compile", "tree.txt", "--onto", "tree.xml"]) == 2
+    assert "BT136" in capsys.readouterr().err
+    assert tree.read_bytes() == changed.replace(b"the end", b"END")
+    assert main(["compile", "tree.txt", "--onto", "tree.xml", "--force"]) == 0
+    assert tree.read_bytes() == changed
+
+
+@pytest.mark.parametrize(
+    ("content", "code"),
+    [(b"wave\n", "BT120"), (b"<root/>", "BT122"), (b"<root><BehaviorTree>", "BT120"), (b"", "BT120")],
+)
+def test_what_is_no_tree_stays(tree: Path, content: bytes, code: str, capsys: pytest.CaptureFixture[str]) -> None:
+    tree.write_bytes(content)
+    assert main(["compile", "-c", "wave", "--onto", "tree.xml"]) == 2
+    assert code in capsys.readouterr().err
+    assert tree.read_bytes() == content
+
+
+def test_the_editor_of_the_user(
+    tree: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def editor(program: str) -> None:
+        script = tree.with_name("editor.py")
+        script.write_text(f"import pathlib, sys\npath = pathlib.Path(sys.argv[1])\n{program}\n")
+        monkeypatch.setenv("VISUAL", f"'{sys.executable}' '{script}'")
+
+    editor("path.write_text(path.read_text().replace('hello', 'hi'))")
+    assert main(["edit", "--editor", "tree.xml"]) == 0
+    changed = TREE.replace(b"'hello'", b"'hi'")
+    assert tree.read_bytes() == changed
+    for program in ("pass", "path.write_text('nonsense here'); sys.exit(1)"):
+        editor(program)
+        assert main(["edit", "--editor", "tree.xml"]) == 0
+        assert "tree.xml stays as it is." in capsys.readouterr().out
+    editor("path.write_text('nonsense here')")
+    assert main(["edit", "--editor", "tree.xml"]) == 2
+    told = capsys.readouterr()
+    kept = Path(told.out.partition("Your text is in ")[2].strip().removesuffix("."))
+    assert kept.read_text() == "nonsense here"
+    assert "BT0" in told.err
+    assert tree.read_bytes() == changed
+    monkeypatch.setenv("VISUAL", "no-such-editor")
+    with pytest.raises(SystemExit):
+        main(["edit", "--editor", "tree.xml"])
+    assert "can't be started" in capsys.readouterr().err
+    assert tree.read_bytes() == changed

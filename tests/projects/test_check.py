@@ -1,0 +1,196 @@
+"""`btc check` for trees in XML: a project without a mistake, and one with one mistake of each kind."""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from btlang.cli import main
+from btlang.diagnostics.codes import CODES
+from tests.conftest import matches_golden, without_pointer
+
+ROOT = Path(__file__).parent.parent.parent
+PROJECT = ROOT / "tests" / "corpus" / "project"
+TEAM = ROOT / "tests" / "corpus" / "team"
+OF_PROJECTS = {code for code in CODES if code.startswith("BT23")}
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of the samples, which is the current folder."""
+    shutil.copytree(PROJECT, tmp_path / "project")
+    monkeypatch.chdir(tmp_path / "project")
+    return tmp_path / "project"
+
+
+def problems(capsys: pytest.CaptureFixture[str], *arguments: str) -> list[dict[str, Any]]:
+    main(["check", "--format", "json", *arguments])
+    found: list[dict[str, Any]] = json.loads(capsys.readouterr().out)
+    return found
+
+
+@pytest.mark.usefixtures("folder")
+@pytest.mark.parametrize("files", ["sound", "sound/doors.xml sound/nodes.xml sound/deliver.xml",
+                                   "sound/deliver.xml sound sound/doors.xml",
+                                   "--models sound/nodes.xml sound/doors.xml sound/deliver.xml"])  # fmt: skip
+def test_a_sound_project(files: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", *files.split()]) == 0
+    assert capsys.readouterr() == ("No problems found.\n", "")
+
+
+@pytest.mark.usefixtures("folder")
+def test_every_mistake_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "mistakes"]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    said = without_pointer(printed.err)
+    matches_golden(said, PROJECT / "mistakes.out")
+    assert set(re.findall(r"BT\d+", said)) >= (OF_PROJECTS - {"BT230"}) | {"BT052", "BT053", "BT120", "BT126", "BT127"}
+
+
+@pytest.mark.usefixtures("folder")
+def test_alone_a_file_lacks_the_models_and_trees_of_others(capsys: pytest.CaptureFixture[str]) -> None:
+    codes = [problem["code"] for problem in problems(capsys, "sound/deliver.xml")]
+    assert sorted(codes) == ["BT126", "BT126", "BT231", "BT231", "BT231"]
+
+
+@pytest.mark.parametrize("path", sorted(TEAM.glob("[ghn]*.xml")), ids=lambda path: path.stem)
+def test_leaves_from_elsewhere_are_no_errors(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found = problems(capsys, str(path))
+    assert {problem["code"] for problem in found} <= {"BT231"}
+    told = [problem["message"].split("'")[1] for problem in found]
+    assert len(told) == len(set(told))
+    assert main(["check", str(path)]) == 0
+
+
+def test_what_runs_here_is_checked_as_before(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "tree.xml"
+    path.write_text('<root BTCPP_format="4"><BehaviorTree ID="A"><GoTo to="kitchen"/></BehaviorTree></root>', "utf-8")
+    assert [problem["code"] for problem in problems(capsys, str(path))] == ["BT132"]
+    path.write_text('<root BTCPP_format="4"><BehaviorTree ID="A"><GoTo place="labb"/></BehaviorTree></root>', "utf-8")
+    assert [problem["code"] for problem in problems(capsys, str(path))] == ["BT132"]
+    path.write_text('<root BTCPP_format="4"><BehaviorTree ID="A"><Fly/></BehaviorTree></root>', "utf-8")
+    assert [problem["code"] for problem in problems(capsys, str(path))] == ["BT231"]
+    assert [problem["code"] for problem in problems(capsys, "--robot", "simulated", str(path))] == ["BT130", "BT231"]
+
+
+def test_main_trees_of_several_programs_may_have_one_id(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name in ("one", "two"):
+        text = '<root BTCPP_format="4"><BehaviorTree ID="MainTree"><Wave/></BehaviorTree></root>'
+        (tmp_path / f"{name}.xml").write_text(text, "utf-8")
+    assert main(["check", str(tmp_path)]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_missions_beside_trees(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "good.txt").write_text("wave\n", "utf-8")
+    (folder / "bad.txt").write_text("flarp\n", "utf-8")
+    assert main(["check", "good.txt", "sound"]) == 0
+    capsys.readouterr()
+    assert [problem["code"] for problem in problems(capsys, "bad.txt", "sound", "good.txt", "none.txt")] == [
+        "BT010",
+        "BT001",
+    ]
+
+
+def test_a_folder_without_trees_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "package.xml").write_text("<package/>", "utf-8")
+    assert main(["check", str(tmp_path)]) == 2
+    assert "there are no trees in XML" in capsys.readouterr().err
+
+
+def test_comments_allow_warnings(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = folder / "mistakes" / "deliver.xml"
+    text = path.read_text("utf-8").replace("<!-- wrong values -->", "<!-- allow: unknown node, missing port -->")
+    path.write_text(text, "utf-8")
+    codes = {problem["code"] for problem in problems(capsys, "mistakes")}
+    assert "BT235" in codes
+    assert not codes & {"BT231", "BT234"}
+
+
+def test_certain_corrections_change_nothing_else(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = folder / "mistakes" / "deliver.xml"
+    before = {each: each.read_bytes() for each in (folder / "mistakes").iterdir()}
+    crlf = b"\xef\xbb\xbf" + before[path].replace(b"\n", b"\r\n")
+    path.write_bytes(crlf)
+    assert main(["check", "--fix", "mistakes"]) == 2
+    assert "Corrected mistakes/deliver.xml: 2 changes." in capsys.readouterr().out
+    wanted = crlf.replace(b"coridor=", b"corridor=").replace(b"<DoorIsOpne ", b"<DoorIsOpen ")
+    assert {each: each.read_bytes() for each in before} == before | {path: wanted}
+
+
+def test_missing_blanks_are_put_in(tmp_path: Path) -> None:
+    path = tmp_path / "tree.xml"
+    text = '<root BTCPP_format="4"main_tree_to_execute="A"><BehaviorTree ID="A"><Say text="ä"name="x"/>'
+    text += "</BehaviorTree></root>"
+    path.write_text(text, "utf-8")
+    assert main(["check", "--fix", str(path)]) == 0
+    assert path.read_text("utf-8") == text.replace('"main', '" main').replace('"name', '" name')
+
+
+def test_names_of_version_3_stay(tmp_path: Path) -> None:
+    path = tmp_path / "tree.xml"
+    loop = '<RetryUntilSuccesful num_attempts="2"><Wave/></RetryUntilSuccesful>'
+    text = f'<root><BehaviorTree ID="A">{loop}</BehaviorTree></root>'
+    path.write_text(text, "utf-8")
+    assert main(["check", "--fix", str(path)]) == 0
+    assert path.read_text("utf-8") == text
+
+
+@pytest.mark.usefixtures("folder")
+def test_sarif(capsys: pytest.CaptureFixture[str]) -> None:
+    told = problems(capsys, "mistakes")
+    assert main(["check", "mistakes", "--format", "sarif"]) == 2
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    document = json.loads(printed.out)
+    assert document["version"] == "2.1.0"
+    [run] = document["runs"]
+    rules = [rule["id"] for rule in run["tool"]["driver"]["rules"]]
+    assert len(rules) == len(set(rules))
+    assert len(run["results"]) == len(told)
+    for result, problem in zip(run["results"], told, strict=True):
+        [location] = result["locations"]
+        place = location["physicalLocation"]
+        assert rules[result["ruleIndex"]] == result["ruleId"] == problem["code"]
+        assert result["level"] == problem["severity"]
+        assert place["artifactLocation"]["uri"] == problem["file"]
+        assert place["region"]["startLine"] == problem["line"]
+        assert ("fixes" in result) == (problem["fix"] is not None)
+    assert main(["check", "sound", "--format", "sarif"]) == 0
+    assert json.loads(capsys.readouterr().out)["runs"][0]["results"] == []
+
+
+def test_github(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "100%, odd:name.txt").write_text("go to 50%\nflarp\n", "utf-8")
+    assert main(["check", "100%, odd:name.txt", "mistakes", "--format", "github"]) == 2
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    lines = printed.out.splitlines()
+    assert all(re.fullmatch(r"::(error|warning) file=[^,:]+(,\w+=[^,:]+)*,title=BT\d+::.+", line) for line in lines)
+    assert any(line.startswith("::error file=100%25%2C odd%3Aname.txt,line=2,endLine=2,col=1,") for line in lines)
+    assert any("wheels' isn't a port of DriveAlong.%0AIt has corridor" in line for line in lines)
+    assert main(["check", "sound", "--format", "github"]) == 0
+    assert capsys.readouterr() == ("", "")
+
+
+def test_the_hook_as_pre_commit_runs_it(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """It appends the names of changed files, some of them after the folder that is given as an argument."""
+    yaml = pytest.importorskip("yaml", reason="PyYAML is not installed")
+    [hook] = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text("utf-8"))
+    assert (hook["id"], hook["language"]) == ("btc-check", "python")
+    names = ["sound/doors.xml", "mission.txt", "package.xml", "CMakeLists.txt", "docs/notes.md"]
+    chosen = [name for name in names if re.search(hook["files"], name) and not re.search(hook["exclude"], name)]
+    assert chosen == ["sound/doors.xml", "mission.txt"]
+    (folder / "mission.txt").write_text("wave\n", "utf-8")
+    [btc, *words] = shlex.split(hook["entry"])
+    assert btc == "btc"
+    assert main([*words, "sound", *chosen]) == 0
+    capsys.readouterr()
+    assert main([*words, "sound", "mistakes/doors.xml"]) == 2
