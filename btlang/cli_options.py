@@ -172,12 +172,8 @@ def _mission_options(parser: argparse.ArgumentParser, *, several: bool = False) 
     parser.add_argument("--format", choices=FORMATS, default="text", help=about)
     _main_option(parser)
     text = parser.add_mutually_exclusive_group(required=True)
-    if several:
-        text.add_argument(
-            "file", nargs="*", default=[], metavar="FILE", help="mission; with markdown, files and folders"
-        )
-    else:
-        text.add_argument("file", nargs="?", metavar="FILE", help="mission, or - for standard input")
+    files: dict[str, Any] = {"nargs": "*", "default": []} if several else {"nargs": "?"}
+    text.add_argument("file", **files, metavar="FILE", help="mission, or - for standard input")
     text.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
 
 
