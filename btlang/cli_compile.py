@@ -14,7 +14,7 @@ _PAGES = "markdown"
 
 def serve(options: argparse.Namespace) -> int:
     """Writes what the options ask for; returns the exit code. Raises MissionError."""
-    name = options.to or target_of(options.out or options.onto or "")
+    name = options.to or ("xml" if options.onto is not None else target_of(options.out or ""))
     if not name:
         options.refuse(f"choose a target with --to: {', '.join(TARGETS)}")
     if options.out is None and TARGETS[name].binary and sys.stdout.isatty():
