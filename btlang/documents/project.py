@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.file import XmlFile
-from btlang.frontends.btcpp.file_set import read_files
+from btlang.frontends.btcpp.files import read_files
 from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.btcpp.reader import MAIN
 from btlang.frontends.btcpp.spelling import MAIN_TREE
@@ -92,12 +92,12 @@ def read_documents(
             if path in paths:
                 raise
             left_out.append(name)
-    read = read_files([source for _, source in trees])
+    read = read_files(source for _, source in trees)
+    models, described = read.models, dict[str, tuple[NodeModel, ...]]()
     for (name, _), file in zip(trees, read.files, strict=True):
-        chapters += _trees(name, file, read.models, vocabulary)
+        chapters += _trees(name, file, models.values(), vocabulary)
+        described[name] = tuple(file.models.values())
     chapters.sort(key=lambda chapter: names.index(chapter.file))
-    models = {model.id: model for model in read.models}
-    described = {name: tuple(file.models.values()) for (name, _), file in zip(trees, read.files, strict=True)}
     return DocumentedProject(tuple(names), tuple(chapters), models, described, tuple(left_out))
 
 
@@ -117,7 +117,7 @@ def _mission(name: str, source: Source, mission: Mission) -> TreeChapter:
     return TreeChapter(name, title, tree, mission.vocabulary, text, runs_first=True)
 
 
-def _trees(name: str, file: XmlFile, models: Sequence[NodeModel], vocabulary: Lexicon) -> Iterator[TreeChapter]:
+def _trees(name: str, file: XmlFile, models: Collection[NodeModel], vocabulary: Lexicon) -> Iterator[TreeChapter]:
     described = {model.id: model.text for model in models if model.kind == "SubTree"}
     first = file.attributes.get(MAIN, MAIN_TREE)
     for head, (tree_name, root) in zip(file.heads, file.trees, strict=True):
