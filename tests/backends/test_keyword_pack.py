@@ -22,6 +22,7 @@ from btlang.tree.dump import plain
 from btlang.tree.model import NodeModel
 from btlang.vocabulary.load import vocabulary_with
 from tests.conftest import matches_golden
+from tests.profiles import only_long
 
 CORPUS = Path(__file__).parents[1] / "corpus"
 PACKS = Path(__file__).parent / "packs"
@@ -116,7 +117,7 @@ def test_a_subject_takes_its_value() -> None:
 
 def test_a_comment_silences_the_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "nodes.xml"
-    text = '<root BTCPP_format="4">{}<TreeNodesModel><Action ID="a b"/></TreeNodesModel></root>'
+    text = '<root BTCPP_format="4">{}<TreeNodesModel><Action ID="a;b"/></TreeNodesModel></root>'
     for comment, told in (("", "nodes.xml:1:40: warning BT240"), ("<!-- allow: node without words -->", "")):
         file.write_text(text.format(comment))
         assert main(["words", "--from", str(file)]) == 0
@@ -153,6 +154,7 @@ def test_hostile_models_make_a_file_that_loads() -> None:
     assert not any(entry.call for id in names for entry in made.entries.get(id, ()))
 
 
+@only_long
 def test_most_leaves_have_a_phrase_that_says_all_of_their_ports() -> None:
     """Where any name in braces is a value, at most 30 % are left that only their ids say."""
     by_phrase = total = 0
