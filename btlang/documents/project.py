@@ -126,7 +126,7 @@ def _trees(name: str, file: XmlFile, models: Collection[NodeModel], vocabulary: 
         about = dict(origin.attributes).get("_description", "") or described.get(head.written, "")
         is_first = len(file.heads) == 1 or first in (head.written, tree_name)
         tree = Tree(root, models=tuple(models), origin=kept)
-        yield TreeChapter(name, head.written or tree_name, tree, vocabulary, "", about, is_first)
+        yield TreeChapter(name, head.id, tree, vocabulary, "", about, is_first)
 
 
 def nodes_of(tree: Tree) -> dict[str, list[Node]]:
