@@ -18,6 +18,7 @@ from btlang.projects.files import begins_as_tree, files_below, named_files
 from btlang.record import Record
 from btlang.testing.names import is_test_file
 from btlang.text.source import Source
+from btlang.tree.catalogue import SUBTREE
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import subtree_names
@@ -118,7 +119,7 @@ def _mission(name: str, source: Source, mission: Mission) -> TreeChapter:
 
 
 def _trees(name: str, file: XmlFile, models: Collection[NodeModel], vocabulary: Lexicon) -> Iterator[TreeChapter]:
-    described = {model.id: model.text for model in models if model.kind == "SubTree"}
+    described = {model.id: model.text for model in models if model.kind == SUBTREE}
     first = file.attributes.get(MAIN, MAIN_TREE)
     for head, (tree_name, root) in zip(file.heads, file.trees, strict=True):
         origin = file.origins[tree_name]

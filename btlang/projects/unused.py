@@ -9,7 +9,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
 from btlang.frontends.btcpp.project import XmlProject
 from btlang.projects.places import attribute_value
-from btlang.tree.catalogue import POST_CONDITIONS, PRE_CONDITIONS, SUBTREE
+from btlang.tree.catalogue import SCRIPT, SUBTREE, held
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import subtree_names, used_subtrees
@@ -23,7 +23,7 @@ def keys_read(nodes: Iterable[Node], models: Mapping[str, NodeModel]) -> frozens
     for node in nodes:
         outputs = _outputs(node, models)
         for name, text in node.ports:
-            if name in PRE_CONDITIONS or name in POST_CONDITIONS or name in ("code", "if"):
+            if held(node.id, name) == SCRIPT:
                 read.update(_WORD.findall(text))
             elif name not in outputs:
                 key = blackboard_key(name, text)
