@@ -88,6 +88,16 @@ def test_main_trees_of_several_programs_may_have_one_id(tmp_path: Path, capsys: 
     assert capsys.readouterr().err == ""
 
 
+def test_trees_that_there_are_are_listed_by_id(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = '<root BTCPP_format="4"{}><BehaviorTree ID="{}"><AlwaysSuccess/></BehaviorTree></root>'
+    for at, (main_tree, tree) in enumerate(
+        (("", "MainTree"), ("", "MainTree"), (' main_tree_to_execute="X"', "Patrol"))
+    ):
+        (tmp_path / f"{at}.xml").write_text(text.format(main_tree, tree))
+    [problem] = [found for found in problems(capsys, str(tmp_path)) if found["code"] == "BT126"]
+    assert problem["hint"] == "There are: Patrol, MainTree, MainTree (2)"
+
+
 def test_missions_beside_trees(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "good.txt").write_text("wave\n", "utf-8")
     (folder / "bad.txt").write_text("flarp\n", "utf-8")

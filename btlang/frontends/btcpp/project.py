@@ -48,7 +48,7 @@ def read_project(read: XmlFiles, palettes: XmlFiles, main: str = "") -> XmlProje
     for name, first in again.items():
         if not {name, first} <= mains or not used.isdisjoint((name, first)):
             problems.append(same_id(heads[name], heads[first]))
-    known = dict.fromkeys((*names, *trees, *unread))  # those that are listed stay the same
+    known = dict.fromkeys((*names, *trees, *unread))  # no set: they are listed
     for file in sound:
         asked = main or file.attributes.get(MAIN, "")
         if asked and asked not in known:
