@@ -95,14 +95,14 @@ def _negated(negated: bool, condition: Node) -> Node:
 def _phrase(item: ast.Phrase, _done: list[Lowered], scope: Scope) -> Lowered:
     """A value that is the slot's default says nothing."""
     if not item.arguments:
-        return Lowered(Node(item.entry.id, (), (), "", item.span))
+        return Lowered(Node(item.entry.id, (), item.ports, item.name, item.span))
     defaults = {slot.name: slot.default for slot in item.entry.slots}
     spoken = [port for port in item.arguments if defaults.get(port[0]) != port[1]]
     if len(spoken) > 1:
         order = list(defaults)
         spoken.sort(key=lambda port: order.index(port[0]))
     scripts, ports = prepared(spoken, scope)
-    return Lowered(behind(scripts, Node(item.entry.id, (), ports, span=item.span)))
+    return Lowered(behind(scripts, Node(item.entry.id, (), ports + item.ports, item.name, item.span)))
 
 
 def _name(item: ast.Name, _done: list[Lowered], scope: Scope) -> Lowered:
