@@ -123,7 +123,8 @@ def longest(
                 plain = word.isalpha() or word in _MARKS
                 edges = node[SLOTS]
                 if word == "{" and context.is_untyped(text, i):
-                    edges = sorted(reversed(edges), key=lambda edge: edge[1] != TEXT)
+                    others = (edge for edge in reversed(edges) if edge[1] != TEXT)
+                    edges = [*(edge for edge in edges if edge[1] == TEXT), *others]
                 for name, kind, child in edges:
                     if plain and kind in openers and word not in openers[kind]:
                         continue  # as nearly always, without reading

@@ -15,6 +15,7 @@ from btlang.tree import ast
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Tree
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.references import keys_set_in
 
 
 class Refused(Record):
@@ -133,6 +134,7 @@ class _Said:
 
     def _node(self, node: ast.Exact | ast.Phrase) -> None:
         ports = dict(node.ports)
+        self.outputs.update(key for text in ports.values() for key in keys_set_in(text))
         self.outputs.update(ports[port][1:-1] for port in node.outputs if ports[port][:1] == "{")
         if isinstance(node, ast.Exact) and node.id == SUBTREE:
             self.arguments.setdefault(ports.pop("ID", ""), set()).update(ports)

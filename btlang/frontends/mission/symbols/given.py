@@ -11,6 +11,7 @@ from btlang.text.words import Words, statements
 from btlang.tree.catalogue import SUBTREE
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
+from btlang.vocabulary.references import keys_set_in
 from btlang.vocabulary.trie import longest
 
 
@@ -66,15 +67,18 @@ def _listed(text: Words, at: int, last: int, vocabulary: Lexicon) -> list[str]:
         at += text.words[at] == ","
         joined = longest(vocabulary.trie, text, at, vocabulary.context)
         at = joined.last if joined is not None and joined.meaning.role == "and" else at
+        if at == found[1]:
+            break
     return []
 
 
 def find_outputs(text: Words, vocabulary: Lexicon) -> set[str]:
-    """The keys of the values that nodes give: `giving {path}`."""
+    """The keys of the values that nodes give: `giving {path}`, and those that their scripts set."""
+    found = {key for word in text.distinct if word[0] == '"' for key in keys_set_in(word)}
     firsts = {phrase.split()[0] for phrase in vocabulary.roles["giving"]}
-    if firsts.isdisjoint(text.distinct):
-        return set()
-    return {key for at, word in enumerate(text.words) if word in firsts for key in outputs_at(text, at, vocabulary)}
+    for at, word in enumerate(text.words) if not firsts.isdisjoint(text.distinct) else ():
+        found.update(outputs_at(text, at, vocabulary) if word in firsts else ())
+    return found
 
 
 def find_arguments(

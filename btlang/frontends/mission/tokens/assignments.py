@@ -84,7 +84,13 @@ def _each(
     inner = ReadingContext(vocabulary.values, others)
     inner.keys = context.keys
     first = inner.any(text, prefix.value)
-    kinds = (prefix.key,) if prefix.key in vocabulary.types else (first[0] or (TEXT,)) if first is not None else ()
+    kinds = (
+        (prefix.key,)
+        if prefix.key in vocabulary.types
+        else (first[0] or (TEXT, *vocabulary.types))
+        if first is not None
+        else ()
+    )
     chosen = (prefix.noun, prefix.last) if prefix.noun is not None else inner.choice(text, prefix.value)
     if chosen is not None and chosen[0].how == ALL:
         kind = chosen[0].type
