@@ -10,7 +10,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.nouns import ALL
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import SlotValue, all_names, longest, reaches_beyond
-from btlang.vocabulary.value_type import TEXT, number_type
+from btlang.vocabulary.value_type import number_type
 
 
 def read_statement(
@@ -48,7 +48,7 @@ def _value(prefix: Prefix, known: Known, text: Words, vocabulary: Lexicon, conte
     numbers = prefix.role in ("increase", "decrease")
     named, number = context.named(text, prefix.value) if prefix.value >= 0 else None, number_type(vocabulary.types)
     if named is not None and named[0] is not None:
-        kind = _shared(named[0].kinds, known.kinds, number if numbers else TEXT)
+        kind = _shared(named[0].kinds, known.kinds, number if numbers else _any_type(vocabulary)[0])
         return SlotValue("value", kind, f"{{{named[0].key}}}", prefix.value, named[1]) if kind is not None else None
     for kind in known.kinds or ((number,) if numbers else ()):
         is_number = vocabulary.types[kind].kind in ("quantity", "number")
@@ -72,6 +72,11 @@ def _shared(kinds: tuple[str, ...], others: tuple[str, ...], either: str) -> str
     return next(iter(kinds or others), either)
 
 
+def _any_type(vocabulary: Lexicon) -> list[str]:
+    """All types, those of names first: a value of any type is said as one of these, without quotes."""
+    return sorted(vocabulary.types, key=lambda kind: vocabulary.types[kind].kind != "names")
+
+
 def _each(
     prefix: Prefix,
     text: Words,
@@ -87,7 +92,7 @@ def _each(
     kinds = (
         (prefix.key,)
         if prefix.key in vocabulary.types
-        else (first[0] or (TEXT, *vocabulary.types))
+        else (first[0] or _any_type(vocabulary))
         if first is not None
         else ()
     )
