@@ -136,39 +136,6 @@ def _draw_tree(mission: Mission, path: str, apart: bool) -> None:
     show(f"Wrote {path}.")
 
 
-def _compile(options: argparse.Namespace) -> int:
-    from btlang.backends.files import put
-    from btlang.backends.targets import TARGETS, target_of
-
-    name = options.to or (target_of(options.out or options.onto or ""))
-    if not name:
-        options.refuse(f"choose a target with --to: {', '.join(TARGETS)}")
-    if options.out is None and TARGETS[name].binary and sys.stdout.isatty():
-        options.refuse(f"{name} isn't text; write it to a file with -o FILE")
-    for option in ("dialect", "onto"):
-        if getattr(options, option) is not None and option not in TARGETS[name].options:
-            options.refuse(f"--{option} is for xml, not for {name}")
-    if options.onto is not None:
-        from btlang.editing.onto import write_onto
-
-        write_onto(mission_of(options), options.onto, options.out, force=options.force)
-        return SUCCESS
-    put(mission_of(options).to(name, dialect=options.dialect), options.out)
-    return SUCCESS
-
-
-def _words(options: argparse.Namespace) -> int:
-    from btlang.vocabulary.listing import listing, overview
-
-    vocabulary = world_vocabulary(options.keywords, options.world, options.language)
-    search = " ".join(options.search)
-    if search or options.all:
-        show("\n".join(listing(vocabulary, search, listing_width())))
-    else:
-        show("\n".join(overview(vocabulary, listing_width())))
-    return SUCCESS
-
-
 def _grammar(options: argparse.Namespace) -> int:
     from btlang.backends.files import put
     from btlang.backends.grammar.targets import GRAMMARS
@@ -316,6 +283,8 @@ _ELSEWHERE = {
     **dict.fromkeys(("replay", "why", "diff"), "btlang.recording.command"),
     "check": "btlang.cli_check",
     "test": "btlang.testing.command",
+    "compile": "btlang.cli_compile",
+    "words": "btlang.cli_words",
     "mcp": "btlang.mcp_server",
     "new": "btlang.templates.command",
     "world": "btlang.maps.command",
@@ -336,8 +305,6 @@ _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "repl": _repl,
     "run": _run,
     "tree": _show_tree,
-    "compile": _compile,
-    "words": _words,
     "grammar": _grammar,
     "examples": _examples,
     "explain": _explain,

@@ -11,7 +11,7 @@ from btlang.api import world_vocabulary
 from btlang.cli_input import hinting, mission_of, parsed_mission, typed_source
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.reading import has_mark, read_source
 from btlang.frontends.table import frontend_of
 from btlang.testing.names import is_test_file
 from btlang.text.output import show
@@ -78,7 +78,8 @@ class _Check:
         if self._options.text is not None or source.name == "-":
             show(source.text.rstrip("\n"), stream=aside)
         elif count:
-            replace_text(source.name, source.text)
+            mark = "\ufeff" if has_mark(source.name) else ""
+            replace_text(source.name, mark + source.text)
             show(f"Corrected {source.name}: {count} change{'s' * (count > 1)}.", stream=aside)
 
     def check(self) -> None:

@@ -166,13 +166,14 @@ def _main_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--main", default="", metavar="ID", help="which tree to use if the file holds several")
 
 
-def _mission_options(parser: argparse.ArgumentParser) -> None:
+def _mission_options(parser: argparse.ArgumentParser, *, several: bool = False) -> None:
     _reading_options(parser)
     about = "format of messages: text, or json for programs (default: text)"
     parser.add_argument("--format", choices=FORMATS, default="text", help=about)
     _main_option(parser)
     text = parser.add_mutually_exclusive_group(required=True)
-    text.add_argument("file", nargs="?", metavar="FILE", help="mission, or - for standard input")
+    files: dict[str, Any] = {"nargs": "*", "default": []} if several else {"nargs": "?"}
+    text.add_argument("file", **files, metavar="FILE", help="mission, or - for standard input")
     text.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
 
 
@@ -273,9 +274,14 @@ def _tree_options(parser: argparse.ArgumentParser) -> None:
 def _compile_options(parser: argparse.ArgumentParser) -> None:
     from btlang.backends.targets import TARGETS
 
-    _mission_options(parser)
+    _mission_options(parser, several=True)
     parser.add_argument("--to", choices=list(TARGETS), metavar="TARGET", help="target: " + ", ".join(TARGETS))
-    parser.add_argument("-o", dest="out", metavar="OUT", help="file to write; its ending can select the target")
+    parser.add_argument(
+        "-o",
+        dest="out",
+        metavar="OUT",
+        help="file to write (with markdown: or folder); its ending can select the target",
+    )
     parser.add_argument("--dialect", type=int, choices=(3, 4), help="BehaviorTree.CPP version of the XML (default: 4)")
     parser.add_argument(
         "--onto", metavar="XML", help="the file that the mission was made from: changes what was edited"
@@ -286,6 +292,9 @@ def _compile_options(parser: argparse.ArgumentParser) -> None:
 def _listing_options(parser: argparse.ArgumentParser) -> None:
     _words_options(parser)
     parser.add_argument("--all", action="store_true", help="list everything, with what it does and an example")
+    about = "make words for the nodes of this XML file, by its TreeNodesModel and its trees; may be repeated"
+    parser.add_argument("--from", dest="sources", action="append", default=[], metavar="XML", help=about)
+    parser.add_argument("-o", dest="out", metavar="FILE", help="with --from: keyword file (default: standard output)")
     parser.add_argument("search", nargs="*", metavar="SEARCH", help="a topic, or words to search for")
 
 

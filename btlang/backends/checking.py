@@ -102,7 +102,7 @@ def _entry(node: Node, entries: dict[str, Draft | None]) -> str:
     draft = entries[node.id]
     if draft is None:
         return "A keyword entry can't have this id: an id is one word of letters and digits."
-    return f"This entry of a keyword file would define it:\n{draft.text}"
+    return f"This entry of a keyword file would define it:\n{draft.text()}"
 
 
 def bound(vocabulary: Lexicon, node_id: str) -> LeafBinding | None:

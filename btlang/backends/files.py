@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import shutil
 import sys
-from codecs import BOM_UTF8
 from contextlib import nullcontext
 
 from btlang.diagnostics.errors import MissionError
@@ -24,13 +23,13 @@ def put(made: str | bytes, path: str | None) -> None:
 
 
 def replace_text(path: str, text: str) -> None:
-    """Gives a file that is there another text, as `write_file`, behind its mark of the byte order if it has one."""
+    """Gives a file that is there another text, as `write_file`."""
     try:
-        with open(path, "r+b") as file:
-            mark = file.read(len(BOM_UTF8)) == BOM_UTF8
+        with open(path, "r+b"):
+            pass
     except OSError as error:
         raise MissionError([unwritable(path, error)]) from None
-    write_file(path, f"\ufeff{text}" if mark else text)
+    write_file(path, text)
 
 
 def write_file(path: str, content: str | bytes) -> None:

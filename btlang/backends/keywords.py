@@ -1,12 +1,16 @@
-"""Keyword entries for the leaves of a tree that the vocabulary does not know: a draft for a person to go on from."""
+"""Keyword entries for the leaves that the vocabulary does not know: a draft for a person to go on from."""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 
+from btlang.backends.slot_types import NUMBER, SlotTypes
+from btlang.backends.wording import SpokenPorts, asks, id_words, phrases
 from btlang.record import Record
+from btlang.text.toml_writing import toml_key, toml_value
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
@@ -14,36 +18,48 @@ from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import PatternError, forms
 from btlang.vocabulary.trie import TrieNode, add, collisions
+from btlang.vocabulary.value_type import TEXT, ValueType
 
 MODULE = "my_robot.leaves"
 """Stands for the user's module in what is drafted."""
 
-_NUMBERS = re.compile(r"(?:std::)?(?:u?int(?:8|16|32|64)?(?:_t)?|unsigned(?: int)?|size_t|long|float|double)")
-_ASKING = ("Is", "Has", "Are", "Can")
 _MOST_REQUIRED = 12  # of what people would say
-_MOST_OPTIONAL = 7  # each doubles the ways to say a phrase
-_PREFIXES = ("", "do ", "run node ")  # where an id makes words that mean something already
+_MOST_OPTIONAL = 5  # each doubles the ways to say a phrase
+_WITH_DEFAULTS = ("server_name", "server_timeout", "service_name")  # in C++, though no model says so
+
+
+class Leaf(Record):
+    """What is known of a kind of leaf: its model and its uses in trees."""
+
+    model: NodeModel
+    uses: tuple[Node, ...] = ()
 
 
 class Draft(Record):
-    """An entry for a leaf, and the names of ports that no slot can have. Its phrase is that of no other entry."""
+    """An entry for a leaf with the types that it brings, and the names of ports that have no slot.
+
+    Its phrase is that of no other entry.
+    """
 
     entry: Entry
+    types: tuple[ValueType, ...] = ()
     left_out: tuple[str, ...] = ()
 
-    @property
-    def text(self) -> str:
-        """The entry in a keyword file."""
+    def text(self, module: str = MODULE) -> str:
+        """The entry in a keyword file, with a function of a module to call, or none for ""."""
         entry = self.entry
-        call = f"{MODULE}:{'_'.join(_words(entry.id))}"
-        lines = [f"[[{entry.sort}]]", f"phrase = {_text(entry.phrases[0])}", f"id = {_text(entry.id)}"]
-        lines.append(f"call = {_text(call)}")
+        said: dict[str, object] = {"phrase": entry.phrases[0], "id": entry.id}
+        if module:
+            said["call"] = f"{module}:{'_'.join(id_words(entry.id))}"
         if entry.help:
-            lines.append(f"help = {_text(entry.help)}")
+            said["help"] = entry.help
         if entry.slots:
-            lines.append("slots = { " + ", ".join(f"{slot.name} = {_slot(slot)}" for slot in entry.slots) + " }")
+            said["slots"] = {slot.name: slot.type for slot in entry.slots}
+        if entry.outputs:
+            said["outputs"] = list(entry.outputs)
+        lines = [f"[[{entry.sort}]]", *(f"{key} = {toml_value(value)}" for key, value in said.items())]
         if self.left_out:
-            lines.append(f"# Ports that aren't in the phrase: {', '.join(self.left_out)}")
+            lines.append(f"# Ports that aren't in the phrase: {', '.join(map(toml_key, self.left_out))}")
         return "\n".join(lines)
 
 
@@ -51,80 +67,130 @@ def unknown_leaves(tree: Tree, vocabulary: Lexicon) -> dict[str, list[Node]]:
     """The leaves whose id is that of no entry and no node of the engine, by id, in the order of Tree.walk."""
     found: dict[str, list[Node]] = {}
     for node in tree.walk():
-        if not node.children and node.id not in CATALOGUE:
-            if node.id not in vocabulary.entries:
-                found.setdefault(node.id, []).append(node)
+        if not node.children and is_unknown(node.id, vocabulary):
+            found.setdefault(node.id, []).append(node)
     return found
 
 
+def is_unknown(node_id: str, vocabulary: Lexicon) -> bool:
+    """Whether an id is that of no entry and no node of the engine."""
+    return node_id not in CATALOGUE and node_id not in vocabulary.entries
+
+
 def drafts(tree: Tree, vocabulary: Lexicon) -> dict[str, Draft | None]:
-    """A draft for each of these ids, None where no keyword entry can have such an id: it is no word."""
+    """As `drafted`, for the unknown leaves of a tree."""
     models = {model.id: model for model in tree.models}
+    found = unknown_leaves(tree, vocabulary).items()
+    return drafted([Leaf(models.get(id) or NodeModel("", id), tuple(nodes)) for id, nodes in found], vocabulary)
+
+
+def drafted(
+    leaves: Iterable[Leaf], vocabulary: Lexicon, refused: Mapping[str, Sequence[str]] = {}
+) -> dict[str, Draft | None]:
+    """A draft for each leaf by its id, None where none can be made (`why_none`). Phrases that are `refused` are not
+    used again.
+    """
     taken: TrieNode = {}
+    types = SlotTypes(vocabulary.types)
     made: dict[str, Draft | None] = {}
-    for id, nodes in unknown_leaves(tree, vocabulary).items():
-        made[id] = None
-        if re.fullmatch(r"[A-Za-z]\w*", id):
-            made[id] = _draft(nodes, models.get(id) or NodeModel("", id), vocabulary, taken)
+    for leaf in leaves:
+        id = leaf.model.id
+        made[id] = _draft(leaf, vocabulary, taken, types, refused.get(id, ())) if _is_id(id) else None
     return made
+
+
+def why_none(node_id: str) -> str:
+    """Why a leaf has no draft."""
+    return "its words mean something else already" if _is_id(node_id) else "an id is one word of letters, digits and _"
 
 
 def to_keywords(tree: Tree, vocabulary: Lexicon) -> str:
     """The text of a keyword file with an entry for each unknown leaf; it loads as it is."""
     found = drafts(tree, vocabulary)
-    lines = [
+    if not found:
+        return "# Every leaf of this tree has a keyword entry.\n"
+    head = (
         "# Words for the leaves that have none yet. Change each phrase to what you want to say, and each call to your",
         "# function (docs/keywords.md).",
-    ]
-    if not found:
-        lines = ["# Every leaf of this tree has a keyword entry."]
+    )
+    return keyword_text(head, found)
+
+
+def keyword_text(head: Iterable[str], found: Mapping[str, Draft | None], module: str = MODULE) -> str:
+    """A keyword file with these drafts, and comments above them."""
+    lines = [*head]
+    types = {type.name: type for draft in found.values() if draft is not None for type in draft.types}
+    for type in types.values():
+        lines += ["", *_type_lines(type)]
     for id, draft in found.items():
         if draft is None:
-            lines += ["", f"# No entry can have the id {json.dumps(id)}: an id is one word of letters and digits."]
+            lines += ["", f"# No entry for the id {json.dumps(id)}: {why_none(id)}."]
         else:
-            lines += ["", draft.text]
+            lines += ["", draft.text(module)]
     return "\n".join(lines) + "\n"
 
 
-def _draft(nodes: list[Node], model: NodeModel, vocabulary: Lexicon, taken: TrieNode) -> Draft:
-    ports = {port.name: port for port in model.ports}
-    for node in nodes:
-        ports |= {name: PortModel(name) for name, _ in node.ports if name not in ports and name[:1] != "_"}
-    required: list[SlotSpec] = []
-    optional: list[SlotSpec] = []
-    left_out: list[str] = []
-    for port in ports.values():
-        needed = port.default is None and all(port.name in dict(node.ports) for node in nodes)
-        if not port.name.isidentifier() or len(required if needed else optional) == (
-            _MOST_REQUIRED if needed else _MOST_OPTIONAL
-        ):
-            left_out.append(" ".join(port.name.split()))
+def _type_lines(type: ValueType) -> Iterator[str]:
+    yield from ("[[type]]", f"name = {toml_value(type.name)}")
+    if type.names:
+        yield f"values = {toml_value(list(type.names))}"
+    elif type.whole:
+        yield "whole = true"
+
+
+def _is_id(node_id: str) -> bool:
+    return re.fullmatch(r"[A-Za-z]\w*", node_id) is not None
+
+
+def _draft(leaf: Leaf, vocabulary: Lexicon, taken: TrieNode, types: SlotTypes, refused: Sequence[str]) -> Draft | None:
+    model = leaf.model
+    found, left_out = _spoken(leaf)
+    typed = {port.name: types.of(model.id, port, leaf.uses) for port in chain(*found)}
+    texts = frozenset(name for name, type in typed.items() if type.name == TEXT)
+    required, optional, outputs = (tuple(port.name for port in ports) for ports in found)
+    said = SpokenPorts(required, optional, outputs, texts)
+    slots = tuple(SlotSpec(name, type.name) for name, type in typed.items())
+    is_condition = model.kind == "Condition" or (not model.kind and asks(model.id))
+    sort = "condition" if is_condition else "action"
+    for phrase in phrases(model.id, said, vocabulary.articles, is_condition=is_condition):
+        entry = Entry(sort, model.id, (phrase,), slots=slots, help=_help(model), outputs=outputs)
+        if phrase not in refused and _is_free(entry, vocabulary, typed, taken):
+            own = tuple(type for type in typed.values() if type.name not in vocabulary.types)
+            return Draft(entry, own, left_out)
+    return None
+
+
+def _spoken(leaf: Leaf) -> tuple[tuple[list[PortModel], ...], tuple[str, ...]]:
+    """The ports that must be said, may be said and are given values to, and the names of all others.
+
+    Those that trees use are said before others.
+    """
+    ports = {port.name: port for port in leaf.model.ports}
+    used = {name: None for node in leaf.uses for name, _ in node.ports if name[:1] != "_"}
+    ports |= {name: PortModel(name) for name in used if name not in ports}
+    always = [name for name in ports if all(name in dict(node.ports) for node in leaf.uses)]
+    required, optional, outputs = list[PortModel](), list[PortModel](), list[PortModel]()
+    left_out = []
+    for port in sorted(ports.values(), key=lambda port: port.name not in used):
+        needed = port.default is None and port.name in always and (leaf.uses or port.name not in _WITH_DEFAULTS)
+        group = outputs if port.direction == "output" else required if needed else optional
+        most = _MOST_REQUIRED - len(required) if group is required else _MOST_OPTIONAL - len(optional) - len(outputs)
+        if port.name.isidentifier() and port.name[:1] != "_" and most > 0:
+            group.append(port)
         else:
-            (required if needed else optional).append(_spec(port, nodes))
-    sort = model.kind.lower() or ("condition" if re.match(rf"(?:{'|'.join(_ASKING)})[A-Z]", model.id) else "action")
-    sort = sort if sort == "condition" else "action"
-    if len(required) == 1:
-        said = f" {{{required[0].name}}}"
-    else:
-        said = "".join(f" {_port_words(slot, vocabulary)} {{{slot.name}}}" for slot in required)
-    said += "".join(f" [{_port_words(slot, vocabulary)} {{{slot.name}}}]" for slot in optional)
-    slots = (*required, *optional)
-    for phrase in _phrases(" ".join(_words(model.id)), said):
-        entry = Entry(sort, model.id, (phrase,), slots=slots, help=" ".join(model.text.split()))
-        if _is_free(entry, vocabulary, taken):
-            break
-    return Draft(entry, tuple(left_out))
+            left_out.append(port.name)
+    return (required, optional, outputs), tuple(left_out)
 
 
-def _phrases(words: str, said: str) -> Iterator[str]:
-    yield from (f"{prefix}{words}{said}" for prefix in _PREFIXES)
-    yield from (f"{_PREFIXES[-1]}{number} {words}{said}" for number in range(2, 1000))
+def _help(model: NodeModel) -> str:
+    told = [model.text, *(f"{port.name}: {port.text}" for port in model.ports if port.text)]
+    return "; ".join(" ".join(text.split()).rstrip(".;") for text in told if text.strip())
 
 
-def _is_free(entry: Entry, vocabulary: Lexicon, taken: TrieNode) -> bool:
+def _is_free(entry: Entry, vocabulary: Lexicon, typed: Mapping[str, ValueType], taken: TrieNode) -> bool:
     """Whether no other phrase matches the same words; then this one is `taken`."""
     [phrase] = entry.phrases
-    types = {slot.name: slot.type for slot in entry.slots}
+    types = {name: _like(type, vocabulary) for name, type in typed.items()}
     meaning = Meaning("command" if entry.sort == "action" else "condition", entry)
     try:
         ways = list(forms(phrase, vocabulary.articles))
@@ -143,35 +209,8 @@ def _is_free(entry: Entry, vocabulary: Lexicon, taken: TrieNode) -> bool:
     return True
 
 
-def _spec(port: PortModel, nodes: list[Node]) -> SlotSpec:
-    """A number where that is its type in C++, or where every text is one; else a text."""
-    texts = [text for node in nodes for name, text in node.ports if name == port.name and "{" not in text]
-    default = port.default if port.default is not None and "{" not in port.default else None
-    numeric = _NUMBERS.fullmatch(port.type) is not None or (not port.type and texts != [])
-    numeric = numeric and all(map(_is_number, texts)) and (default is None or _is_number(default))
-    return SlotSpec(port.name, "number" if numeric else "text", default)
-
-
-def _is_number(text: str) -> bool:
-    return re.fullmatch(r"-?\d+(\.\d+)?", text) is not None
-
-
-def _words(name: str) -> list[str]:
-    """`GoToPose2` -> go, to, pose, 2."""
-    return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[^\WA-Z\d_]+|\d+", name)]
-
-
-def _port_words(slot: SlotSpec, vocabulary: Lexicon) -> str:
-    words = _words(slot.name)
-    return " ".join(words) if any(word not in vocabulary.articles for word in words) else " ".join(["with", *words])
-
-
-def _slot(slot: SlotSpec) -> str:
-    if slot.default is None:
-        return _text(slot.type)
-    return f"{{ type = {_text(slot.type)}, default = {_text(slot.default)} }}"
-
-
-def _text(text: str) -> str:
-    """A string of TOML; JSON's are, but for one character."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+def _like(type: ValueType, vocabulary: Lexicon) -> str:
+    """The name of a known type that takes whatever this one takes."""
+    if type.name in vocabulary.types:
+        return type.name
+    return TEXT if type.kind == "names" else NUMBER

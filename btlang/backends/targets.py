@@ -51,6 +51,9 @@ TARGETS = {
     "dot": Target("btlang.backends.dot:to_dot", "a graph for Graphviz", (".dot", ".gv")),
     "svg": Target("btlang.pictures.target:to_svg", "a picture of the tree", (".svg",)),
     "png": Target("btlang.pictures.target:to_png", "a picture of the tree", (".png",), binary=True),
+    "markdown": Target(
+        "btlang.documents.pages:to_markdown", "a page about the tree; of a folder, pages with pictures", (".md",)
+    ),
     "tree": Target("btlang.backends.targets:to_plain", "one line per node: Id port=value"),
     "keywords": Target(
         "btlang.backends.keywords:to_keywords", "keyword entries for the commands that btlang does not know", (".toml",)

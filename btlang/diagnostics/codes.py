@@ -7,7 +7,7 @@ BT10x ROS 2, BT11x missions as ROS 2 nodes, BT12x trees in XML, BT13x trees that
 BT14x nodes said by their ids, BT15x lists, words that stand for names, and what is forbidden,
 BT16x times of day, BT17x sentences that people mean in two ways, BT18x tests and robots
 that are up, BT19x tasks and schedules, BT20x the server, BT21x editors, BT23x what is allowed in XML but
-probably not meant.
+probably not meant, BT24x what is made of files of others.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
@@ -230,6 +230,10 @@ _ALL = (
     Code("BT236", "No main tree uses the tree '{name}'.", "Use it or remove it.", "warning", "unused tree"),
     Code("BT237", "{port}=\"0\" means that the child of this {id} never runs.",
          "Write how often it runs at most, or -1 for no limit.", "warning", "no rounds"),
+    Code("BT238", "BehaviorTree.CPP 4.10 refuses the ID '{id}', because it contains {what}.",
+         "Rename it in all files that use it.", "warning", "refused id"),
+    Code("BT240", "There are no words for the node '{id}': {reason}.", "Missions say it by its id: do \"{id}\"", "warning",
+         "node without words"),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

@@ -85,6 +85,11 @@ def read_bytes(path: str) -> bytes:
 _pipes: dict[str, bytes] = {}  # what came out of them: a world is read for its names, and again for the run
 
 
+def has_mark(path: str) -> bool:
+    """Whether a file begins with a mark of the byte order, which texts are read without. Raises OSError."""
+    return read_bytes(path).startswith(BOM_UTF8)
+
+
 def _limited(data: bytes) -> bytes:
     if len(data) > MOST_BYTES:
         raise OSError(errno.EFBIG, f"it has more than {MOST_BYTES:,} bytes")

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import os
-from codecs import BOM_UTF8
 
 from btlang.api import Mission
 from btlang.backends.files import write_file
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_bytes, read_source
+from btlang.diagnostics.reading import has_mark, read_source
 from btlang.frontends.btcpp.kept import digest_of, kept_in, with_digest
 from btlang.text.source import Source, Span
 
@@ -29,7 +28,7 @@ def write_onto(mission: Mission, path: str, out: str | None = None, *, force: bo
         advice = f"Make it anew with 'btc compile {path} --to english', or write it all the same with --force."
         raise MissionError([diagnostic("BT136", Span(original, 0, 0), path=path, advice=advice)])
     made = str(mission.to("xml", onto=original))
-    mark = BOM_UTF8 if read_bytes(path).startswith(BOM_UTF8) else b""
-    write_file(out or path, mark + made.encode())
+    mark = "\ufeff" if has_mark(path) else ""
+    write_file(out or path, mark + made)
     if isinstance(source, Source) and kept.digest and out is None and os.path.isfile(source.name):
         write_file(source.name, with_digest(text, digest_of(made)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
+from btlang.pictures.letters import shown
 from btlang.pictures.tree_boxes import Maker, title_of
 from btlang.pictures.tree_picture import picture_of
 from btlang.printer.phrase import phrase_of
@@ -11,9 +12,9 @@ from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 
 
-def to_svg(tree: Tree, vocabulary: Lexicon) -> str:
-    """The text of an SVG file."""
-    return _drawn(tree, vocabulary, ".svg").decode()
+def to_svg(tree: Tree, vocabulary: Lexicon, *, title: str = "") -> str:
+    """The text of an SVG file, whose `title` is by default the name of the tree's file."""
+    return _drawn(tree, vocabulary, ".svg", title).decode()
 
 
 def to_png(tree: Tree, vocabulary: Lexicon) -> bytes:
@@ -21,9 +22,9 @@ def to_png(tree: Tree, vocabulary: Lexicon) -> bytes:
     return _drawn(tree, vocabulary, ".png")
 
 
-def _drawn(tree: Tree, vocabulary: Lexicon, kind: str) -> bytes:
+def _drawn(tree: Tree, vocabulary: Lexicon, kind: str, title: str = "") -> bytes:
     sheets = Maker(tree, partial(_label, vocabulary), partial(_is_action, vocabulary)).sheets()
-    return picture_of(sheets, title_of(tree), kind)
+    return picture_of(sheets, shown(title) or title_of(tree), kind)
 
 
 def _label(vocabulary: Lexicon, node: Node) -> str:

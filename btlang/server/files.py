@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import errno
 import os
-from codecs import BOM_UTF8
 from contextlib import suppress
 from hashlib import sha256
 
@@ -15,7 +14,7 @@ from btlang.backends.files import write_file
 from btlang.backends.targets import target_of
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import MOST_DEEP, read_included, read_source, unwritable
+from btlang.diagnostics.reading import MOST_DEEP, has_mark, read_included, read_source, unwritable
 from btlang.editing.onto import write_onto
 from btlang.editing.words import Words
 from btlang.frontends.mission.symbols.includes import find_includes
@@ -78,7 +77,7 @@ class Files:
             problem = refused(f"The file '{name}'", "was changed by another program, or in another window")
             data = {**_content(before), "diff": differences(before or "", text)}
             return Answer(False, str(problem), data, problem.diagnostics[0].code)
-        write_file(path, (BOM_UTF8 if before is not None and _has_mark(path) else b"") + text.encode())
+        write_file(path, ("\ufeff" if before is not None and has_mark(path) else "") + text)
         return Answer(True, f"Saved {name}.", {"revision": _revision(text)}, "")
 
     def _saved(self) -> dict[str, str]:
@@ -253,8 +252,3 @@ def _revision(text: str | None) -> str:
 def _with_line_ends(text: str, before: str) -> str:
     """A page has line feeds alone."""
     return text.replace("\n", "\r\n") if "\r\n" in before and "\r" not in text else text
-
-
-def _has_mark(path: str) -> bool:
-    with open(path, "rb") as file:
-        return file.read(len(BOM_UTF8)) == BOM_UTF8

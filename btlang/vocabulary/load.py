@@ -38,14 +38,32 @@ def load_vocabulary(
     returns the path at which, its keyword file lies. `language` is one that ships or the path of a folder like theirs.
     Raises MissionError (BT001, BT002, BT060 to BT065).
     """
+    vocabulary = _words(_folder(language), *_items(keywords))
+    return vocabulary.with_names(names, features) if names else vocabulary
+
+
+def vocabulary_with(
+    source: Source, keywords: Sequence[str | Entry | Callable[..., Any]] = (), language: str = ENGLISH
+) -> Lexicon:
+    """The same with a further keyword file, whose text this is. Raises MissionError (BT001, BT002, BT060 to BT065)."""
+    folder, english = _folder(language), shipped("keywords", ENGLISH)
+    paths, entries = _items(keywords)
+    known = None if folder == english else _words(english, (), ())
+    return _made([*keyword_files(folder), *paths], entries, folder, known, [source])
+
+
+def _folder(language: str) -> str:
     folder = language_folder(language)
     if folder is None:
         known = ", ".join(languages())
         raise MissionError([diagnostic("BT065", Span(Source("", "--language"), 0, 0), name=language, known=known)])
+    return folder
+
+
+def _items(keywords: Sequence[str | Entry | Callable[..., Any]]) -> tuple[list[str], list[Entry]]:
+    """The paths of keyword files, and the entries."""
     paths = [_path(item) for item in keywords if isinstance(item, str)]
-    entries = [_entry(item) for item in keywords if not isinstance(item, str)]
-    vocabulary = _words(folder, paths, entries)
-    return vocabulary.with_names(names, features) if names else vocabulary
+    return paths, [_entry(item) for item in keywords if not isinstance(item, str)]
 
 
 _own: dict[tuple[object, ...], tuple[Sequence[Entry], Lexicon]] = {}  # the entries stay, so that no id is used again
@@ -69,8 +87,14 @@ def _words(folder: str, paths: Sequence[str], entries: Sequence[Entry]) -> Lexic
     return recent(_own, key, lambda: (entries, make()))[1]
 
 
-def _made(paths: Sequence[str], entries: Iterable[Entry], folder: str, english: Lexicon | None) -> Lexicon:
-    """The vocabulary of keyword files, those of a language among them, and of entries."""
+def _made(
+    paths: Sequence[str],
+    entries: Iterable[Entry],
+    folder: str,
+    english: Lexicon | None,
+    sources: Sequence[Source] = (),
+) -> Lexicon:
+    """The vocabulary of keyword files, those of a language among them, of texts of others, and of entries."""
     from btlang.vocabulary.keyword_file import read_keyword_file  # not where the cache has it
 
     files: list[KeywordFile] = []
@@ -82,6 +106,7 @@ def _made(paths: Sequence[str], entries: Iterable[Entry], folder: str, english: 
             problems += error.diagnostics
     if problems:
         raise MissionError(problems)
+    files += map(read_keyword_file, sources)
     if not all(file.shipped for file in files):  # what no phrase says is a part of the language
         own = {shown_name(path) for path in keyword_files(folder)}
         files = [

@@ -78,7 +78,7 @@ def _read_by_people(text: str) -> list[str]:
     return [line for line in text.split("\n") if not line.startswith("#:")]
 
 
-@searches(40, 3000, deadline=None)
+@searches(10, 3000, deadline=None)
 @given(trees(), trees())
 def test_any_tree_onto_any_other(before: Tree, after: Tree) -> None:
     """Nothing that was written onto a file is lost, however much is edited at once."""
@@ -89,7 +89,7 @@ def test_any_tree_onto_any_other(before: Tree, after: Tree) -> None:
     assert written_onto(Source(made), after, WORDS) == made
 
 
-@searches(40, 1000, deadline=None)
+@searches(10, 1000, deadline=None)
 @given(trees(), st.data())
 def test_a_changed_value_changes_one_line(tree: Tree, data: st.DataObject) -> None:
     original = _written(tree)

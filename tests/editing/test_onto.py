@@ -88,3 +88,35 @@ def test_the_editor_of_the_user(
         main(["edit", "--editor", "tree.xml"])
     assert "can't be started" in capsys.readouterr().err
     assert tree.read_bytes() == changed
+
+
+def test_the_main_tree_may_stand_in_an_included_file(tree: Path) -> None:
+    english = tree.with_suffix(".txt")
+    tree.with_name("inner.xml").write_text('<root><BehaviorTree ID="Inner"><SubTree ID="Greet"/></BehaviorTree></root>')
+    head = '<root main_tree_to_execute="Inner">\n <include path="inner.xml"/>\n'
+    text = f'{head} <BehaviorTree ID="Greet"><Wave/></BehaviorTree>\n</root>'
+    tree.write_text(text)
+    assert main(["compile", "tree.xml", "-o", "tree.txt"]) == 0
+    assert main(["compile", "tree.txt", "--onto", "tree.xml"]) == 0
+    assert tree.read_text() == text
+    english.write_text(english.read_text().replace("wave", "nod"))
+    assert main(["compile", "tree.txt", "--onto", "tree.xml"]) == 0
+    assert tree.read_text() == text.replace("Wave", "Nod")
+
+
+@pytest.mark.parametrize(("leaf", "new"), [('<Action ID="Nod"/>', '<Action ID="Wave"/>'), ("<Nod/>", "<Wave/>")])
+@pytest.mark.parametrize("root", ["<root>", '<root BTCPP_format="4">'])
+def test_new_leaves_are_written_as_the_others_are(root: str, leaf: str, new: str, tree: Path) -> None:
+    lines = (
+        root,
+        '<BehaviorTree ID="MainTree">',
+        "<Sequence>",
+        f"{leaf}{{}}",
+        "</Sequence>",
+        "</BehaviorTree>",
+        "</root>",
+    )
+    text = "\n".join(lines)
+    tree.write_text(text.format(""))
+    assert main(["compile", "-c", "nod then wave", "--onto", "tree.xml"]) == 0
+    assert tree.read_text() == text.format(f"\n{new}")

@@ -8,11 +8,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from btlang.frontends.btcpp.spelling import KINDS, MAIN_TREE
+from btlang.frontends.btcpp.spelling import IN_NO_ID, KINDS, MAIN_TREE
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Tree
 
-_REFUSED = re.compile(r"""[\x00-\x20\x7f<>&"'/\\:*?|.{}]+""")
+_REFUSED = re.compile(f"[{IN_NO_ID}{{}}]+")
 """Also braces, which they take; but a name in braces looks like a reference."""
 _RESERVED = frozenset(("", "Root", "root", *KINDS, *CATALOGUE))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from difflib import SequenceMatcher
 
 from btlang.backends.btcpp.markup import sound_comment
@@ -16,10 +16,11 @@ from btlang.diagnostics.errors import MissionError
 from btlang.frontends.btcpp.file import SPOKEN_NAME, XmlFile
 from btlang.frontends.btcpp.reader import MAIN, read_xml
 from btlang.frontends.btcpp.scan import Note, scanned
-from btlang.frontends.btcpp.spelling import MAIN_TREE, SPELL, is_editors
+from btlang.frontends.btcpp.spelling import KINDS, MAIN_TREE, SPELL, TO_4, is_editors, is_xml_name
 from btlang.record import Record
 from btlang.text.source import NOWHERE, Source
 from btlang.tree.alignment import Alignment
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.comments import FOOT, HEAD, comments_by_line, line_of
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
@@ -44,6 +45,10 @@ def written_onto(original: Source, tree: Tree, vocabulary: Lexicon) -> str:
     return _Onto(original, tree, vocabulary).written()
 
 
+_OWN_TAGS = CATALOGUE.keys() | TO_4.keys() | {SUBTREE}
+"""Tags that have no kind."""
+
+
 class _Said(Record):
     """A comment of the file with the line of the mission that it belongs to; `lines` are what English says of it."""
 
@@ -57,9 +62,8 @@ class _Onto:
         self._file = XmlFile(scanned(original))
         is_there = tree.name in (head.name for head in self._file.heads)  # then it is the main tree, whatever is told
         self._before = read_xml(original, tree.name if is_there else "")
-        self._after = tree.replace(
-            root=_apart(tree.root), subtrees=[(name, _apart(root)) for name, root in tree.subtrees]
-        )
+        subtrees = tuple((name, _apart(root)) for name, root in tree.subtrees)
+        self._after = tree.replace(root=_apart(tree.root), subtrees=subtrees)
         document = self._file.document
         self._dialect = self._file.dialect
         self._heads = {head.name: head for head in self._file.heads}
@@ -70,14 +74,18 @@ class _Onto:
             root = self._old[name if name in others else ""]
             for number, node in enumerate(Tree(root).walk(), head.index + 1):
                 self._elements[id(node)] = number
+        leaves = [document.elements[number][0] for number in self._elements.values()]
+        self._kind_tags = {tag in KINDS for tag in leaves if tag in KINDS or tag not in _OWN_TAGS} or {False}
         self._new = {"": self._after.root, **dict(self._after.subtrees)}
         self._elsewhere = {name: root for name, root in others.items() if name not in self._heads}
+        if "" not in self._old:
+            self._elsewhere[""] = self._before.root
         self._renamed = self._find_renamed()
         self._alignment = self._aligned()
         self._ids = self._written_ids()
         uses = Uses(self._after, vocabulary, self._dialect)
         kinds = {model.id: model.kind for model in self._before.models}
-        self._kind = lambda node_id: kinds.get(node_id) or uses.kind(node_id)
+        self._kind: Callable[[str], str] = lambda node_id: kinds.get(node_id) or uses.kind(node_id)
         self._text = Rewriter(document, self._file.notes, self._known, self._spelled)
         self._mission = tree.origin if isinstance(tree.origin, Source) else None
 
@@ -113,11 +121,20 @@ class _Onto:
         return self._elements.get(id(old)) if old is not None else None
 
     def _spelled(self, node: Node) -> Spelling:
-        return SPELL[self._dialect](node, self._kind, self._ids)
+        return self._in_style(node, SPELL[self._dialect](node, self._kind, self._ids))
 
     def _spelled_before(self, node: Node) -> Spelling:
         written = {name: head.written for name, head in self._heads.items() if head.written}
-        return SPELL[self._dialect](node, self._kind, written)
+        return self._in_style(node, SPELL[self._dialect](node, self._kind, written))
+
+    def _in_style(self, node: Node, usual: Spelling) -> Spelling:
+        """With a kind tag where all leaves of the file have one, and without where none has."""
+        tag, pairs = usual
+        if tag in KINDS and True not in self._kind_tags and is_xml_name(node.id) and ("ID", node.id) in pairs:
+            return node.id, tuple(pair for pair in pairs if pair != ("ID", node.id))
+        if tag == node.id and self._kind_tags == {True} and not node.children and node.id not in CATALOGUE:
+            return self._kind(node.id), (("ID", node.id), *pairs)
+        return usual
 
     # -- writing
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -11,9 +12,10 @@ from btlang.frontends.btcpp.models import ModelReader, among, odd
 from btlang.frontends.btcpp.nodes import NodeReader
 from btlang.frontends.btcpp.origin import Element, Markup, TreeOrigin
 from btlang.frontends.btcpp.scan import Document, Note
-from btlang.frontends.btcpp.spelling import MODEL
+from btlang.frontends.btcpp.spelling import IN_NO_ID, KINDS, MODEL
 from btlang.record import Record
 from btlang.text.source import Span
+from btlang.tree.catalogue import SUBTREE
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node
 
@@ -23,6 +25,8 @@ if TYPE_CHECKING:
     from btlang.frontends.btcpp.spelling import Pairs
 
 _PARTS = ("BehaviorTree", MODEL, "include")
+_NAMING = frozenset(("BehaviorTree", SUBTREE, *KINDS))
+_REFUSED = re.compile(f"(?![\\x00-\\x1f])[{IN_NO_ID}]")  # what English can't say either is told there
 SPOKEN_NAME = "_name"
 """The attribute of a BehaviorTree with the name that its tree has in English, where that can be no ID."""
 
@@ -103,6 +107,21 @@ class XmlFile:
         self.warnings += models.warnings
         self._find_texts()
         self._find_gaps()
+        if self.dialect == 4:
+            self._find_refused()
+
+    def _find_refused(self) -> None:
+        """IDs that BehaviorTree.CPP refuses, each where it stands first."""
+        document = self.document
+        found: dict[str, int] = {}
+        for at, (tag, flat, _, _) in enumerate(document.elements):
+            if tag in _NAMING and "ID" in flat[::2]:
+                found.setdefault(flat[flat.index("ID") + 1], at)
+        for node_id, at in found.items():
+            refused = _REFUSED.search(node_id)
+            if refused is not None and node_id.strip():
+                what = "a blank" if refused[0] == " " else f"'{refused[0]}'"
+                self.warnings.append(diagnostic("BT238", document.span(at), (), None, id=node_id, what=what))
 
     def _add_tree(self, index: int, end: int, attributes: dict[str, str]) -> None:
         written = attributes.get("ID", "")

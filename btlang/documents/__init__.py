@@ -1,0 +1,1 @@
+"""`btc compile --to markdown`: pages about trees, for people who review them."""

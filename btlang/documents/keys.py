@@ -1,0 +1,67 @@
+"""Which keys of the blackboard a tree reads and sets."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from btlang.engine.instance import blackboard_key
+from btlang.frontends.btcpp.models import nav2_models
+from btlang.tree.catalogue import CATALOGUE, POST_CONDITIONS, PRE_CONDITIONS
+from btlang.tree.model import NodeModel
+from btlang.tree.node import Node, Tree
+from btlang.vocabulary.lexicon import Lexicon
+
+READS, SETS = "reads", "sets"
+_SCRIPTS = (*PRE_CONDITIONS, *POST_CONDITIONS)
+_CODE = (("Script", "code"), ("ScriptCondition", "code"), ("Precondition", "if"))
+_NAMES_KEY = ("SetBlackboard", "output_key")
+_TEXT = re.compile(r"'[^']*'")
+_NAME = re.compile(r"[^\W\d]\w*")
+_SET = re.compile(r"([^\W\d]\w*)\s*(:=|[-+*/]=|=(?!=))")
+_WORDS = ("true", "false")
+
+
+class KeyReader:
+    """Knows the directions of ports by the models of a project and by the words."""
+
+    def __init__(self, models: Mapping[str, NodeModel], vocabulary: Lexicon) -> None:
+        self._models, self._vocabulary = models, vocabulary
+
+    def keys(self, root: Node) -> dict[str, set[str]]:
+        """`READS` and `SETS` by key, in the order of the tree."""
+        found: dict[str, set[str]] = {}
+        for node in Tree(root).walk():
+            for port, text in node.ports:
+                for key, uses in self._of_port(node, port, text):
+                    found.setdefault(key, set()).update(uses)
+        return found
+
+    def _of_port(self, node: Node, port: str, text: str) -> list[tuple[str, set[str]]]:
+        if port in _SCRIPTS or (node.id, port) in _CODE:
+            return _of_script(text)
+        if (node.id, port) == _NAMES_KEY:
+            return [(text.strip("{} "), {SETS})]
+        key = blackboard_key(port, text)
+        if key is None or port[:1] == "_":
+            return []
+        return [(key, {"output": {SETS}, "inout": {READS, SETS}}.get(self._direction(node, port), {READS}))]
+
+    def _direction(self, node: Node, port: str) -> str:
+        """Of a SubTree by the model of its tree."""
+        id = node.port("ID") if node.id == "SubTree" else node.id
+        kind = CATALOGUE.get(id)
+        if kind is not None and port in kind.ports:
+            return kind.ports[port].direction
+        model = self._models.get(id) or nav2_models([id]).get(id)
+        told = next((each.direction for each in model.ports if each.name == port), "") if model is not None else ""
+        if told:
+            return told
+        return "output" if any(port in entry.outputs for entry in self._vocabulary.entries.get(id, ())) else "input"
+
+
+def _of_script(script: str) -> list[tuple[str, set[str]]]:
+    code = _TEXT.sub("''", script)
+    found = [(key, {SETS} if operator in (":=", "=") else {READS, SETS}) for key, operator in _SET.findall(code)]
+    others = _NAME.findall(_SET.sub("", code))
+    return [*found, *((key, {READS}) for key in others if key not in _WORDS)]

@@ -1,0 +1,151 @@
+"""The files of a project with their trees, as pages about them need them."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+from btlang.api import Mission
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import read_source
+from btlang.frontends.btcpp.file import XmlFile
+from btlang.frontends.btcpp.file_set import read_files
+from btlang.frontends.btcpp.origin import XmlOrigin
+from btlang.frontends.btcpp.reader import MAIN
+from btlang.frontends.btcpp.spelling import MAIN_TREE
+from btlang.frontends.table import frontend_of
+from btlang.record import Record
+from btlang.testing.names import ENDING
+from btlang.text.source import Source
+from btlang.tree.model import NodeModel
+from btlang.tree.node import Node, Tree
+from btlang.tree.visit import subtree_names
+from btlang.vocabulary.lexicon import Lexicon
+
+_HAS_TREES = re.compile(r"\s*(?:<\?.*?\?>\s*|<!--.*?-->\s*|<!DOCTYPE[^>]*>\s*)*<root[\s/>]", re.DOTALL)
+
+
+class TreeChapter(Record):
+    """A tree of a file. `text` is the mission that it was written as, "" for another tree; `runs_first`: its file
+    starts with it.
+    """
+
+    file: str
+    name: str
+    tree: Tree
+    vocabulary: Lexicon
+    text: str = ""
+    description: str = ""
+    runs_first: bool = False
+
+    @property
+    def uses(self) -> list[str]:
+        """The IDs of the trees that it uses and that aren't its own, each once."""
+        own = dict(self.tree.subtrees)
+        names = [name for root in (self.tree.root, *own.values()) for name in subtree_names(root)]
+        return [name for name in dict.fromkeys(names) if name not in own]
+
+
+class DocumentedProject(Record):
+    """The names of the files, the chapters in their order, the models by id and by file, and the files left out."""
+
+    files: tuple[str, ...]
+    chapters: tuple[TreeChapter, ...]
+    models: Mapping[str, NodeModel]
+    described: Mapping[str, tuple[NodeModel, ...]] = {}
+    left_out: tuple[str, ...] = ()
+
+    def used(self, name: str, file: str) -> TreeChapter | None:
+        """The tree that a use in a file means: that of the same file before others."""
+        found = [chapter for chapter in self.chapters if chapter.name == name]
+        return next((chapter for chapter in found if chapter.file == file), found[0] if found else None)
+
+    def users(self, used: TreeChapter) -> list[TreeChapter]:
+        """The trees that use one."""
+        return [one for one in self.chapters if any(self.used(name, one.file) is used for name in one.uses)]
+
+
+def read_documents(
+    paths: Sequence[str], vocabulary: Lexicon, compiled: Callable[[Source], Mission]
+) -> DocumentedProject:
+    """Reads files, and in folders those that are trees in XML or missions; both are told by what they hold.
+
+    Raises MissionError for a file that is named, or begins as a tree, and can't be read.
+    """
+    base = _common_folder(paths)
+    trees: list[tuple[str, Source]] = []
+    chapters: list[TreeChapter] = []
+    names, left_out = list[str](), list[str]()
+    for path, is_named in _found(paths):
+        name = os.path.relpath(path, base).replace(os.sep, "/") if path != "-" else "-"
+        source = read_source(path)
+        if frontend_of(source) == "xml":
+            if is_named or _HAS_TREES.match(source.text):
+                trees.append((name, source))
+                names.append(name)
+            continue
+        try:
+            chapters.append(_mission(name, source, compiled(source)))
+            names.append(name)
+        except MissionError:
+            if is_named:
+                raise
+            left_out.append(name)
+    read = read_files([source for _, source in trees])
+    for (name, _), file in zip(trees, read.files, strict=True):
+        chapters += _trees(name, file, read.models, vocabulary)
+    chapters.sort(key=lambda chapter: names.index(chapter.file))
+    models = {model.id: model for model in read.models}
+    described = {name: tuple(file.models.values()) for (name, _), file in zip(trees, read.files, strict=True)}
+    return DocumentedProject(tuple(names), tuple(chapters), models, described, tuple(left_out))
+
+
+def _found(paths: Sequence[str]) -> Iterator[tuple[str, bool]]:
+    """The files, each once, and whether it is named itself; of folders what may be a tree, without hidden files."""
+    done: set[str] = set()
+    for path in paths:
+        for file in _inside(path) if os.path.isdir(path) else [path]:
+            if os.path.realpath(file) not in done:
+                done.add(os.path.realpath(file))
+                yield file, file == path
+
+
+def _inside(folder: str) -> Iterator[str]:
+    for inside, folders, files in os.walk(folder):
+        folders[:] = sorted(name for name in folders if name[:1] != ".")
+        for name in sorted(files):
+            if name.endswith((".xml", ".txt")) and not name.endswith(ENDING) and name[:1] != ".":
+                yield os.path.normpath(os.path.join(inside, name))
+
+
+def _common_folder(paths: Sequence[str]) -> str:
+    folders = [path if os.path.isdir(path) else os.path.dirname(path) for path in paths if path != "-"]
+    return os.path.commonpath([os.path.abspath(folder or os.curdir) for folder in folders] or [os.curdir])
+
+
+def _mission(name: str, source: Source, mission: Mission) -> TreeChapter:
+    tree = mission.tree
+    title = tree.name or os.path.splitext(os.path.basename(name))[0]
+    text = source.text if mission.syntax is not None else ""
+    return TreeChapter(name, title, tree, mission.vocabulary, text, runs_first=True)
+
+
+def _trees(name: str, file: XmlFile, models: Sequence[NodeModel], vocabulary: Lexicon) -> Iterator[TreeChapter]:
+    described = {model.id: model.text for model in models if model.kind == "SubTree"}
+    first = file.attributes.get(MAIN, MAIN_TREE)
+    for head, (tree_name, root) in zip(file.heads, file.trees, strict=True):
+        origin = file.origins[tree_name]
+        kept = XmlOrigin(file.dialect, root, (), (), (tree_name,), {tree_name: origin})
+        about = dict(origin.attributes).get("_description", "") or described.get(head.written, "")
+        is_first = len(file.heads) == 1 or first in (head.written, tree_name)
+        tree = Tree(root, models=tuple(models), origin=kept)
+        yield TreeChapter(name, head.written or tree_name, tree, vocabulary, "", about, is_first)
+
+
+def nodes_of(tree: Tree) -> dict[str, list[Node]]:
+    """The nodes of a tree and its own subtrees, by id."""
+    found: dict[str, list[Node]] = {}
+    for node in tree.walk():
+        found.setdefault(node.id, []).append(node)
+    return found
