@@ -27,6 +27,7 @@ ROOT = Path(__file__).parent.parent.parent
 MISSIONS = sorted([*(ROOT / "examples").glob("*.txt"), *(ROOT / "tests" / "samples" / "good").glob("*.txt")])
 NOT_ALL_NATURAL = {
     "nodes": "it is about nodes that no phrase says",
+    "given": "one of its nodes gives values",
 }
 _BY_ID = re.compile(r'\b(do|test) ("|subtree|script|sequence|set blackboard|recovery|reactive|pipeline)')
 

@@ -71,6 +71,7 @@ class TypeInference:
         self._vocabulary, self._names, self._loops, self._refused = vocabulary, names, loops, refused
         self._unset = unset
         self._set: set[str] = set()  # keys that are given values
+        self._chosen: set[str] = set()  # keys of names that the robot chooses for a command
         self._groups: dict[Value, list[Value]] = {}  # those of one type, by each of them that was joined to no other
         self._joined: dict[Value, Value] = {}
         self._given: list[tuple[Value, Value]] = []  # what is given another value
@@ -137,6 +138,8 @@ class TypeInference:
         kind = CATALOGUE.get(node.id)
         for text in texts.values():
             self._mention(text, own)
+            choice = choice_of(text)
+            self._chosen.update([choice.key] if choice is not None else ())
         for key in made.times:
             self._need(texts[key], "duration", own)
         if node.id == "Script" and (given := given_by(node.port("code"), texts)) is not None:
@@ -263,7 +266,8 @@ class TypeInference:
 
     def _is_outside(self, key: str) -> bool:
         """Whether nothing that is said sets a key that can be said in braces."""
-        is_set = key in self._set and self._unset is not None and key not in self._unset
+        is_said = self._unset is not None and key not in self._unset
+        is_set = key in self._chosen or (key in self._set and is_said)
         text = split(Source(f"{{{key}}}"), self._vocabulary.orthography)
         is_name = key[:1] != "_" and ReadingContext.reference(text, 0) == (key, len(text.words) - 2)
         return is_name and not is_set
