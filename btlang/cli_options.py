@@ -11,10 +11,22 @@ from importlib import import_module
 from itertools import takewhile
 
 from btlang.arguments import between, duration, picture, speed
-from btlang.diagnostics.report import CHECK_FORMATS, FORMATS
-from btlang.frontends.mission.reader import DEFAULT_PARSER, PARSERS
+from btlang.cli_reading import (
+    add_check_options,
+    add_compile_options,
+    add_diff_options,
+    add_explain_options,
+    add_format_options,
+    add_grammar_options,
+    add_listing_options,
+    add_mission_options,
+    add_reading_options,
+    add_tree_options,
+    add_words_options,
+)
+from btlang.frontends.mission.reader import DEFAULT_PARSER
 from btlang.option_parser import OptionParser
-from btlang.robots.options import add_robot_words, add_world
+from btlang.robots.options import add_robot_words
 from btlang.run.limits import RATES
 from btlang.text.spelling import respellings
 from btlang.vocabulary.shipped import ENGLISH
@@ -137,66 +149,6 @@ _READING = ("check", "compile", "diff", "explain", "format", "grammar", "tree", 
 """Verbs that run nothing, but may read missions in the words of a robot."""
 
 
-def _words_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--keywords",
-        action="append",
-        default=[],
-        metavar="FILE",
-        help="another keyword file, or the name of a pack; may be repeated",
-    )
-    parser.add_argument(
-        "--language", default=ENGLISH, metavar="LANG", help="of the mission: en, es, or a folder (default: en)"
-    )
-    add_world(parser)
-
-
-def _reading_options(parser: argparse.ArgumentParser) -> None:
-    _words_options(parser)
-    parser.add_argument(
-        "--parser",
-        choices=list(PARSERS),
-        default=DEFAULT_PARSER,
-        help="how to parse; both give the same tree (default: %(default)s)",
-    )
-    parser.add_argument("--include-root", metavar="DIR", help="missions may also include files below DIR")
-
-
-def _main_option(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--main", default="", metavar="ID", help="which tree to use if the file holds several")
-
-
-def _mission_options(parser: argparse.ArgumentParser, *, several: bool = False) -> None:
-    _reading_options(parser)
-    about = "format of messages: text, or json for programs (default: text)"
-    parser.add_argument("--format", choices=FORMATS, default="text", help=about)
-    _main_option(parser)
-    text = parser.add_mutually_exclusive_group(required=True)
-    files: dict[str, Any] = {"nargs": "*", "default": []} if several else {"nargs": "?"}
-    text.add_argument("file", **files, metavar="FILE", help="mission, or - for standard input")
-    text.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
-
-
-def _check_options(parser: argparse.ArgumentParser) -> None:
-    _reading_options(parser)
-    about = "format of messages: text; json, sarif or github for programs (default: text)"
-    parser.add_argument("--format", choices=CHECK_FORMATS, default="text", help=about)
-    _main_option(parser)
-    parser.add_argument(
-        "--models",
-        action="append",
-        default=[],
-        metavar="FILE",
-        help="XML file with models of nodes (TreeNodesModel); may be repeated",
-    )
-    parser.add_argument("--fix", action="store_true", help="write the corrections that are certain into the files")
-    parser.add_argument("--then", action="store_true", help="write 'then' where 'and' stands on the way (BT069)")
-    several = parser.add_mutually_exclusive_group(required=True)
-    about = "mission, tree or folder of trees, or - for standard input; all XML files are one project"
-    several.add_argument("file", nargs="*", default=[], metavar="FILE", help=about)
-    several.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
-
-
 def _speed_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--speed", type=speed, default="real", help="real, max, or a factor of real time")
 
@@ -204,7 +156,7 @@ def _speed_option(parser: argparse.ArgumentParser) -> None:
 def _repl_options(parser: argparse.ArgumentParser) -> None:
     from btlang.ros.command import add_body_options
 
-    _reading_options(parser)
+    add_reading_options(parser)
     _speed_option(parser)
     add_body_options(parser)
 
@@ -213,7 +165,7 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
     from btlang.recording.options import add_recording_options
     from btlang.ros.command import add_robot_options
 
-    _mission_options(parser)
+    add_mission_options(parser)
     _speed_option(parser)
     parser.add_argument(
         "--rate", type=between(*RATES), default=20.0, metavar="HZ", help="ticks per second (default: 20)"
@@ -244,7 +196,7 @@ def _elsewhere(module: str, name: str, words: bool = False) -> Callable[[argpars
 
     def add(parser: argparse.ArgumentParser) -> None:
         if words:
-            _words_options(parser)
+            add_words_options(parser)
         getattr(import_module(module), name)(parser)
 
     return add
@@ -257,82 +209,15 @@ def _replay_options(parser: argparse.ArgumentParser) -> None:
     add_replay_options(parser)
 
 
-def _diff_options(parser: argparse.ArgumentParser) -> None:
-    _words_options(parser)
-    parser.add_argument("--markdown", action="store_true", help="print a list in Markdown, such as for a pull request")
-    parser.add_argument("old", metavar="OLD", help="mission, tree in XML or JSON, or recording")
-    parser.add_argument("new", metavar="NEW", help="what to compare with it")
-
-
-def _tree_options(parser: argparse.ArgumentParser) -> None:
-    _mission_options(parser)
-    parser.add_argument("--plain", action="store_true", help="one line per node: Id port=value")
-    parser.add_argument("--picture", type=picture(".svg", ".png"), metavar="FILE", help="draw the tree: .svg or .png")
-    parser.add_argument("--apart", action="store_true", help="draw each named subtree once, below the tree")
-
-
-def _compile_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.backends.targets import TARGETS
-
-    _mission_options(parser, several=True)
-    parser.add_argument("--to", choices=list(TARGETS), metavar="TARGET", help="target: " + ", ".join(TARGETS))
-    parser.add_argument(
-        "-o",
-        dest="out",
-        metavar="OUT",
-        help="file to write (with markdown: or folder); its ending can select the target",
-    )
-    parser.add_argument("--dialect", type=int, choices=(3, 4), help="BehaviorTree.CPP version of the XML (default: 4)")
-    parser.add_argument(
-        "--onto", metavar="XML", help="the file that the mission was made from: changes what was edited"
-    )
-    parser.add_argument("--force", action="store_true", help="with --onto: also where the file has changed since then")
-
-
-def _listing_options(parser: argparse.ArgumentParser) -> None:
-    _words_options(parser)
-    parser.add_argument("--all", action="store_true", help="list everything, with what it does and an example")
-    about = "make words for the nodes of this XML file, by its TreeNodesModel and its trees; may be repeated"
-    parser.add_argument("--from", dest="sources", action="append", default=[], metavar="XML", help=about)
-    parser.add_argument("-o", dest="out", metavar="FILE", help="with --from: keyword file (default: standard output)")
-    parser.add_argument("search", nargs="*", metavar="SEARCH", help="a topic, or words to search for")
-
-
-def _grammar_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.backends.grammar.targets import GRAMMARS
-
-    _words_options(parser)
-    parser.add_argument("--to", choices=list(GRAMMARS), default="gbnf", help="form of the grammar (default: gbnf)")
-    parser.add_argument("-o", dest="out", metavar="FILE", help="file to write (default: standard output)")
-
-
 def _examples_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--copy", metavar="FOLDER", help="copy them to a folder, with their worlds")
     parser.add_argument("name", nargs="*", metavar="NAME", help="only these examples")
 
 
-def _explain_options(parser: argparse.ArgumentParser) -> None:
-    _reading_options(parser)
-    _main_option(parser)
-    subject = parser.add_mutually_exclusive_group()
-    subject.add_argument(
-        "file", nargs="?", metavar="FILE|CODE", help="mission, - for standard input, or a code such as BT013"
-    )
-    subject.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
-
-
-def _format_options(parser: argparse.ArgumentParser) -> None:
-    _reading_options(parser)
-    parser.add_argument("--check", action="store_true", help="change nothing; exit with 1 if a file would change")
-    several = parser.add_mutually_exclusive_group(required=True)
-    several.add_argument("file", nargs="*", default=[], metavar="FILE", help="mission, or - for standard input")
-    several.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
-
-
 def _ros_node_options(parser: argparse.ArgumentParser) -> None:
     from btlang.ros.mission.command import add_node_options
 
-    _reading_options(parser)
+    add_reading_options(parser)
     _speed_option(parser)
     add_node_options(parser)
 
@@ -348,12 +233,12 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "replay": ("show a recorded run as it was", _replay_options),
     "why": ("tell what happened in a recorded run, and why it failed", _elsewhere(_RECORDING, "add_recording_file")),
     "test": ("run tests of missions, written in English", _elsewhere("btlang.testing.options", "add_test_options")),
-    "diff": ("tell what differs between two missions, trees or recorded runs", _diff_options),
-    "check": ("report the mistakes in missions and trees", _check_options),
-    "tree": ("print the behavior tree of a mission", _tree_options),
-    "compile": ("write the tree of a mission as XML, English, JSON, a picture ...", _compile_options),
-    "words": ("list what missions can say", _listing_options),
-    "grammar": ("write a grammar of missions, for language models", _grammar_options),
+    "diff": ("tell what differs between two missions, trees or recorded runs", add_diff_options),
+    "check": ("report the mistakes in missions and trees", add_check_options),
+    "tree": ("print the behavior tree of a mission", add_tree_options),
+    "compile": ("write the tree of a mission as XML, English, JSON, a picture ...", add_compile_options),
+    "words": ("list what missions can say", add_listing_options),
+    "grammar": ("write a grammar of missions, for language models", add_grammar_options),
     "robot": ("keep a robot up for many tasks of many people", _elsewhere("btlang.task.options", "add_robot_options")),
     "task": ("give work to a robot that is up", _elsewhere("btlang.task.options", "add_task_options")),
     "world": ("check, draw, import and export world files", _elsewhere("btlang.maps.options", "add_world_options")),
@@ -368,11 +253,11 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "serve": ("let others reach the robots that are up", _elsewhere("btlang.server.options", "add_serve_options")),
     "user": ("say who may come in through btc serve", _elsewhere("btlang.server.options", "add_user_options")),
     "edit": ("write a mission in the browser", _elsewhere("btlang.server.options", "add_edit_options", True)),
-    "mcp": ("let language models write and simulate missions, as an MCP server", _words_options),
+    "mcp": ("let language models write and simulate missions, as an MCP server", add_words_options),
     "examples": ("list, print or copy the example missions", _examples_options),
     "new": ("begin a component, a device or a robot", _elsewhere("btlang.templates.options", "add_new_options")),
-    "explain": ("show how a mission is understood, or explain a message code", _explain_options),
-    "format": ("format missions: indentation, spaces, empty lines", _format_options),
+    "explain": ("show how a mission is understood, or explain a message code", add_explain_options),
+    "format": ("format missions: indentation, spaces, empty lines", add_format_options),
     "sim-ros": (
         "run the simulated robot as a ROS 2 node",
         _elsewhere("btlang.ros.simulator.command", "add_simulator_options"),

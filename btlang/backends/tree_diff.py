@@ -7,6 +7,7 @@ from difflib import SequenceMatcher
 
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, SUBTREE
 from btlang.tree.node import Node, Tree
+from btlang.tree.subtree_numbers import SubtreeNumbers
 from btlang.tree.visit import children_first
 
 TYPE_CHECKING = False
@@ -35,33 +36,20 @@ def differences(old: Tree, new: Tree, say_old: Say, say_new: Say) -> Iterator[st
 class _Diff:
     def __init__(self, say_old: Say, say_new: Say) -> None:
         self._say_old, self._say_new = say_old, say_new
-        self._kinds: dict[object, int] = {}  # a number for each different subtree
-        self._numbers: dict[int, int] = {}  # of nodes, by their identity
-        self._kept: list[Node] = []  # so that no identity is given to another node
+        self._numbers = SubtreeNumbers(lambda node: node.ports)
 
     def lines(self, old: Node, new: Node, place: str) -> Iterator[str]:
         """The differences of two trees of nodes; `place` says where they are."""
-        self._number(old)
-        self._number(new)
+        self._numbers.add((*children_first(old), *children_first(new)))
         pending = [(old, new)]
         while pending:
             one, other = pending.pop()
-            if self._same(one, other):
+            if self._numbers.are_equal(one, other):
                 continue
             pairs: list[tuple[Node, Node]] = []
             for line in self._compared(one, other, pairs):
                 yield line + place
             pending += reversed(pairs)
-
-    def _number(self, root: Node) -> None:
-        self._kept.append(root)
-        for node in children_first(root):
-            below = tuple(self._numbers[id(child)] for child in node.children)
-            key = node.id, node.ports, node.name, below
-            self._numbers[id(node)] = self._kinds.setdefault(key, len(self._kinds))
-
-    def _same(self, one: Node, other: Node) -> bool:
-        return self._numbers[id(one)] == self._numbers[id(other)]
 
     def _compared(self, one: Node, other: Node, pairs: list[tuple[Node, Node]]) -> Iterator[str]:
         """The lines about two nodes themselves; what is below them and may differ goes into `pairs`."""
@@ -79,15 +67,15 @@ class _Diff:
 
     def _alike(self, one: Node, other: Node) -> bool:
         """Whether one has probably become the other."""
-        if self._same(one, other) or self._is_around(one, other) or self._is_around(other, one):
+        if self._numbers.are_equal(one, other) or self._is_around(one, other) or self._is_around(other, one):
             return True
         if one.id != other.id or not (one.children or one.ports == other.ports or set(one.ports) & set(other.ports)):
             return False
-        kept = {self._numbers[id(child)] for child in one.children}
-        return not kept or any(self._numbers[id(child)] in kept for child in other.children)
+        kept = self._numbers.of(one.children)
+        return not kept or not set(kept).isdisjoint(self._numbers.of(other.children))
 
     def _is_around(self, inner: Node, outer: Node) -> bool:
-        return len(outer.children) == 1 and self._same(inner, outer.children[0])
+        return len(outer.children) == 1 and self._numbers.are_equal(inner, outer.children[0])
 
     def _ports(self, one: Node, other: Node) -> Iterator[str]:
         if one.ports == other.ports and one.name == other.name:
@@ -106,8 +94,7 @@ class _Diff:
 
     def _children(self, one: Node, other: Node, pairs: list[tuple[Node, Node]]) -> Iterator[str]:
         old, new = one.children, other.children
-        numbers = [[self._numbers[id(child)] for child in children] for children in (old, new)]
-        matcher = SequenceMatcher(a=numbers[0], b=numbers[1], autojunk=False)
+        matcher = SequenceMatcher(a=self._numbers.of(old), b=self._numbers.of(new), autojunk=False)
         for tag, first, last, begin, end in matcher.get_opcodes():
             if tag == "equal":
                 continue

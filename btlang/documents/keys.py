@@ -7,15 +7,12 @@ from collections.abc import Mapping
 
 from btlang.engine.instance import blackboard_key
 from btlang.frontends.btcpp.models import nav2_models
-from btlang.tree.catalogue import CATALOGUE, POST_CONDITIONS, PRE_CONDITIONS
+from btlang.tree.catalogue import CATALOGUE, KEY, SCRIPT, SUBTREE, held
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 
 READS, SETS = "reads", "sets"
-_SCRIPTS = (*PRE_CONDITIONS, *POST_CONDITIONS)
-_CODE = (("Script", "code"), ("ScriptCondition", "code"), ("Precondition", "if"))
-_NAMES_KEY = ("SetBlackboard", "output_key")
 _TEXT = re.compile(r"'[^']*'")
 _NAME = re.compile(r"[^\W\d]\w*")
 _SET = re.compile(r"([^\W\d]\w*)\s*(:=|[-+*/]=|=(?!=))")
@@ -38,9 +35,10 @@ class KeyReader:
         return found
 
     def _of_port(self, node: Node, port: str, text: str) -> list[tuple[str, set[str]]]:
-        if port in _SCRIPTS or (node.id, port) in _CODE:
+        holds = held(node.id, port)
+        if holds == SCRIPT:
             return _of_script(text)
-        if (node.id, port) == _NAMES_KEY:
+        if holds == KEY:
             return [(text.strip("{} "), {SETS})]
         key = blackboard_key(port, text)
         if key is None or port[:1] == "_":
@@ -49,7 +47,7 @@ class KeyReader:
 
     def _direction(self, node: Node, port: str) -> str:
         """Of a SubTree by the model of its tree."""
-        id = node.port("ID") if node.id == "SubTree" else node.id
+        id = node.port("ID") if node.id == SUBTREE else node.id
         kind = CATALOGUE.get(id)
         if kind is not None and port in kind.ports:
             return kind.ports[port].direction

@@ -11,7 +11,7 @@ from btlang.documents.markdown import block, code, escaped, file_name, table
 from btlang.documents.project import DocumentedProject, TreeChapter, nodes_of
 from btlang.frontends.btcpp.models import nav2_models
 from btlang.pictures.target import to_svg
-from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE
+from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SUBTREE
 from btlang.tree.comments import KEPT
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Tree
@@ -103,7 +103,7 @@ class PageWriter:
     def _ports(self, chapter: TreeChapter) -> Iterator[tuple[str, ...]]:
         """The ports that the model of the tree has, then the other keys in the order of the tree."""
         model = self._project.models.get(chapter.name)
-        ports = {port.name: port for port in model.ports} if model is not None and model.kind == "SubTree" else {}
+        ports = {port.name: port for port in model.ports} if model is not None and model.kind == SUBTREE else {}
         keys: dict[str, set[str]] = {}
         reader = KeyReader(self._project.models, chapter.vocabulary)
         for root in (chapter.tree.root, *(root for _, root in chapter.tree.subtrees)):

@@ -3,27 +3,28 @@
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.file import XmlFile
-from btlang.frontends.btcpp.file_set import read_files
+from btlang.frontends.btcpp.files import read_files
 from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.btcpp.reader import MAIN
 from btlang.frontends.btcpp.spelling import MAIN_TREE
 from btlang.frontends.table import frontend_of
+from btlang.projects.files import begins_as_tree, files_below, named_files
 from btlang.record import Record
-from btlang.testing.names import ENDING
+from btlang.testing.names import is_test_file
 from btlang.text.source import Source
+from btlang.tree.catalogue import SUBTREE
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import subtree_names
 from btlang.vocabulary.lexicon import Lexicon
 
-_HAS_TREES = re.compile(r"\s*(?:<\?.*?\?>\s*|<!--.*?-->\s*|<!DOCTYPE[^>]*>\s*)*<root[\s/>]", re.DOTALL)
+_ENDINGS = (".xml", ".txt")
 
 
 class TreeChapter(Record):
@@ -77,11 +78,11 @@ def read_documents(
     trees: list[tuple[str, Source]] = []
     chapters: list[TreeChapter] = []
     names, left_out = list[str](), list[str]()
-    for path, is_named in _found(paths):
+    for path in named_files(paths, _below):
         name = os.path.relpath(path, base).replace(os.sep, "/") if path != "-" else "-"
         source = read_source(path)
         if frontend_of(source) == "xml":
-            if is_named or _HAS_TREES.match(source.text):
+            if path in paths or begins_as_tree(source):
                 trees.append((name, source))
                 names.append(name)
             continue
@@ -89,34 +90,20 @@ def read_documents(
             chapters.append(_mission(name, source, compiled(source)))
             names.append(name)
         except MissionError:
-            if is_named:
+            if path in paths:
                 raise
             left_out.append(name)
-    read = read_files([source for _, source in trees])
+    read = read_files(source for _, source in trees)
+    models, described = read.models, dict[str, tuple[NodeModel, ...]]()
     for (name, _), file in zip(trees, read.files, strict=True):
-        chapters += _trees(name, file, read.models, vocabulary)
+        chapters += _trees(name, file, models.values(), vocabulary)
+        described[name] = tuple(file.models.values())
     chapters.sort(key=lambda chapter: names.index(chapter.file))
-    models = {model.id: model for model in read.models}
-    described = {name: tuple(file.models.values()) for (name, _), file in zip(trees, read.files, strict=True)}
     return DocumentedProject(tuple(names), tuple(chapters), models, described, tuple(left_out))
 
 
-def _found(paths: Sequence[str]) -> Iterator[tuple[str, bool]]:
-    """The files, each once, and whether it is named itself; of folders what may be a tree, without hidden files."""
-    done: set[str] = set()
-    for path in paths:
-        for file in _inside(path) if os.path.isdir(path) else [path]:
-            if os.path.realpath(file) not in done:
-                done.add(os.path.realpath(file))
-                yield file, file == path
-
-
-def _inside(folder: str) -> Iterator[str]:
-    for inside, folders, files in os.walk(folder):
-        folders[:] = sorted(name for name in folders if name[:1] != ".")
-        for name in sorted(files):
-            if name.endswith((".xml", ".txt")) and not name.endswith(ENDING) and name[:1] != ".":
-                yield os.path.normpath(os.path.join(inside, name))
+def _below(folder: str) -> Iterator[str]:
+    return (file for file in files_below(folder, _ENDINGS) if not is_test_file(file))
 
 
 def _common_folder(paths: Sequence[str]) -> str:
@@ -131,8 +118,8 @@ def _mission(name: str, source: Source, mission: Mission) -> TreeChapter:
     return TreeChapter(name, title, tree, mission.vocabulary, text, runs_first=True)
 
 
-def _trees(name: str, file: XmlFile, models: Sequence[NodeModel], vocabulary: Lexicon) -> Iterator[TreeChapter]:
-    described = {model.id: model.text for model in models if model.kind == "SubTree"}
+def _trees(name: str, file: XmlFile, models: Collection[NodeModel], vocabulary: Lexicon) -> Iterator[TreeChapter]:
+    described = {model.id: model.text for model in models if model.kind == SUBTREE}
     first = file.attributes.get(MAIN, MAIN_TREE)
     for head, (tree_name, root) in zip(file.heads, file.trees, strict=True):
         origin = file.origins[tree_name]
@@ -140,7 +127,7 @@ def _trees(name: str, file: XmlFile, models: Sequence[NodeModel], vocabulary: Le
         about = dict(origin.attributes).get("_description", "") or described.get(head.written, "")
         is_first = len(file.heads) == 1 or first in (head.written, tree_name)
         tree = Tree(root, models=tuple(models), origin=kept)
-        yield TreeChapter(name, head.written or tree_name, tree, vocabulary, "", about, is_first)
+        yield TreeChapter(name, head.id, tree, vocabulary, "", about, is_first)
 
 
 def nodes_of(tree: Tree) -> dict[str, list[Node]]:

@@ -1,10 +1,10 @@
-"""Which files `btc check` reads: those that are named, and the trees in folders."""
+"""Which files a project has: those that are named, and in folders the trees in XML, for pages missions, too."""
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
@@ -17,33 +17,41 @@ _ROOT = re.compile(r"\s*(?:<\?.*?\?>\s*|<!--.*?-->\s*|<!DOCTYPE[^>]*>\s*)*<root[
 
 def tree_files(folder: str) -> list[str]:
     """The files of trees and models in a folder and below it, without hidden ones. Raises MissionError (BT001)."""
-    found = [path for path in _walk(folder) if path.endswith(_ENDINGS) and _has_trees(path)]
+    found = [path for path in files_below(folder, _ENDINGS) if _may_have_trees(path)]
     if not found:
         reason = "there are no trees in XML in this folder"
         raise MissionError([diagnostic("BT001", Span(Source("", folder), 0, 0), file=folder, reason=reason)])
     return found
 
 
-def named_files(paths: Sequence[str]) -> Iterator[str]:
-    """The files, each once, with those of folders in their place. Raises MissionError (BT001)."""
+def named_files(paths: Sequence[str], inside: Callable[[str], Iterable[str]] = tree_files) -> Iterator[str]:
+    """The files, each once, with those inside folders in their place. Raises what `inside` raises."""
     done: set[str] = set()
     for path in paths:
-        for file in tree_files(path) if os.path.isdir(path) else [path]:
+        for file in inside(path) if os.path.isdir(path) else [path]:
             real = file if file == "-" else real_path(file)
             if real not in done:
                 done.add(real)
                 yield file
 
 
-def _walk(folder: str) -> Iterator[str]:
+def files_below(folder: str, endings: tuple[str, ...]) -> Iterator[str]:
+    """The files with these endings in a folder and below it, without hidden ones."""
     for inside, folders, files in os.walk(folder):
         folders[:] = sorted(name for name in folders if name[:1] != ".")
-        yield from (os.path.normpath(os.path.join(inside, name)) for name in sorted(files) if name[:1] != ".")
+        for name in sorted(files):
+            if name.endswith(endings) and name[:1] != ".":
+                yield os.path.normpath(os.path.join(inside, name))
 
 
-def _has_trees(path: str) -> bool:
-    """Whether the outermost tag is that of BehaviorTree.CPP; what can't be read is told later."""
+def begins_as_tree(source: Source) -> bool:
+    """Whether the outermost tag is that of BehaviorTree.CPP."""
+    return _ROOT.match(source.text) is not None
+
+
+def _may_have_trees(path: str) -> bool:
+    """Whether a file begins as a tree; what can't be read is told later."""
     try:
-        return _ROOT.match(read_source(path).text) is not None
+        return begins_as_tree(read_source(path))
     except MissionError:
         return True

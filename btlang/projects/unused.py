@@ -9,10 +9,10 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
 from btlang.frontends.btcpp.project import XmlProject
 from btlang.projects.places import attribute_value
-from btlang.tree.catalogue import POST_CONDITIONS, PRE_CONDITIONS, SUBTREE
+from btlang.tree.catalogue import SCRIPT, SUBTREE, held
 from btlang.tree.model import NodeModel
-from btlang.tree.node import Node
-from btlang.tree.visit import subtree_names
+from btlang.tree.node import Node, Tree
+from btlang.tree.visit import subtree_names, used_subtrees
 
 _WORD = re.compile(r"[^\W\d]\w*")
 
@@ -23,7 +23,7 @@ def keys_read(nodes: Iterable[Node], models: Mapping[str, NodeModel]) -> frozens
     for node in nodes:
         outputs = _outputs(node, models)
         for name, text in node.ports:
-            if name in PRE_CONDITIONS or name in POST_CONDITIONS or name in ("code", "if"):
+            if held(node.id, name) == SCRIPT:
                 read.update(_WORD.findall(text))
             elif name not in outputs:
                 key = blackboard_key(name, text)
@@ -52,18 +52,12 @@ def _outputs(node: Node, models: Mapping[str, NodeModel]) -> set[str]:
 
 def unused_trees(project: XmlProject) -> Iterator[Diagnostic]:
     """BT236 for trees that no main tree reaches, where a main tree uses others, in the files of what it reaches."""
-    uses = {name: [used for used in subtree_names(root) if used in project.trees]
-            for name, root in project.trees.items()}  # fmt: skip
-    if not any(uses[name] for name in project.mains):
+    trees = project.trees
+    mains = [trees[name] for name in project.mains]
+    if not any(name in trees for root in mains for name in subtree_names(root)):
         return
-    reached: set[str] = set()
-    waiting = list(project.mains)
-    while waiting:
-        name = waiting.pop()
-        if name not in reached:
-            reached.add(name)
-            waiting += uses[name]
+    reached = {name for name, _ in used_subtrees(Tree(mains[0], tuple(trees.items())), project.mains)}
     files = {project.heads[name].span.source.name for name in reached}
     for name, head in project.heads.items():
-        if name in project.trees and name not in reached and head.span.source.name in files:
+        if name in trees and name not in reached and head.span.source.name in files:
             yield diagnostic("BT236", head.span, name=head.written or name)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from difflib import SequenceMatcher
 
 from btlang.tree.node import Node, Tree
+from btlang.tree.subtree_numbers import SubtreeNumbers
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -36,8 +37,7 @@ class Alignment:
         what counts of a node beside its id, its name and its children.
         """
         self._told = told
-        self._kinds: dict[object, int] = {}
-        self._numbers: dict[int, int] = {}  # by node; equal subtrees have the same
+        self._numbers = SubtreeNumbers(lambda node: sorted(told(node)))
         self._ranges: dict[int, tuple[int, int]] = {}  # the positions of a node and all below it
         self._positions: defaultdict[int, list[int]] = defaultdict(list)  # by number, ascending
         self._old: dict[int, Node] = {}
@@ -61,28 +61,26 @@ class Alignment:
 
     def is_equal(self, old: Node, new: Node) -> bool:
         """Whether two nodes and all that is below them are equal."""
-        return self._numbers[id(old)] == self._numbers[id(new)]
+        return self._numbers.are_equal(old, new)
 
     def _counted(self, root: Node) -> list[Node]:
         """The nodes of a tree, parents first, which get their numbers and positions."""
         nodes = list(Tree(root).walk())
         start = len(self._ranges)
         sizes: dict[int, int] = {}
+        self._numbers.add(reversed(nodes))
         for node in reversed(nodes):
-            below = tuple([self._numbers[id(child)] for child in node.children])
-            key = node.id, node.name, tuple(sorted(self._told(node))), below
-            self._numbers[id(node)] = self._kinds.setdefault(key, len(self._kinds))
             sizes[id(node)] = 1 + sum([sizes[id(child)] for child in node.children])
         for at, node in enumerate(nodes, start):
             self._ranges[id(node)] = at, at + sizes[id(node)]
-            self._positions[self._numbers[id(node)]].append(at)
+            self._positions[self._numbers[node]].append(at)
         return nodes
 
     def _pair_lists(self, waiting: list[tuple[Nodes, Nodes]]) -> None:
         """Pairs what are children of the same, and then what is below them."""
         while waiting:
             old, new = waiting.pop()
-            before, after = ([self._numbers[id(node)] for node in nodes] for nodes in (old, new))
+            before, after = self._numbers.of(old), self._numbers.of(new)
             matcher = SequenceMatcher(a=before, b=after, autojunk=False)
             for tag, first, last, begin, end in matcher.get_opcodes():
                 if tag == "equal":
@@ -140,12 +138,12 @@ class Alignment:
 
     def _shared(self, one: Node, other: Node) -> float:
         """The share of their children that both have."""
-        return _overlap(*([self._numbers[id(child)] for child in node.children] for node in (one, other)))
+        return _overlap(self._numbers.of(one.children), self._numbers.of(other.children))
 
     def _holds(self, node: Node, inner: Node) -> bool:
         """Whether something equal to `inner` stands below a node."""
         first, end = self._ranges[id(node)]
-        places = self._positions[self._numbers[id(inner)]]
+        places = self._positions[self._numbers[inner]]
         at = bisect_left(places, first + 1)
         return at < len(places) and places[at] < end
 
@@ -154,11 +152,11 @@ class Alignment:
         left: defaultdict[int, deque[Node]] = defaultdict(deque)
         for node in before:
             if id(node) not in self._new:
-                left[self._numbers[id(node)]].append(node)
+                left[self._numbers[node]].append(node)
         for new in sorted(after, key=self._size, reverse=True):
             if id(new) in self._old:
                 continue
-            same = left[self._numbers[id(new)]]
+            same = left[self._numbers[new]]
             while same:
                 old = same.popleft()
                 if id(old) not in self._new:

@@ -24,6 +24,7 @@ BEHAVIOR_TREE_CPP, NAV2, BTLANG = "BehaviorTree.CPP", "Nav2", "btlang"
 PRE_CONDITIONS = ("_failureIf", "_successIf", "_skipIf", "_while")
 POST_CONDITIONS = ("_onSuccess", "_onFailure", "_onHalted", "_post")
 """Scripts in ports that every node may have."""
+SCRIPT, KEY = "script", "key"
 
 MOST_NODES = 1_000_000
 """Of a tree with its subtrees filled in."""
@@ -36,7 +37,7 @@ class Port(Record):
 
     `default` is None where the port must be given. `least` and `most` bound the value of a number; None: they depend on
     the node's children. `unit` is "ms", "Hz", "rounds" or "time of day", "" for others. `name_3` is its name in
-    version 3.
+    version 3. `holds` is SCRIPT or KEY where its text is a script, or the name of an entry without braces.
     """
 
     type: str = ""
@@ -46,6 +47,7 @@ class Port(Record):
     unit: str = ""
     direction: str = "input"
     name_3: str = ""
+    holds: str = ""
 
 
 class NodeKind(Record):
@@ -195,13 +197,14 @@ CATALOGUE: dict[str, NodeKind] = {
         _decorator("Delay", ports={"delay_msec": _MILLISECONDS}, takes_time=True, tags_3=("Delay",)),
         _decorator("RateController", ports={"hz": Port("double", "10", unit="Hz")}, takes_time=True, origin=NAV2),
         _decorator("RunOnce", ports={"then_skip": Port("bool", "true")}),
-        _decorator("Precondition", ports={"if": Port(), "else": Port(default="FAILURE")}),
+        _decorator("Precondition", ports={"if": Port(holds=SCRIPT), "else": Port(default="FAILURE")}),
         _decorator("SkipUnlessUpdated", ports={"entry": Port()}),
         _decorator("WaitValueUpdate", ports={"entry": Port()}, takes_time=True),
         NodeKind("WasEntryUpdated", "Condition", ports={"entry": Port()}),
-        NodeKind("ScriptCondition", "Condition", ports={"code": Port()}),
-        NodeKind("Script", "Action", ports={"code": Port()}),
-        NodeKind("SetBlackboard", "Action", ports={"value": Port(), "output_key": Port()}, tags_3=("SetBlackboard",)),
+        NodeKind("ScriptCondition", "Condition", ports={"code": Port(holds=SCRIPT)}),
+        NodeKind("Script", "Action", ports={"code": Port(holds=SCRIPT)}),
+        NodeKind("SetBlackboard", "Action", ports={"value": Port(), "output_key": Port(holds=KEY)},
+                 tags_3=("SetBlackboard",)),
         NodeKind("UnsetBlackboard", "Action", ports={"key": Port()}),
         NodeKind("Sleep", "Action", ports={"msec": _MILLISECONDS}, takes_time=True, ends=("SUCCESS",),
                  is_common_name=True),
@@ -214,3 +217,11 @@ CATALOGUE: dict[str, NodeKind] = {
     )
 }  # fmt: skip
 """By id."""
+
+
+def held(node_id: str, port: str) -> str:
+    """What the text of a port is: SCRIPT, KEY, or "" for a value or a reference."""
+    if port in PRE_CONDITIONS or port in POST_CONDITIONS:
+        return SCRIPT
+    kind = CATALOGUE.get(node_id)
+    return kind.ports[port].holds if kind is not None and port in kind.ports else ""

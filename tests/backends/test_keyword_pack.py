@@ -14,7 +14,7 @@ from btlang.backends.keywords import is_unknown
 from btlang.backends.wording import SpokenPorts, phrases
 from btlang.cli import main
 from btlang.diagnostics.reading import read_source
-from btlang.frontends.btcpp.file_set import read_files
+from btlang.frontends.btcpp.files import read_files
 from btlang.frontends.btcpp.models import nav2_models
 from btlang.printer.phrase import leaf_words
 from btlang.text.source import Source
@@ -34,7 +34,9 @@ def pack_of(*sources: Source) -> KeywordPack:
     """As `btc words --from` makes it."""
     read = read_files(sources)
     vocabulary = world_vocabulary()
-    return keyword_pack(leaves_of(read.models, read.nodes(), vocabulary), vocabulary, vocabulary_with, read.place)
+    return keyword_pack(
+        leaves_of(read.models.values(), read.nodes(), vocabulary), vocabulary, vocabulary_with, read.place
+    )
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
@@ -159,7 +161,7 @@ def test_most_leaves_have_a_phrase_that_says_all_of_their_ports() -> None:
     for path in sorted((CORPUS / "team").glob("*.xml")):
         read = read_files([read_source(str(path))])
         known = world_vocabulary()
-        pack = keyword_pack(leaves_of(read.models, read.nodes(), known), known, vocabulary_with)
+        pack = keyword_pack(leaves_of(read.models.values(), read.nodes(), known), known, vocabulary_with)
         words = vocabulary_with(Source(pack.text)).with_references()
         leaves = [node for node in read.nodes() if not node.children and is_unknown(node.id, known)]
         said = [leaf_words(node.id, dict(node.ports), words, exactly=True) for node in leaves]

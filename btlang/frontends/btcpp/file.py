@@ -43,6 +43,11 @@ class TreeHead(Record):
     end: int
     span: Span
 
+    @property
+    def id(self) -> str:
+        """What SubTree nodes call it."""
+        return self.written or self.name
+
 
 class XmlFile:
     """What a document holds. `problems` is what is wrong with it; then the rest may lack parts. `warnings` tell of what

@@ -1,16 +1,21 @@
-"""XML files with the files that they include, each read once."""
+"""XML files whose trees may use each other, perhaps with the files that they include; their models count for all."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included, real_path
-from btlang.frontends.btcpp.file import XmlFile
+from btlang.frontends.btcpp.file import TreeHead, XmlFile
+from btlang.frontends.btcpp.models import subtree_defaults
 from btlang.frontends.btcpp.scan import scanned
 from btlang.text.source import Source, Span
+from btlang.tree.catalogue import SUBTREE
+from btlang.tree.model import NodeModel
+from btlang.tree.node import Node, Tree
+from btlang.tree.visit import in_order_of_use
 
 _ROS_FOLDERS = "AMENT_PREFIX_PATH"  # where ROS 2 has its packages
 
@@ -18,21 +23,83 @@ _ROS_FOLDERS = "AMENT_PREFIX_PATH"  # where ROS 2 has its packages
 class XmlFiles:
     """The files that were added, each before those that it includes; what is wrong with them, and what is only odd.
 
-    A file that is included and is one of `sources` isn't read again.
+    A file that is included and is one of `sources` isn't read again. Unless it `follows_includes`, none is read.
     """
 
-    def __init__(self, sources: Iterable[Source] = ()) -> None:
+    def __init__(self, sources: Iterable[Source] = (), *, follows_includes: bool = True) -> None:
         self._sources = {real_path(source.name): source for source in sources}
         self.files: list[XmlFile] = []
         self.problems: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
         self._read: set[str] = set()
+        self._follows_includes = follows_includes
 
     def add(self, source: Source) -> None:
         """Reads a file and what it includes, unless that is done."""
         real = real_path(source.name)
         if real not in self._read:
             self._read_file(source, (real,))
+
+    @property
+    def models(self) -> dict[str, NodeModel]:
+        """The models by the id of a node, those of the first file that has one."""
+        return {node_id: model for file in reversed(self.files) for node_id, model in file.models.items()}
+
+    @property
+    def names(self) -> dict[str, str]:
+        """The names of the trees that can be read, by the ID that other files call them; the first counts."""
+        return {head.id: head.name for file in reversed(self._sound) for head in reversed(file.heads)}
+
+    @property
+    def trees(self) -> dict[str, Node]:
+        """The trees by name, once they are read."""
+        return {name: root for file in self.files for name, root in file.trees}
+
+    @property
+    def used(self) -> set[str]:
+        """The names of the trees that others use."""
+        return {node.port("ID") for file in self.files for nodes in file.uses.values() for node in nodes}
+
+    def read_trees(self, models: Mapping[str, NodeModel]) -> dict[str, str]:
+        """Reads the trees of all files that are sound; in each, an ID means a tree of its own before others.
+
+        Returns the kinds of nodes that models and tags tell, by id.
+        """
+        kinds = {node_id: model.kind for node_id, model in models.items() if model.kind != SUBTREE}
+        names, defaults = self.names, subtree_defaults(models.values())
+        for file in self._sound:
+            own = {head.id: head.name for head in file.heads}
+            file.read_trees({**names, **own}, kinds, defaults)
+            self.problems += file.problems
+        return kinds
+
+    def nodes(self) -> Iterator[Node]:
+        """Every node of every tree."""
+        for root in (root for file in self.files for _, root in file.trees):
+            yield from Tree(root).walk()
+
+    def place(self, node_id: str) -> Span | None:
+        """The first tag that names a kind of node."""
+        for document in (file.document for file in self.files):
+            for at, (tag, *_) in enumerate(document.elements):
+                if node_id in (tag, document.attributes(at).get("ID")):
+                    return document.span(at)
+        return None
+
+    def circles(self) -> list[Diagnostic]:
+        """BT124 for each tree that contains itself."""
+        heads = {head.name: head for file in self._sound for head in file.heads}
+        uses = {
+            name: [used for node in nodes if (used := node.port("ID")) in heads]
+            for file in self.files for name, nodes in file.uses.items()
+        }  # fmt: skip
+        found = [(circle[0], " contains ".join(f"'{name}'" for name in (*circle, circle[0])))
+                 for circle in in_order_of_use(uses)[1]]  # fmt: skip
+        return [diagnostic("BT124", heads[name].span, name=name, circle=told) for name, told in found]
+
+    @property
+    def _sound(self) -> list[XmlFile]:
+        return [file for file in self.files if file.is_sound]
 
     def _read_file(self, source: Source, within: tuple[str, ...], dialect: int = 3) -> None:
         """Reads a file and what it includes; `within` are the files around it, its own last, `dialect` is theirs."""
@@ -47,7 +114,7 @@ class XmlFiles:
         file.is_sound = not file.problems
         file.problems.clear()
         self.files.append(file)
-        for attributes, span in file.includes:
+        for attributes, span in file.includes if self._follows_includes else ():
             if "path" not in attributes:
                 self.problems.append(diagnostic("BT123", span, tag="include", attribute="path", advice=""))
                 continue
@@ -86,6 +153,34 @@ class XmlFiles:
 
     def _not_included(self, span: Span, *, path: str, reason: str) -> None:
         self.problems.append(diagnostic("BT128", span, path=path, reason=reason))
+
+
+def read_files(sources: Iterable[Source]) -> XmlFiles:
+    """These files with their trees and none that they include; one may have only models. Raises MissionError (BT120 to
+    BT129), where a file has an ID twice, too: those of several files may be of several robots.
+    """
+    read = XmlFiles(follows_includes=False)
+    for source in sources:
+        read.add(source)
+    read.problems += [problem for file in read.files for problem in repeated(file.heads)]
+    if not read.problems:
+        read.read_trees(read.models)
+    if read.problems:
+        raise MissionError(read.problems)
+    return read
+
+
+def repeated(heads: Iterable[TreeHead]) -> Iterator[Diagnostic]:
+    """BT127 for trees whose name another one has."""
+    found: dict[str, TreeHead] = {}
+    for head in heads:
+        if found.setdefault(head.name, head) is not head:
+            yield same_id(head, found[head.name])
+
+
+def same_id(head: TreeHead, first: TreeHead) -> Diagnostic:
+    """BT127: a tree has the ID of an earlier one."""
+    return diagnostic("BT127", head.span, ((first.span, "the first one"),), name=head.id)
 
 
 def _package_folder(package: str) -> str | None:

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
-from btlang.frontends.btcpp.files import XmlFiles
-from btlang.frontends.btcpp.models import subtree_defaults
+from btlang.frontends.btcpp.files import XmlFiles, same_id
 from btlang.frontends.btcpp.reader import MAIN, empty_file, no_tree
 from btlang.frontends.btcpp.spelling import MAIN_TREE
 from btlang.record import Record
-from btlang.tree.catalogue import SUBTREE
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node
-from btlang.tree.visit import in_order_of_use
 
 
 class XmlProject(Record):
@@ -38,35 +35,20 @@ def read_project(read: XmlFiles, palettes: XmlFiles, main: str = "") -> XmlProje
     A tree that has the ID of one in another file is told (BT127), unless both files start with them and no tree uses
     them. `main` is the ID of a tree that must be there.
     """
-    problems = [*read.problems, *read.warnings, *palettes.problems]
-    problems += [
-        empty_file(file) for file in read.files if file.is_sound and not (file.heads or file.models or file.includes)
-    ]
     sound = [file for file in read.files if file.is_sound]
     unread = frozenset(head.written for file in read.files if not file.is_sound for head in file.heads)
     heads, again = _named(sound)
-    described = [*palettes.files, *read.files]
-    models = {node_id: model for file in described[::-1] for node_id, model in file.models.items()}
-    kinds = {node_id: model.kind for node_id, model in models.items() if model.kind != SUBTREE}
-    names = {head.written or head.name: name for name, head in reversed(heads.items())}
-    defaults = subtree_defaults(models.values())
-    for file in sound:
-        own_names = {head.written or head.name: head.name for head in file.heads}
-        file.read_trees({**names, **own_names}, kinds, defaults)
-        problems += file.problems
-    trees = {name: root for file in sound for name, root in file.trees}
-    uses = {name: [node.port("ID") for node in nodes] for file in sound for name, nodes in file.uses.items()}
+    models = {**read.models, **palettes.models}
+    read.read_trees(models)
+    names, trees, used = read.names, read.trees, read.used
+    circles = read.circles()
+    problems = [*read.problems, *read.warnings, *palettes.problems, *circles]
+    problems += [empty_file(file) for file in sound if not (file.heads or file.models or file.includes)]
     mains = frozenset(own for file in sound if (own := _main_of(file, names)) in trees)
-    used = {name for inner in uses.values() for name in inner}
     for name, first in again.items():
         if not {name, first} <= mains or not used.isdisjoint((name, first)):
-            note = ((heads[first].span, "the first one"),)
-            problems.append(diagnostic("BT127", heads[name].span, note, name=heads[name].written))
-    circles = in_order_of_use({name: [each for each in inner if each in trees] for name, inner in uses.items()})[1]
-    for circle in circles:
-        told = " contains ".join(f"'{name}'" for name in (*circle, circle[0]))
-        problems.append(diagnostic("BT124", heads[circle[0]].span, name=circle[0], circle=told))
-    known = {*names, *trees, *unread}
+            problems.append(same_id(heads[name], heads[first]))
+    known = dict.fromkeys((*names, *trees, *unread))  # those that are listed stay the same
     for file in sound:
         asked = main or file.attributes.get(MAIN, "")
         if asked and asked not in known:

@@ -8,17 +8,16 @@ from collections.abc import Collection, Sequence
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
-from btlang.frontends.btcpp.files import XmlFiles
+from btlang.frontends.btcpp.files import XmlFiles, repeated
 from btlang.frontends.btcpp.kept import digest_of
-from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models, subtree_defaults
+from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models
 from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.btcpp.spelling import MAIN_TREE, MODEL, TO_4
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
-from btlang.tree.catalogue import CATALOGUE, SUBTREE
+from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
-from btlang.tree.visit import in_order_of_use
 
 _NO_NODES = CATALOGUE.keys() | TO_4.keys() | {"root", "BehaviorTree", MODEL, *MODEL_KINDS}
 """Tags that are no ids of nodes that somebody made."""
@@ -38,79 +37,54 @@ def read_xml(source: Source, main: str = "") -> Tree:
 class _Reader:
     def __init__(self, main: str) -> None:
         self._main = main
-        self._problems: list[Diagnostic] = []
-        self._files: list[XmlFile] = []
+        self._read = XmlFiles()
 
     def read(self, source: Source) -> Tree:
-        found = XmlFiles()
-        found.add(source)
-        self._problems, self._files = found.problems, found.files
+        read = self._read
+        read.add(source)
         self._stop_where_wrong()
-        file = self._files[0]
-        heads = self._distinct()
-        names = {head.written or head.name: name for name, head in heads.items()}
+        file = read.files[0]
+        heads = [head for each in read.files for head in each.heads]
+        read.problems += repeated(heads) if heads else [empty_file(file)]
+        self._stop_where_wrong()
         # what a file tells counts for more than what those tell that it includes
-        models = {node_id: model for each in self._files[::-1] for node_id, model in each.models.items()}
-        kinds = {node_id: model.kind for node_id, model in models.items() if model.kind != SUBTREE}
-        defaults = subtree_defaults(models.values())
+        models = read.models
+        kinds = read.read_trees(models)
+        trees = read.trees
+        read.problems += read.circles()
+        main = self._main_tree(trees, {head.name: head for head in heads})
         self._stop_where_wrong()
-        for each in self._files:
-            each.read_trees(names, kinds, defaults)
-            self._problems += each.problems
-        trees = dict(tree for each in self._files for tree in each.trees)
-        self._check_uses(trees, heads)
-        main = self._main_tree(trees, heads, names)
-        self._stop_where_wrong()
-        is_usual = main == MAIN_TREE or not heads[main].written
+        written = {head.name: head.written for head in heads}
+        is_usual = main == MAIN_TREE or not written[main]
         subtrees = tuple(tree for tree in trees.items() if tree[0] != main)
-        tree = Tree(trees[main], subtrees, "" if is_usual else main, tuple(_known(models, kinds, trees, self._files)))
-        asked = (heads[main].written or main) if self._main else ""
-        return tree.replace(origin=_origin(file, tree, asked), warnings=tuple(found.warnings))  # type: ignore[no-any-return]
+        tree = Tree(trees[main], subtrees, "" if is_usual else main, tuple(_known(models, kinds, trees, read.files)))
+        asked = (written[main] or main) if self._main else ""
+        return tree.replace(origin=_origin(file, tree, asked), warnings=tuple(read.warnings))  # type: ignore[no-any-return]
 
     def _stop_where_wrong(self) -> None:
-        if self._problems:
-            raise MissionError(self._problems)
+        if self._read.problems:
+            raise MissionError(self._read.problems)
 
-    def _distinct(self) -> dict[str, TreeHead]:
-        """The trees by name; a name that stands twice is wrong."""
-        heads: dict[str, TreeHead] = {}
-        for file in self._files:
-            for head in file.heads:
-                first = heads.setdefault(head.name, head)
-                if first is not head:
-                    note = ((first.span, "the first one"),)
-                    self._problems.append(diagnostic("BT127", head.span, note, name=head.name))
-        if not heads:
-            self._problems.append(empty_file(self._files[0]))
-        return heads
-
-    def _main_tree(self, trees: dict[str, Node], heads: dict[str, TreeHead], names: dict[str, str]) -> str:
+    def _main_tree(self, trees: dict[str, Node], heads: dict[str, TreeHead]) -> str:
         """The name of the main tree; anything where none can be told."""
-        file = self._files[0]
+        read = self._read
+        file = read.files[0]
         asked = self._main or file.attributes.get(MAIN, "")
-        name = names.get(asked, asked)
+        name = read.names.get(asked, asked)
         if name in trees:
             return name
         if asked:
-            self._problems.append(no_tree(file.root_span, asked, trees))
+            read.problems.append(no_tree(file.root_span, asked, trees))
             return ""
         if len(trees) == 1 or MAIN_TREE in trees:
             return MAIN_TREE if MAIN_TREE in trees else next(iter(trees))
-        used = {node.port("ID") for each in self._files for nodes in each.uses.values() for node in nodes}
+        used = read.used
         tops = [name for name in trees if name not in used] or list(trees)
         if len(tops) > 1:
             listed = ", ".join(f"'{name}'" for name in tops)
             places = tuple((heads[name].span, "this may be it") for name in tops[:5])
-            self._problems.append(diagnostic("BT125", file.root_span, places, names=listed, first=tops[0]))
+            read.problems.append(diagnostic("BT125", file.root_span, places, names=listed, first=tops[0]))
         return tops[0]
-
-    def _check_uses(self, trees: dict[str, Node], heads: dict[str, TreeHead]) -> None:
-        """None may contain itself. One that is not there may stand in another file, as Nav2's do."""
-        named = {name: nodes for each in self._files for name, nodes in each.uses.items()}
-        uses = {name: [used for node in nodes if (used := node.port("ID")) in trees] for name, nodes in named.items()}
-        for circle in in_order_of_use(uses)[1]:
-            told = " contains ".join(f"'{name}'" for name in (*circle, circle[0]))
-            self._problems.append(diagnostic("BT124", heads[circle[0]].span, name=circle[0], circle=told))
 
 
 def empty_file(file: XmlFile) -> Diagnostic:
