@@ -18,7 +18,7 @@ from btlang.record import Record
 from btlang.text.output import show
 from btlang.text.source import Source, Span
 from btlang.text.words import split
-from btlang.tree.ast import Fact, Program, all_facts, exact_nodes
+from btlang.tree.ast import Fact, Program, all_facts, says_ports
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.cache import cached, recent
 from btlang.vocabulary.entry import Entry
@@ -314,7 +314,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
     @property
     def says_ids(self) -> bool:
         """Whether it may name unknown nodes: it wasn't a mission, or it names nodes by their ids."""
-        return self.syntax is None or bool(exact_nodes(self.syntax))
+        return self.syntax is None or says_ports(self.syntax)
 
     def _described(self, node: Node) -> str:
         from btlang.tree.dump import described

@@ -170,6 +170,7 @@ _ALL = (
     Code("BT136", "{path} has changed since this mission was made from it.", "{advice}"),
     Code("BT141", "I can't read on at '{words}': {wanted} is needed.", "Write for example: do \"OpenGripper\" with width 0.05"),
     Code("BT142", "English can't express this tree: {reason}."),
+    Code("BT143", "I can't read which values the mission is given in '{words}'.", "Name each in braces, for example: {example}"),
     Code("BT150", "'{words}' doesn't fit here: {reason}.", "Write for example: {example}"),
     Code("BT151", "'{words}' can be read in two ways.", "Write what you mean: {one}\nOr: {other}"),
     Code("BT152", "'{words}' doesn't fit here: {reason}.", "{advice}"),

@@ -42,19 +42,26 @@ def lower_names(compilation: Compilation) -> Iterator[Diagnostic]:
         yield diagnostic("BT005", mission.span, example=example)
         return
     root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, scope).node
-    exact = [node for body in ast.bodies(mission) for node in compilation.syntax(body) if isinstance(node, ast.Exact)]
-    models = _models(exact, compilation.vocabulary)
+    said = [node for body in ast.bodies(mission) for node in compilation.syntax(body)]
+    models = _models(
+        [node for node in said if isinstance(node, ast.Exact)],
+        [node for node in said if isinstance(node, ast.Phrase) and node.outputs],
+        compilation.vocabulary,
+    )
     compilation.tree = Tree(root, tuple(scope.bodies), mission.name, models, mission.span.source)
 
 
-def _models(exact: Sequence[ast.Exact], vocabulary: Lexicon) -> tuple[NodeModel, ...]:
-    """What a mission says of leaves by their ids: what they are, and the ports that they give values to."""
+def _models(exact: Sequence[ast.Exact], phrases: Sequence[ast.Phrase], vocabulary: Lexicon) -> tuple[NodeModel, ...]:
+    """What a mission says of leaves: what those by their ids are, and the ports that they give values to."""
     known = {node.id for node in exact if node.items} | vocabulary.nodes.keys()
     outputs: dict[str, dict[str, None]] = {}
     for node in exact:
         if node.is_condition or (node.id not in known and vocabulary.entry(node.id) is None):
             outputs.setdefault(node.id, {}).update(dict.fromkeys(node.outputs))
     conditions = {node.id for node in exact if node.is_condition}
+    for phrase in phrases:
+        outputs.setdefault(phrase.entry.id, {}).update(dict.fromkeys(phrase.outputs))
+        conditions.update([phrase.entry.id] if phrase.entry.sort == "condition" else ())
     return tuple(
         NodeModel(
             "Condition" if node_id in conditions else "Action", node_id, tuple(PortModel(p, "output") for p in ports)
@@ -95,14 +102,14 @@ def _negated(negated: bool, condition: Node) -> Node:
 def _phrase(item: ast.Phrase, _done: list[Lowered], scope: Scope) -> Lowered:
     """A value that is the slot's default says nothing."""
     if not item.arguments:
-        return Lowered(Node(item.entry.id, (), (), "", item.span))
+        return Lowered(Node(item.entry.id, (), item.ports, item.name, item.span))
     defaults = {slot.name: slot.default for slot in item.entry.slots}
     spoken = [port for port in item.arguments if defaults.get(port[0]) != port[1]]
     if len(spoken) > 1:
         order = list(defaults)
         spoken.sort(key=lambda port: order.index(port[0]))
     scripts, ports = prepared(spoken, scope)
-    return Lowered(behind(scripts, Node(item.entry.id, (), ports, span=item.span)))
+    return Lowered(behind(scripts, Node(item.entry.id, (), ports + item.ports, item.name, item.span)))
 
 
 def _name(item: ast.Name, _done: list[Lowered], scope: Scope) -> Lowered:

@@ -1,4 +1,4 @@
-"""Nodes that no phrase says, by their ids: `do open gripper called "first" with width 0.05, speed 2`, `do "Move_To"`.
+"""Nodes with ports that no phrase says: `go to the lab with speed 2`, `do open gripper called "first" with width 0.05`.
 
 What is said is read back as it stands, by btlang/frontends/mission/symbols/nodes.py.
 """
@@ -8,13 +8,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-from btlang.printer.pieces import COLON, Pieces, mark
+from btlang.printer.pieces import COLON, LEAF, Piece, Pieces, mark
 from btlang.printer.printer import WHOLE, Doc, Printer
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
 from btlang.tree.catalogue import SUBTREE
-from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.lexicon import DEFINING, Lexicon
 from btlang.vocabulary.node_words import id_of_name, is_port, said_id, subtree_named
 from btlang.vocabulary.trie import longest
 
@@ -42,15 +42,27 @@ def exact_block(node: ast.Exact, printer: Printer) -> Iterator[tuple[Pieces, Ite
 
 def node_head(node: ast.Exact, printer: Printer) -> str:
     """The node with its name and its ports, without its children."""
-    vocabulary, ports = printer.vocabulary, dict(node.ports)
-    head = _head(node, ports, printer)
+    ports = dict(node.ports)
+    return _head(node, ports, printer) + _details(node, ports, printer)
+
+
+def phrase(node: ast.Phrase, _parts: list[Doc], printer: Printer) -> Doc:
+    """Words of a keyword entry, and behind them what they don't say of the node."""
+    words = Piece(printer.phrase(node.entry.id, node.arguments) or node.span.text, LEAF)
+    details = _details(node, dict(node.ports), printer, is_phrase=True)
+    return Doc((words, mark(details.lstrip())) if details else (words,), WHOLE)
+
+
+def _details(node: ast.Exact | ast.Phrase, ports: dict[str, str], printer: Printer, *, is_phrase: bool = False) -> str:
+    """` called "first" with width 0.05 giving {path}`, "" where nothing of that is to be said."""
+    vocabulary, head = printer.vocabulary, ""
     if node.name:
         head += f" {vocabulary.word('called')} {quoted(node.name, vocabulary)}"
     gives = {key: ports.pop(key) for key in node.outputs if _KEY.fullmatch(ports.get(key, ""))}
-    head += _ports("with", ports, printer)
+    head += _ports("with", ports, printer, is_phrase=is_phrase)
     if [f"{{{key}}}" for key in gives] == [*gives.values()] and len(gives) == 1:
         return f"{head} {vocabulary.word('giving')} {''.join(gives.values())}"
-    return head + _ports("giving", gives, printer)
+    return head + _ports("giving", gives, printer, is_phrase=is_phrase)
 
 
 def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
@@ -85,12 +97,17 @@ def _in_words(node_id: str, subtree: str, role: str, printer: Printer) -> str:
     return said if not names or all(longest(names, text, at, context) is None for at in places) else ""
 
 
-def _ports(role: str, ports: Mapping[str, str], printer: Printer) -> str:
-    """`with width 0.05, speed 2`; the word again where a name behind a comma would be read as a command."""
+def _ports(role: str, ports: Mapping[str, str], printer: Printer, *, is_phrase: bool) -> str:
+    """`with width 0.05, speed 2`; the word again where a name behind a comma would be read as a command.
+
+    Behind a phrase a word that defines is in quotes: the line would be a definition.
+    """
     vocabulary, said = printer.vocabulary, ""
+    defining = [word for define in DEFINING for word in vocabulary.roles[define]]
     for name, text in ports.items():
         key = name if _IDENTIFIER.fullmatch(name) else quoted(name, vocabulary)
-        key = name.replace("_", " ") if _is_words(name, vocabulary) else key
+        defines = is_phrase and any(define in name.split("_") for define in defining)
+        key = name.replace("_", " ") if _is_words(name, vocabulary) and not defines else key
         value = text if _BARE.fullmatch(text) else quoted(text, vocabulary)
         begin = split(Source(f"{key} {value}"), vocabulary.orthography)
         is_free = said and is_port(

@@ -34,9 +34,22 @@ def mission_lines(mission: ast.Program, printer: Printer, width: float = math.in
         yield f"{printer.word(role).text} {quoted(path, printer.vocabulary)}"
     if mission.name:
         yield f"{printer.word('main_name').text} {quoted(mission.name, printer.vocabulary)}"
+    yield from given_lines(mission.given, printer.word("given").text, width)
     named = (*mission.includes, *mission.facts, *mission.definitions)
     for part, joined in [*((part, "") for part in named), *statements(mission.body)]:
         yield from lines_of(part, printer, width, joined)
+
+
+def given_lines(keys: Iterable[str], word: str, width: float) -> Iterator[str]:
+    """`this mission is given {goal}, {path}`, in lines of at most so many columns where a name fits."""
+    line = ""
+    for key in keys:
+        if line and len(line) + len(key) + 4 > width:
+            yield line
+            line = ""
+        line = f"{line}, {{{key}}}" if line else f"{word} {{{key}}}"
+    if line:
+        yield line
 
 
 def printer_of(mission: ast.Program, vocabulary: Lexicon, brackets: str = "needed") -> Printer:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from btlang.printer import naming
-from btlang.printer.exact import exact
+from btlang.printer.exact import exact, phrase
 from btlang.printer.pieces import COMMA, LEAF, Piece, Pieces, mark
 from btlang.printer.printer import AND, FORM, LOOSE, OR, THEN, WHOLE, Doc, Printer, bracketed
 from btlang.tree import ast
@@ -39,10 +39,6 @@ def statements(body: ast.Ast | None) -> Iterator[tuple[ast.Ast, str]]:
 
 def _leaf(text: str) -> Doc:
     return Doc((Piece(text, LEAF),), WHOLE)
-
-
-def _phrase(node: ast.Phrase, _parts: list[Doc], printer: Printer) -> Doc:
-    return _leaf(printer.phrase(node.entry.id, node.arguments) or node.span.text)
 
 
 def _name(node: ast.Name, _parts: list[Doc], printer: Printer) -> Doc:
@@ -220,7 +216,7 @@ def _single(role: str) -> Callable[[Any, list[Doc], Printer], Doc]:
 
 
 PRINTERS: dict[type[ast.Ast], Callable[[Any, list[Doc], Printer], Doc]] = {
-    ast.Phrase: _phrase,
+    ast.Phrase: phrase,
     ast.Name: _name,
     ast.Compared: naming.compared,
     ast.Assign: naming.assign,

@@ -34,11 +34,17 @@ class Ast(Record):
 
 
 class Phrase(Ast):
-    """A phrase of a keyword file; `arguments` are (slot, port text) in the order spoken."""
+    """A phrase of a keyword file; `arguments` are (slot, port text) in the order spoken.
+
+    The name of the node and its further `ports` are as they stand, as in Exact.
+    """
 
     entry: Entry
     arguments: tuple[tuple[str, str], ...]
     span: Span
+    name: str = ""
+    ports: tuple[tuple[str, str], ...] = ()
+    outputs: tuple[str, ...] = ()
 
 
 class Name(Ast):
@@ -342,8 +348,8 @@ class Program(Ast):
     """A whole text: the sequence of its commands (None where there are none), its definitions and facts in order.
 
     `name` is that of its tree, "" where it has none. `needs` are the roles and paths of lines that name what it needs,
-    such as ("needs_world", "museum.toml"). `all_definitions` and `all_facts` also give those of what it
-    includes.
+    such as ("needs_world", "museum.toml"), `given` the keys of values that come from outside. `all_definitions` and
+    `all_facts` also give those of what it includes.
     """
 
     body: Ast | None
@@ -353,6 +359,7 @@ class Program(Ast):
     includes: tuple[Include, ...] = ()
     name: str = ""
     needs: tuple[tuple[str, str], ...] = ()
+    given: tuple[str, ...] = ()
     parts = ("body", "definitions")
 
 
@@ -409,6 +416,12 @@ def bodies(mission: Program) -> list[Ast]:
 def exact_nodes(mission: Program) -> list[Exact]:
     """The nodes that a mission and its definitions say by their ids."""
     return [node for body in bodies(mission) for node in parents_first(body) if type(node) is Exact]
+
+
+def says_ports(mission: Program) -> bool:
+    """Whether a node or port is said by its name: nothing has checked that there is such a one."""
+    nodes = (node for body in bodies(mission) for node in parents_first(body))
+    return any(type(node) is Exact or (type(node) is Phrase and node.ports) for node in nodes)
 
 
 def keys_of(node: Ast) -> list[str]:

@@ -26,7 +26,7 @@ GOES_ON = frozenset((
 
 NO_PHRASES = frozenset((
     "define_strong", "define", "fact", "facing", "set_to", "by", "remember_as", "each_in",
-    "called", "with", "giving", "node", "newline", "character", "main_name", "here",
+    "called", "with", "giving", "node", "newline", "character", "main_name", "given", "here",
     "needs_world", "needs_words", "all_names", "except", "nearest", "random", "largest", "smallest",
 ))  # fmt: skip
 """Roles whose words are looked for where definitions, facts and nodes are, and nowhere else."""
@@ -43,7 +43,7 @@ _NO_SLOT = (
     "in_parallel", "in_order",
     "define_strong", "define", "fact", "facing",
     "set", "set_to", "increase", "decrease", "by", "remember", "remember_as", "each", "each_in", "include",
-    "do", "test", "called", "with", "giving", "node", "newline", "character", "main_name",
+    "do", "test", "called", "with", "giving", "node", "newline", "character", "main_name", "given",
     "needs_world", "needs_words", "all_names", "except", "nearest", "random", "largest", "smallest",
 )  # fmt: skip
 ROLES = {

@@ -79,7 +79,7 @@ class ReadingContext:
 
     def any(self, text: Words, at: int) -> tuple[tuple[str, ...], str, int] | None:
         """A value of any type: the types that it can be, its port text, and where it ends."""
-        reference = self._reference(text, at)
+        reference = self.reference(text, at)
         if reference is not None and self.known and reference[0] in self.known:
             return self.known[reference[0]].kinds, f"{{{reference[0]}}}", reference[1]
         chosen = self.choice(text, at)
@@ -106,7 +106,7 @@ class ReadingContext:
 
     def named(self, text: Words, at: int) -> tuple[Known | None, int] | None:
         """The value that the mission names at a place, None for an unknown one in braces, and where its name ends."""
-        reference = self._reference(text, at)
+        reference = self.reference(text, at)
         if reference is not None:
             known = self.known.get(reference[0]) if self.known else None
             return known, reference[1] if known is not None else at + 1
@@ -114,7 +114,7 @@ class ReadingContext:
 
     def _known(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """A value that the mission names: in braces, or bare where no text is wanted and no name is longer."""
-        reference = self._reference(text, at)
+        reference = self.reference(text, at)
         if reference is not None:
             key, end = reference
             if self.known is None or (key in self.known and self._fits(kind, self.known[key])):
@@ -148,8 +148,9 @@ class ReadingContext:
         """A name from the list of a type, unquoted."""
         return find(self.values.names_tree(kind), text.words, at) if self.types[kind].kind == "names" else None
 
-    def _reference(self, text: Words, at: int) -> tuple[str, int] | None:
-        """The key of a name in braces, and where it ends."""
+    @staticmethod
+    def reference(text: Words, at: int) -> tuple[str, int] | None:
+        """The key of a name in braces at a place, and where it ends; None for anything else."""
         words = text.words
         if words[at] != "{":
             return None
@@ -157,6 +158,13 @@ class ReadingContext:
         while words[end][0].isalnum() or words[end][0] == "_":
             end += 1
         return (key_of(words[at + 1 : end]), end + 1) if end > at + 1 and words[end] == "}" else None
+
+    def is_untyped(self, text: Words, at: int) -> bool:
+        """Whether a name in braces stands at a place that any slot takes."""
+        found = self.reference(text, at) if self.known != {} else None
+        if found is None or self.known is None:
+            return found is not None
+        return found[0] in self.known and not self.known[found[0]].kinds
 
     def _chosen(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """What is chosen of the type, to be put into a key; without a text where there is no name."""

@@ -96,6 +96,11 @@ def keys_in(text: str) -> Iterator[str]:
             yield from (piece.key for piece in pieces(text) if isinstance(piece, Reference))
 
 
+def keys_set_in(text: str) -> list[str]:
+    """The keys that a script sets, if a port text is one: `x := 1; y := x`."""
+    return re.findall(r"([A-Za-z]\w*)\s*:=", text) if ":=" in text else []
+
+
 def renamed(text: str, key: Callable[[str], str]) -> str:
     """The same text with each name in braces replaced by its key."""
     return re.sub(_PIECE, lambda match: f"{{{key(match['name'])}}}" if match["name"] is not None else match[0], text)

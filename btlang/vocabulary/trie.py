@@ -97,7 +97,7 @@ def longest(
     found: tuple[SlotValue, ...] = (),
 ) -> Match | None:
     """The longest phrase at a word; where two are equally long, the one with words in place of slots, or with a name in
-    place of a text.
+    place of a text. A value that can be of any type is one of the type that the vocabulary has first.
 
     `found` are the values that have led to the root. A slot of an entry also takes a list of values, unless `lists` is
     False. It ends before a phrase, also before one in the trie `names`, in which connectives are looked for too.
@@ -121,7 +121,11 @@ def longest(
                     best, best_last, best_values = meaning, i, found
             if SLOTS in node:
                 plain = word.isalpha() or word in _MARKS
-                for name, kind, child in node[SLOTS]:
+                edges = node[SLOTS]
+                if word == "{" and context.is_untyped(text, i):
+                    others = (edge for edge in reversed(edges) if edge[1] != TEXT)
+                    edges = [*(edge for edge in edges if edge[1] == TEXT), *others]
+                for name, kind, child in edges:
                     if plain and kind in openers and word not in openers[kind]:
                         continue  # as nearly always, without reading
                     value = context.read(kind, text, i)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from btlang.record import Record
 
 TEXT = "text"
@@ -47,6 +49,11 @@ class ValueType(Record):
         if self.kind == "names":
             return self.names[0] if self.names else self.name
         return {"text": '"hello"', "time": "6 pm"}.get(self.kind, "3")
+
+
+def number_type(types: Mapping[str, ValueType]) -> str:
+    """The type of plain numbers."""
+    return next(kind for kind, one in types.items() if one.kind == "number" and not one.whole)
 
 
 def format_number(value: float) -> str:

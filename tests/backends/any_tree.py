@@ -59,6 +59,13 @@ _VALUES = (
     ("GoToPerson", (("person", "{who}"),)),
     ("Sleep", (("msec", "{count}"),)),
     ("WaitForTime", (("time", "{goal}"),)),
+    ("GoTo", (("place", "{charging_spot}"),)),
+    ("GoTo", (("place", "{My.Key}"),)),
+    ("GoTo", (("place", "{Goal}"),)),
+    ("Wave", (("person", "{charging_spot}"),)),
+    ("TurnLeft", (("angle", "{a}"),)),
+    ("MoveForward", (("distance", "{gap}"), ("speed", "{limit}"))),
+    ("DistanceToPlace", (("place", "{goal}"), ("below", "{gap}"))),
 )
 _COMPUTED = (
     (("_1 := 'a ' .. count",), "Say", "text"),
@@ -117,11 +124,12 @@ def leaves(subtrees: Sequence[str]) -> st.SearchStrategy[Node]:
     plain = known.map(lambda leaf: Node(leaf[0], (), leaf[1]))
     own = st.builds(Node, st.sampled_from(_OWN_LEAVES), st.just(()), _ports, _names)
     valued = st.sampled_from(_VALUES).map(lambda leaf: Node(leaf[0], (), leaf[1]))
+    detailed = st.builds(_detailed, st.sampled_from([*_PHRASES, *_CONDITIONS, *_VALUES]), _ports, _names)
     prepared = st.sampled_from(_COMPUTED).map(_computed)
     built_in = [node_id for node_id, (_, most) in SHAPES.items() if not most and node_id != SUBTREE]
     odd = st.builds(Node, st.sampled_from(built_in), st.just(()), _ports, _names)
     if not subtrees:
-        return st.one_of(plain, plain, valued, valued, prepared, own, odd)
+        return st.one_of(plain, plain, valued, valued, detailed, prepared, own, odd)
     uses = st.builds(
         lambda name, ports: Node("SubTree", (), (("ID", name), *(p for p in ports if p[0] != "ID"))),
         st.sampled_from(list(subtrees)),
@@ -130,7 +138,12 @@ def leaves(subtrees: Sequence[str]) -> st.SearchStrategy[Node]:
     given = st.dictionaries(st.sampled_from(["who", "stop", "n", "count"]), st.sampled_from(_GIVEN), max_size=2)
     filled = st.builds(_use, st.sampled_from(list(subtrees)), given)
     loop = st.lists(filled, min_size=2, max_size=3).map(lambda rounds: Node("Sequence", tuple(rounds)))
-    return st.one_of(plain, plain, valued, valued, prepared, own, odd, uses, filled, filled, loop)
+    return st.one_of(plain, plain, valued, valued, detailed, prepared, own, odd, uses, filled, filled, loop)
+
+
+def _detailed(leaf: tuple[str, tuple[tuple[str, str], ...]], ports: tuple[tuple[str, str], ...], name: str) -> Node:
+    """A leaf that words say, with a name and with ports that they don't say."""
+    return Node(leaf[0], (), tuple((dict(ports) | dict(leaf[1])).items()), name)
 
 
 def _computed(made: tuple[tuple[str, ...], str, str]) -> Node:

@@ -30,7 +30,7 @@ from btlang.vocabulary.value_type import Unit, ValueType
 
 GOOD = Path(__file__).parents[1] / "samples" / "good"
 # What a mission includes is in English; ids and ports of nodes, and the attribute `name`, are so in every language.
-SAMPLES = sorted(path for path in GOOD.glob("*.txt") if path.stem not in ("includes", "nodes", "called_name"))
+SAMPLES = sorted(path for path in GOOD.glob("*.txt") if path.stem not in ("includes", "nodes", "called_name", "given"))
 _TYPES = re.compile(r"(?<![a-z])(cynpr|crefba|bowrpg|grkg|pbhag)(?![a-z])")
 
 

@@ -104,9 +104,10 @@ class Uses:
 
     def _model(self, node_id: str) -> NodeModel:
         model = self._known.get(node_id)
-        if model is None or model.kind not in KINDS:
+        if model is None or model.kind not in KINDS or not self._is_described(node_id):
+            outputs = model.ports if model is not None and model.kind in KINDS else ()
             entries = self._vocabulary.entries.get(node_id, [])
-            ports = [port for entry in entries for port in self._entry_ports(entry)]
+            ports = [*outputs, *(port for entry in entries for port in self._entry_ports(entry))]
             built_in = CATALOGUE.get(node_id)
             text = entries[0].help if entries else built_in.text if built_in is not None else ""
             model = NodeModel(self.kind(node_id), node_id, tuple({port.name: port for port in ports}.values()), text)

@@ -19,13 +19,14 @@ from btlang.printer.phrase import leaf_words
 from btlang.printer.printer import Printer
 from btlang.printer.sentence import PRINTERS
 from btlang.record import Record
-from btlang.text.source import NOWHERE
+from btlang.text.source import NOWHERE, Source
+from btlang.text.words import split
 from btlang.tree import ast
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
-from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.trie import longest
 
 _ASKING = frozenset((
     "Sequence", "Fallback", "ReactiveSequence", "ReactiveFallback", "IfThenElse", "WhileDoElse", "Whenever", "Inverter",
@@ -142,7 +143,7 @@ class Lifter:
             made: ast.Ast = ast.Check(condition, NOWHERE)
         else:
             items = tuple(child.command for child in children)
-            made = ast.Exact(node.id, node.ports, node.name, items, False, NOWHERE, self._given(node))
+            made = ast.Exact(node.id, node.ports, node.name, items, False, NOWHERE, self._given(node, node.ports))
         assert self._checked.says(made, node)
         return made
 
@@ -173,7 +174,7 @@ class Lifter:
     ) -> tuple[ast.Ast | None, tuple[Candidate, ...]]:
         """None where no form means just this node; and the parts that are said in it."""
         children = ways[-1][1]
-        if not self._natural or node.name:
+        if not self._natural:
             return None, children
         for way, inner in ways:
             self._checked.texts = way.texts
@@ -183,7 +184,9 @@ class Lifter:
         return None, children
 
     def _forms(self, node: Node, children: tuple[Candidate, ...], condition: ast.Ast | None) -> Iterator[ast.Ast]:
-        """The commands that may say a node, the most natural first."""
+        """The commands that may say a node, the most natural first; only a phrase takes a name."""
+        if node.name and (children or node.id not in self._vocabulary.entries):
+            return
         form = INVERSE_RULES.get(node.id)
         if form is not None:
             yield from form(node, children, self._checked)
@@ -203,7 +206,7 @@ class Lifter:
             yield from self._phrase(node, "action")
 
     def _condition(self, node: Node, ways: list[tuple[Computed, tuple[Candidate, ...]]]) -> ast.Ast | None:
-        if self._natural and not node.name:
+        if self._natural and not (node.name and node.children):
             for way, inner in ways:
                 self._checked.texts = way.texts
                 for made in self._condition_forms(way.node, inner):
@@ -234,14 +237,14 @@ class Lifter:
         """None for what is no condition, or not known to be one: read again it would be one everywhere."""
         if self._kind(node.id) != "Condition" and not _asks(node):
             return None
-        made = ast.Exact(node.id, node.ports, node.name, (), True, NOWHERE, self._given(node))
+        made = ast.Exact(node.id, node.ports, node.name, (), True, NOWHERE, self._given(node, node.ports))
         assert self._checked.says(made, node)
         return made
 
-    def _given(self, node: Node) -> tuple[str, ...]:
-        """The ports of a leaf that its model says it gives values to."""
+    def _given(self, node: Node, ports: tuple[tuple[str, str], ...]) -> tuple[str, ...]:
+        """The ports of a leaf, of these, that its model says it gives values to."""
         outputs = self._outputs.get(node.id, ()) if not node.children else ()
-        return tuple(name for name, _ in node.ports if name in outputs)
+        return tuple(name for name, _ in ports if name in outputs)
 
     def _is_condition(self, node: Node, children: tuple[Candidate, ...]) -> bool:
         if node.children:
@@ -270,15 +273,28 @@ class Lifter:
     def _phrase(self, node: Node, sort: str) -> Iterator[ast.Ast]:
         """The phrases that are read back as this leaf."""
         for entry in self._vocabulary.entries.get(node.id, ()):
-            said = texts_of(node.ports, self._checked) if entry.sort == sort else None
-            if said is not None and self._words(node.id, dict(said), entry):
-                yield ast.Phrase(entry, said, NOWHERE)
+            defaults = {slot.name: slot.default for slot in entry.slots}
+            spoken = [port for port in node.ports if port[0] in defaults and defaults[port[0]] != port[1]]
+            ports = tuple(port for port in node.ports if port not in spoken)
+            said = texts_of(spoken, self._checked) if entry.sort == sort else None
+            words = self._words(node.id, dict(said)) if said is not None else ""
+            if words and (not (node.name or ports) or self._ends(words)):
+                yield ast.Phrase(entry, said or (), NOWHERE, node.name, ports, self._given(node, ports))
 
-    def _words(self, node_id: str, texts: Mapping[str, str], entry: Entry) -> str:
-        slots = {slot.name for slot in entry.slots}
-        if not texts.keys() <= slots:
-            return ""
+    def _words(self, node_id: str, texts: Mapping[str, str]) -> str:
         return leaf_words(node_id, texts, self._checked.around.vocabulary, self.printer.names, exactly=True)
+
+    def _ends(self, words: str) -> bool:
+        """Whether a phrase ends where `called` or `with` stands behind it."""
+        vocabulary = self._checked.around.vocabulary
+        last = len(split(Source(words), vocabulary.orthography).words) - 2
+        for role in ("called", "with", "giving"):
+            text = split(Source(f"{words} {vocabulary.word(role)}"), vocabulary.orthography)
+            for trie in (vocabulary.trie, self.printer.names):
+                match = longest(trie, text, 0, vocabulary.context) if trie else None
+                if match is not None and match.last > last:
+                    return False
+        return True
 
 
 def _first_line(said: ast.Ast) -> ast.Ast:

@@ -12,32 +12,41 @@ from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
+from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Tree
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.references import keys_set_in
 
 
 class Refused(Record):
-    """What turned out not to be said naturally: names of subtrees, and keys of values of the whole mission."""
+    """What turned out not to be said naturally: names of subtrees, and keys of values of the whole mission.
+
+    `unset` are keys of which nothing that is said sets a value, though a node does.
+    """
 
     names: Set[str] = frozenset()
     keys: Set[str] = frozenset()
+    unset: Set[str] = frozenset()
 
 
 class Names:
     """`names` are the subtrees that are said as phrases, `loops` those that are bodies of `for each`.
 
-    With `values` False there are no loops and no parameters, and no value has a name. With `sure` no name has a
-    parameter whose type hangs on where it is used first.
+    With `values` False there are no loops and no parameters, and values are only given to the mission; without `given`
+    no value has a name, either. With `sure` no name has a parameter whose type hangs on where it is used first.
     """
 
-    def __init__(self, tree: Tree, vocabulary: Lexicon, refused: Refused, *, values: bool, sure: bool = False) -> None:
-        self._values = values
+    def __init__(
+        self, tree: Tree, vocabulary: Lexicon, refused: Refused, *, values: bool, given: bool, sure: bool = False
+    ) -> None:
+        self._given = given
         named = [name for name, _ in tree.subtrees if name not in refused.names and is_phrase(name, vocabulary)]
         self.names = frozenset(name for name in named if values or not parameters(name))
         self.loops: dict[int, Loop] = find_loops(tree, refused.names | self.names) if values else {}
-        self._kinds = TypeInference(vocabulary, self.names, self.loops, refused.keys)
+        unset = refused.unset if values else None
+        self._kinds = TypeInference(vocabulary, self.names, self.loops, refused.keys, unset)
         bodies = {loop.name for loop in self.loops.values()}
-        if values:
+        if given:
             for name, root in (("", tree.root), *tree.subtrees):
                 if name not in bodies:
                     self._kinds.read(root, self._owners(name))
@@ -64,7 +73,7 @@ class Names:
 
     def around(self, name: str) -> Around:
         """What is known in the tree of a name, "" for the main tree."""
-        return self._kinds.around(self._owners(name)) if self._values else self._nothing
+        return self._kinds.around(self._owners(name)) if self._given else self._nothing
 
     def inside(self, around: Around, loop: Loop) -> Around:
         """What is known in the body of a loop."""
@@ -72,24 +81,63 @@ class Names:
 
     def refused_by(self, mission: ast.Program, before: Refused, loops: Set[str]) -> Refused:
         """`before` with what in this mission could not be read: `loops`, and values with which something is wrong."""
-        given: set[str] = set()
-        used: set[str] = set()
-        chosen: set[str] = set()
         local = {loop.key for loop in self.loops.values()} | {key for name in self.names for key in parameters(name)}
-        stack: list[tuple[ast.Ast, frozenset[str]]] = [(mission, frozenset())]
+        said = _Said(mission)
+        unset = said.used.keys() - said.set - said.chosen
+        outside = self.around("").outside
+        wrong = (said.set | (unset & outside)) & local
+        return Refused(
+            before.names | loops | self._unsayable, before.keys | wrong, before.unset | (unset - outside - before.keys)
+        )
+
+
+def given_keys(mission: ast.Program) -> tuple[str, ...]:
+    """The keys of the values that a mission uses and nothing in it gives, in the order of their use."""
+    said = _Said(mission)
+    known = said.set | said.chosen | said.outputs
+    return tuple(
+        key
+        for key, users in said.used.items()
+        if key not in known and not all(key in said.arguments.get(user, ()) for user in users)
+    )
+
+
+class _Said:
+    """The keys of values of the whole mission: those that are `set`, `chosen` or `outputs` of nodes, and those `used`.
+
+    These have the names of the subtrees in quotes in which they are used, "" for anywhere else; `arguments` are what
+    such subtrees get.
+    """
+
+    def __init__(self, mission: ast.Program) -> None:
+        self.set: set[str] = set()
+        self.chosen: set[str] = set()
+        self.outputs: set[str] = set()
+        self.used: dict[str, set[str]] = {}
+        self.arguments: dict[str, set[str]] = {}
+        stack: list[tuple[ast.Ast, frozenset[str], str]] = [(mission, frozenset(), "")]
         while stack:
-            item, bound = stack.pop()
+            item, bound, user = stack.pop()
             if isinstance(item, ast.Remember) or (isinstance(item, ast.Assign) and item.operation == "set"):
-                given.add(item.key)
-            chosen.update(ast.chosen_keys(item))
-            used.update(key for key in ast.keys_of(item) if key not in bound)
+                self.set.add(item.key)
+            elif isinstance(item, ast.Exact | ast.Phrase):
+                self._node(item)
+            self.chosen.update(ast.chosen_keys(item))
+            for key in ast.keys_of(item):
+                if key not in bound:
+                    self.used.setdefault(key, set()).add(user)
             if isinstance(item, ast.ForEach):
                 bound |= {item.key}
             elif isinstance(item, ast.Definition):
-                bound |= dict(item.parameters).keys()
-            stack += [(part, bound) for part in ast.parts(item)]
-        wrong = (used - given - chosen) | (given & local)
-        return Refused(before.names | loops | self._unsayable, before.keys | wrong)
+                bound, user = bound | dict(item.parameters).keys(), item.name if item.is_quoted else ""
+            stack += [(part, bound, user) for part in reversed(ast.parts(item))]
+
+    def _node(self, node: ast.Exact | ast.Phrase) -> None:
+        ports = dict(node.ports)
+        self.outputs.update(key for text in ports.values() for key in keys_set_in(text))
+        self.outputs.update(ports[port][1:-1] for port in node.outputs if ports[port][:1] == "{")
+        if isinstance(node, ast.Exact) and node.id == SUBTREE:
+            self.arguments.setdefault(ports.pop("ID", ""), set()).update(ports)
 
 
 def is_phrase(name: str, vocabulary: Lexicon) -> bool:

@@ -8,7 +8,7 @@ from btlang.backends.btcpp.markup import Markers
 from btlang.backends.english.comments import Comments, comments_of
 from btlang.backends.english.editors import without_editors
 from btlang.backends.english.lift import Lifter
-from btlang.backends.english.names import Names, Refused
+from btlang.backends.english.names import Names, Refused, given_keys
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.btcpp.kept import marked, parts_of
@@ -26,9 +26,9 @@ from btlang.tree.model import NodeModel
 from btlang.tree.node import Tree
 from btlang.vocabulary.lexicon import Lexicon
 
-_LEVELS = ("values", "sure values", "words", "ids")
+_LEVELS = ("values", "sure values", "given values", "words", "ids")
 """How natural a mission is, most first: with values and parameters, with those alone that are read in one way only,
-without any, all nodes by their ids."""
+with those that it is given, without any, all nodes by their ids."""
 _MOST_TRIES = 20
 WIDTH = 100
 """Columns; what would be a longer line becomes a block where it can."""
@@ -107,7 +107,7 @@ def _mission(
     """With what is refused, and whatever else turns out not to be read back, said in another way."""
     values = level in ("values", "sure values")
     for _ in range(_MOST_TRIES if values else 1):
-        known = Names(tree, vocabulary, refused, values=values, sure=level == "sure values")
+        known = Names(tree, vocabulary, refused, values=values, given="values" in level, sure=level == "sure values")
         raiser = Lifter(tree, vocabulary, known, comments, natural=level != "ids")
         bodies = {loop.name for loop in known.loops.values()}
         named = [(name, root) for name, root in used_first(tree)[:-1] if name not in bodies]
@@ -116,4 +116,4 @@ def _mission(
         before, refused = refused, known.refused_by(mission, refused, raiser.refused)
         if refused == before:
             break
-    return mission, raiser.printer
+    return mission.replace(given=given_keys(mission)), raiser.printer

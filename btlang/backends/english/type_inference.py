@@ -5,10 +5,11 @@ A value is a key and its owner: "" for the whole mission, else the subtree whose
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Container, Mapping, Set
 
 from btlang.backends.english.code import Computed, compared_by, computed, given_by
 from btlang.backends.english.loops import Loop
+from btlang.frontends.mission.symbols.given import untyped
 from btlang.frontends.mission.symbols.prefixes import find_prefixes
 from btlang.printer.naming import spelt
 from btlang.printer.phrase import value_of
@@ -20,9 +21,9 @@ from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Slot, name_form
-from btlang.vocabulary.reading_context import Known
+from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.references import Reference, choice_of, free_key, pieces
-from btlang.vocabulary.value_type import WORLD
+from btlang.vocabulary.value_type import TEXT, WORLD, number_type
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -38,12 +39,13 @@ _TYPES = {"rounds": "count", "time of day": "time_of_day"}
 class Around(Record):
     """What is known at a place: the types of values by key, with a vocabulary that knows them, too.
 
-    `owners` are those of the keys that are not of the whole mission.
+    `owners` are those of the keys that are not of the whole mission, `outside` the keys that nothing sets that is said.
     """
 
     owners: Mapping[str, str]
     kinds: Mapping[str, str]
     vocabulary: Lexicon
+    outside: Set[str] = frozenset()
 
 
 def parameters(name: str) -> tuple[str, ...]:
@@ -55,14 +57,21 @@ class TypeInference:
     """The types of all values in some trees, each with the owners of its local keys.
 
     `names` are the subtrees whose parameters have a value of their own, `refused` keys of the whole mission that are
-    not to be said.
+    not to be said, `unset` those that nothing sets though a node does; None for all.
     """
 
     def __init__(
-        self, vocabulary: Lexicon, names: Container[str], loops: Mapping[int, Loop], refused: Container[str]
+        self,
+        vocabulary: Lexicon,
+        names: Container[str],
+        loops: Mapping[int, Loop],
+        refused: Container[str],
+        unset: Container[str] | None = (),
     ) -> None:
         self._vocabulary, self._names, self._loops, self._refused = vocabulary, names, loops, refused
+        self._unset = unset
         self._set: set[str] = set()  # keys that are given values
+        self._chosen: set[str] = set()  # keys of names that the robot chooses for a command
         self._groups: dict[Value, list[Value]] = {}  # those of one type, by each of them that was joined to no other
         self._joined: dict[Value, Value] = {}
         self._given: list[tuple[Value, Value]] = []  # what is given another value
@@ -77,13 +86,18 @@ class TypeInference:
         place = tuple(owners.items())
         if place not in self._around:
             values = {key: ("", key) for owner, key in self._groups if not owner and key not in self._refused}
+            outside = frozenset(key for key in values if key not in owners and self._is_outside(key))
             values |= {key: (owner, key) for key, owner in owners.items()}
-            kinds = {key: kind for key, value in values.items() if (kind := self.kind(value)) is not None}
+            inside = [(key, value) for key, value in values.items() if key not in outside]
+            kinds = {key: kind for key, value in inside if (kind := self.kind(value)) is not None}
             known = {key: Known(key, tuple(key.split("_")), (kind,)) for key, kind in kinds.items()}
+            known |= {key: untyped(key) for key in outside}
+            number = number_type(self._vocabulary.types)
+            kinds |= {key: number if self._sorts.get(("", key)) == {True} else TEXT for key in outside}
             vocabulary = self._vocabulary.with_known(known)
             taken = self._set | {key for owner, key in self._groups if owner}
             vocabulary.context.keys = {kind: free_key(kind, taken) for kind in WORLD}
-            self._around[place] = Around(owners, kinds, vocabulary)
+            self._around[place] = Around(owners, kinds, vocabulary, outside)
         return self._around[place]
 
     def kind(self, value: Value) -> str | None:
@@ -124,6 +138,8 @@ class TypeInference:
         kind = CATALOGUE.get(node.id)
         for text in texts.values():
             self._mention(text, own)
+            choice = choice_of(text)
+            self._chosen.update([choice.key] if choice is not None else ())
         for key in made.times:
             self._need(texts[key], "duration", own)
         if node.id == "Script" and (given := given_by(node.port("code"), texts)) is not None:
@@ -227,15 +243,15 @@ class TypeInference:
             needs -= set(plain_numbers[:-1])  # one number does for the other
         if len(needs) > 1 or len(sorts) > 1:
             return None
-        numbers = [kind for kind, one in types.items() if one.kind == "number" and not one.whole]
+        number = number_type(types)
         if needs:
             [kind] = needs
             is_number = types[kind].kind in ("quantity", "number")
             return kind if sorts <= {is_number} else None
         if sorts == {True}:
-            return numbers[0]
+            return number
         names = [kind for kind, one in types.items() if one.kind == "names"]
-        for kind in [*([] if sorts else numbers), *names] if texts else ():
+        for kind in [*([] if sorts else [number]), *names] if texts else ():
             if all(readable(text, kind, self._vocabulary) for text in texts):
                 return kind
         return "text"
@@ -247,6 +263,14 @@ class TypeInference:
         others = [kind for kind, one in self._vocabulary.types.items() if one.kind in ("number", "names")]
         is_open = self.kind(value) == "text"
         return is_open and any(readable(text, kind, self._vocabulary) for text in texts for kind in others)
+
+    def _is_outside(self, key: str) -> bool:
+        """Whether nothing that is said sets a key that can be said in braces."""
+        is_said = self._unset is not None and key not in self._unset
+        is_set = key in self._chosen or (key in self._set and is_said)
+        text = split(Source(f"{{{key}}}"), self._vocabulary.orthography)
+        is_name = key[:1] != "_" and ReadingContext.reference(text, 0) == (key, len(text.words) - 2)
+        return is_name and not is_set
 
     def _is_name(self, key: str) -> bool:
         """Whether the words of a key are read back as this key."""

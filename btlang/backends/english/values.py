@@ -19,7 +19,8 @@ from btlang.vocabulary.value_type import WORLD
 def assigned(node: Node, checked: Checked) -> Iterator[ast.Ast]:
     """A Script as `set`, `increase` and `decrease`."""
     given = given_by(node.port("code"), checked.texts)
-    if given is not None and given.operation != "time":
+    is_set = given is not None and given.operation == "set" and given.key not in checked.around.outside
+    if given is not None and (is_set or given.operation in ("increase", "decrease")):
         kind = checked.around.kinds.get(given.key)
         if kind is not None and can_say(given.text, kind, checked):
             yield ast.Assign(given.key, given.operation, kind, given.text, NOWHERE)
@@ -28,7 +29,7 @@ def assigned(node: Node, checked: Checked) -> Iterator[ast.Ast]:
 def chosen(node: Node, checked: Checked) -> Iterator[ast.Ast]:
     """A name that is chosen for a key of the mission's own."""
     key, kind = node.port("output")[1:-1], node.port("type")
-    if key in checked.around.kinds and kind in WORLD:
+    if key in checked.around.kinds and key not in checked.around.outside and kind in WORLD:
         choice = choice_by(dict(node.ports)).replace(key=checked.around.vocabulary.context.keys[kind])
         yield ast.Assign(key, "set", kind, choice.text, NOWHERE)
 
@@ -47,7 +48,7 @@ def compared(node: Node, checked: Checked) -> Iterator[ast.Ast]:
 def remembered(node: Node, entries: Iterable[Entry], checked: Checked) -> Iterator[ast.Ast]:
     """A quantity that is measured for a key."""
     key = node.port(MEASURED)[1:-1]
-    if key not in checked.around.kinds or node.port(MEASURED) != f"{{{key}}}":
+    if key not in checked.around.kinds or key in checked.around.outside or node.port(MEASURED) != f"{{{key}}}":
         return
     arguments = texts_of([port for port in node.ports if port[0] != MEASURED], checked)
     for entry in entries:

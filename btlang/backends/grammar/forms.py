@@ -136,11 +136,12 @@ VALUES = {
 
 DEFINITIONS = {
     "defined": "definition | quoted-definition | with-parameter | mission-name | condition-definition | fact"
-    " | exact-node",
+    " | given-value | exact-node",
     "definition": '"r1 " (<define> | <define_strong>) " " unit "\\nr1"',
     "quoted-definition": '"`r3` " <define_strong> " " unit "\\n" <do> " " (<subtree r3> | "`r3`")',
     "with-parameter": "<each-type parameter>",
     "mission-name": '<main_name> " `r4`\\n" unit',
+    "given-value": '<given> " {n1}\\n" <say n1>',
     "condition-definition": '"c1 " <define_strong> " " part "\\n" <if> " c1, " unit',
     "fact": '"w1 " <fact> " (" value-number ", " value-number ")" (" " <facing> " " value-angle)? "\\n" <at-fact w1>',
     "exact-node": "exact-command | named-command | command-with-port | exact-check",

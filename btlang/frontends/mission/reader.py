@@ -157,6 +157,7 @@ class _Reader:
             tuple(names.includes),
             names.main_name,
             names.needs,
+            names.given,
         )
 
 

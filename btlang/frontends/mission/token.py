@@ -43,10 +43,11 @@ if TYPE_CHECKING:
 
 
 class Called(Record):
-    """A phrase or a name with its arguments."""
+    """A phrase or a name with its arguments, and what `called`, `with` and `giving` say behind a phrase."""
 
     entry: Entry
     arguments: tuple[tuple[str, str], ...]
+    details: NodeCall | None = None
 
 
 class Listed(Record):

@@ -103,8 +103,8 @@ def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
 
 
 _NOT_OFFERED = NOT_ALONE | {
-    *NODE_ROLES, "never", "called", "with", "giving", "node", "newline", "character", "main_name", "needs_world",
-    "needs_words",
+    *NODE_ROLES, "never", "called", "with", "giving", "node", "newline", "character", "main_name", "given",
+    "needs_world", "needs_words",
 }  # fmt: skip
 """Roles that say nothing alone or are for texts that programs write: what is like their words was hardly meant so."""
 

@@ -70,7 +70,7 @@ class Builder:
         """COMMAND or CONDITION."""
         span, value = Span(self.source, token.start, token.end), token.value
         if type(value) is Called:
-            return _called(value.entry, value.arguments, span)
+            return _called(value.entry, value.arguments, span, value.details)
         if token.role == "wait":
             return Wait(_amount(token), span)
         if token.role == "wait_time":
@@ -219,9 +219,11 @@ def _amount(token: Token) -> str:
     return token.value if isinstance(token.value, str) else ""
 
 
-def _called(entry: Entry, arguments: tuple[tuple[str, str], ...], span: Span) -> Ast:
+def _called(entry: Entry, arguments: tuple[tuple[str, str], ...], span: Span, details: NodeCall | None = None) -> Ast:
     if entry.sort == "name":
         return Name(entry.id, arguments, span)
     if entry.sort == "value":
         return Compared(entry.id, entry.measures, arguments, span)
+    if details is not None:
+        return Phrase(entry, arguments, span, details.name, details.ports, details.outputs)
     return Phrase(entry, arguments, span)

@@ -8,6 +8,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.continuations import find_continuations, named_at
 from btlang.frontends.mission.symbols.definitions import find_definitions
 from btlang.frontends.mission.symbols.facts import find_facts
+from btlang.frontends.mission.symbols.given import find_arguments, find_given, find_outputs, untyped
 from btlang.frontends.mission.symbols.includes import Included, find_includes
 from btlang.frontends.mission.symbols.meanings import find_meanings
 from btlang.frontends.mission.symbols.needs import find_needs
@@ -55,7 +56,10 @@ class Names:
         needs = find_needs(text, vocabulary)
         self.needs = tuple((need.role, need.path) for need in needs.found)
         """What the mission needs, each with the role of the words in front of the path."""
-        self.ends = includes.ends | facts.ends | needs.ends | meanings.ends
+        given = find_given(text, vocabulary)
+        self.given = tuple(given.keys)
+        """The keys of the values that the mission is given."""
+        self.ends = includes.ends | facts.ends | needs.ends | meanings.ends | given.ends
         self.main_name = ""
         main_span: Span | None = None
         for name, first, last in find_main_names(text, vocabulary):
@@ -72,7 +76,7 @@ class Names:
         text.going_on = find_continuations(self.phrases)
         self.definitions = find_definitions(self.phrases, self.ends, compared, elsewhere)
         text.going_on -= named_at(self.definitions.trie, self.phrases, text.going_on)
-        self.problems: list[Diagnostic] = [*needs.problems, *facts.problems, *meanings.problems]
+        self.problems: list[Diagnostic] = [*needs.problems, *facts.problems, *meanings.problems, *given.problems]
         self.problems += self.definitions.problems
         if main_span is not None:
             defined = [header.name for header in self.definitions.headers.values()]
@@ -81,12 +85,23 @@ class Names:
         self.others = {*self.prefixes, *self.ends, *self.definitions.headers}
         self.bounds: list[int] = []
         self.known = {key: one for named in (shared or {}, *(p.known for p in parts)) for key, one in named.items()}
+        set_here = {prefix.key for prefix in self.prefixes.values() if prefix.role in ("set", "remember")}
+        outside = {*self.given, *find_outputs(text, vocabulary)} - set_here
+        self.known |= {key: untyped(key) for key in sorted(outside)}
+        self._inside = list(
+            find_arguments(text, vocabulary, self.definitions.headers.values(), self.definitions.subtrees)
+        )
         self.chosen: dict[str, str] = {}
         """The keys for what the robot chooses, by type."""
         chosen = self._chosen_types(text)
         if self.known or chosen:
             self._name_choices(chosen)
-        if self.known or self.prefixes or any(header.parameters for header in self.definitions.headers.values()):
+        if (
+            self.known
+            or self._inside
+            or self.prefixes
+            or any(header.parameters for header in self.definitions.headers.values())
+        ):
             self._name_values(text)
 
     def _chosen_types(self, text: Words) -> list[str]:
@@ -121,7 +136,7 @@ class Names:
         from btlang.frontends.mission.symbols.variables import Variables  # most missions have none
 
         before = len(self.definitions.problems)
-        self._variables = Variables(text, self.vocabulary, self.prefixes, self.definitions, self.known)
+        self._variables = Variables(text, self.vocabulary, self.prefixes, self.definitions, self.known, self._inside)
         self.known, self.bounds = self._variables.everywhere, self._variables.bounds
         self.problems += self.definitions.problems[before:] + self._variables.problems
 

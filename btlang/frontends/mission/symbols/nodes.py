@@ -6,7 +6,7 @@ What is in quotes is kept as it stands; several quoted texts, `newline` and `cha
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -71,6 +71,35 @@ def read_node(
         name, at = reader.text(called)
     outputs, at = reader.ports(at, ports)
     return NodeCall(node_id, tuple(ports.items()), name, tuple(outputs)), at
+
+
+def read_details(
+    text: Words, at: int, taken: Mapping[str, str], vocabulary: Lexicon, names: TrieNode | None = None
+) -> tuple[NodeCall, int] | None:
+    """What is said behind a phrase that has the ports `taken`: `called "first" with speed 2`, and where it ends.
+
+    It has no id. None where nothing of that kind follows, or it can't be read.
+    """
+    reader, ports, name, first = _Reader(text, vocabulary, names), dict(taken), "", at
+    try:
+        called = reader.word("called", at)
+        if called:
+            name, at = reader.text(called)
+        outputs, at = reader.ports(at, ports)
+    except Unreadable:
+        return None
+    own = tuple((port, value) for port, value in ports.items() if port not in taken)
+    return (NodeCall("", own, name, tuple(outputs)), at) if at > first else None
+
+
+def outputs_at(text: Words, at: int, vocabulary: Lexicon) -> list[str]:
+    """The keys to which the ports at a word give values: `giving {path}`."""
+    ports: dict[str, str] = {}
+    try:
+        outputs, _ = _Reader(text, vocabulary).ports(at, ports)
+    except Unreadable:
+        return []
+    return [ports[port][1:-1] for port in outputs if ports[port][:1] == "{"]
 
 
 def find_main_names(text: Words, vocabulary: Lexicon) -> Iterator[tuple[str, int, int]]:

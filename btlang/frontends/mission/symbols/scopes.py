@@ -23,7 +23,7 @@ class Scopes:
     """The values that are known `everywhere`, by key, and the `local` ones with the words where each is known.
 
     `types` are what is known of the types of values, by the word of their prefix or body, and their key. A local value
-    without one can be of any type.
+    without one can be of any type; so can those that are known `inside` some words alone.
     """
 
     def __init__(
@@ -33,12 +33,16 @@ class Scopes:
         headers: Iterable[Header],
         shared: Mapping[str, Known],
         types: Types,
+        inside: Iterable[tuple[int, int, Known]] = (),
     ) -> None:
         self.everywhere = dict(shared)
         self.local = [
-            (header.body, header.last, Known(key, words, types.get((header.body, key), ())))
-            for header in headers
-            for key, words in header.parameters
+            *inside,
+            *(
+                (header.body, header.last, Known(key, words, types.get((header.body, key), ())))
+                for header in headers
+                for key, words in header.parameters
+            ),
         ]
         self._parameters = {(first, known.key): at for at, (first, _, known) in enumerate(self.local)}
         for at, prefix in prefixes.items():
@@ -51,7 +55,7 @@ class Scopes:
     def give(self, prefix: Prefix, kinds: tuple[str, ...]) -> None:
         """A value of the whole mission is given one of these types; those that fit all that it is given remain."""
         others = self.everywhere.get(prefix.key)
-        if others is not None:
+        if others is not None and others.kinds:
             kinds = tuple(kind for kind in others.kinds if kind in kinds) or others.kinds
         self.everywhere[prefix.key] = Known(prefix.key, prefix.words, kinds)
 

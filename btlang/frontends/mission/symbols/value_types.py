@@ -29,10 +29,11 @@ class ValueTypes:
         prefixes: Mapping[int, Prefix],
         definitions: Definitions,
         shared: Mapping[str, Known],
+        inside: Sequence[tuple[int, int, Known]] = (),
     ) -> None:
         self._text, self._vocabulary, self._definitions = text, vocabulary, definitions
         self._context = ReadingContext(vocabulary.values)
-        self._prefixes, self._shared = prefixes, shared
+        self._prefixes, self._shared, self._inside = prefixes, shared, inside
         self._headers = [header for header in definitions.headers.values() if header.parameters]
         self._places: dict[str, list[int]] = {}
         for at, word in enumerate(text.words):
@@ -47,7 +48,7 @@ class ValueTypes:
 
     def scopes(self) -> Scopes:
         """Where the values are known, with the types found so far."""
-        return Scopes(self._text, self._prefixes, self._headers, self._shared, self.types)
+        return Scopes(self._text, self._prefixes, self._headers, self._shared, self.types, self._inside)
 
     def _follow(self) -> None:
         before = -1
@@ -69,14 +70,18 @@ class ValueTypes:
                     self._add(header)
 
     def _default(self) -> None:
-        """What nothing has told of is a text."""
+        """What nothing has told of is a text, but what is given a value of any type is of any."""
+        scopes = self.scopes()
         for header in self._headers:
             for key, _ in header.parameters:
                 self.types.setdefault((header.body, key), ("text",))
             self._add(header)
         for at, prefix in self._prefixes.items():
             if prefix.role in ("set", "each"):
-                self.types.setdefault((at, prefix.key), ("text",))
+                self._context.set_known(scopes.at(at))
+                named = self._context.named(self._text, prefix.value) if prefix.value >= 0 else None
+                is_untyped = named is not None and named[0] is not None and not named[0].kinds
+                self.types.setdefault((at, prefix.key), () if is_untyped else ("text",))
 
     def _add(self, header: Header) -> None:
         if header.body not in self._definitions.types:

@@ -6,7 +6,7 @@ parameters of a definition hold in their body.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.definitions import Definitions
@@ -17,12 +17,14 @@ from btlang.vocabulary.entry import COMPARISONS, Entry, Meaning
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.trie import add
+from btlang.vocabulary.value_type import TEXT, number_type
 
 
 class Variables:
     """`problems` with names, which values are known `at` a word, and those that are known `everywhere`, by key.
 
-    `shared` are values that are named elsewhere and hold here too; `bounds` are the words at which others begin to be
+    `shared` are values that are named elsewhere and hold here too, `inside` those that are known between two words;
+    `bounds` are the words at which others begin to be
     known. Conditions on values come into the trie of `definitions`.
     """
 
@@ -33,11 +35,12 @@ class Variables:
         prefixes: Mapping[int, Prefix],
         definitions: Definitions,
         shared: Mapping[str, Known],
+        inside: Sequence[tuple[int, int, Known]] = (),
     ) -> None:
         self.problems: list[Diagnostic] = []
         self._text, self._vocabulary, self._definitions = text, vocabulary, definitions
         self._prefixes, self._shared = prefixes, shared
-        found = ValueTypes(text, vocabulary, prefixes, definitions, shared)
+        found = ValueTypes(text, vocabulary, prefixes, definitions, shared, inside)
         self._types, self._scopes = found.types, found.scopes()
         self.everywhere, self.bounds = self._scopes.everywhere, self._scopes.bounds()
         self._check_names()
@@ -81,12 +84,21 @@ class Variables:
     def _compare(self) -> None:
         """`counter is 3` becomes a condition, as for a quantity."""
         named = {known.key: known for _, _, known in self._scopes.local} | self.everywhere
+        untyped = (number_type(self._vocabulary.types), TEXT)
         for known in named.values():
-            for kind in known.kinds[:1]:
+            for kind in known.kinds[:1] or untyped:
                 entry = Entry("value", known.key, (), quantity=(" ".join(known.words),), measures=kind)
                 for form in self._vocabulary.comparing_forms(kind):
-                    for name in (known.words, ("{", *known.words, "}")):
+                    for name in _said(known):
                         whole, types = (*name, *form), dict.fromkeys(COMPARISONS, kind)
                         add(self._definitions.trie, whole, types, Meaning("condition", entry))
                         for negated in self._vocabulary.negated(whole):
                             add(self._definitions.trie, negated, types, Meaning("negated", entry))
+
+
+def _said(known: Known) -> Iterator[tuple[str, ...]]:
+    """The ways to say the name of a value where it is compared."""
+    names = dict.fromkeys((known.words or tuple(filter(None, known.key.split("_"))), (known.key,)))
+    yield from (("{", *name, "}") for name in names)
+    if known.words:
+        yield known.words

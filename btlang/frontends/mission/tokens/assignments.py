@@ -10,6 +10,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.nouns import ALL
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import SlotValue, all_names, longest, reaches_beyond
+from btlang.vocabulary.value_type import number_type
 
 
 def read_statement(
@@ -45,11 +46,11 @@ def read_statement(
 
 def _value(prefix: Prefix, known: Known, text: Words, vocabulary: Lexicon, context: ReadingContext) -> SlotValue | None:
     numbers = prefix.role in ("increase", "decrease")
-    named = context.named(text, prefix.value) if prefix.value >= 0 else None
+    named, number = context.named(text, prefix.value) if prefix.value >= 0 else None, number_type(vocabulary.types)
     if named is not None and named[0] is not None:
-        kind = next((kind for kind in named[0].kinds if kind in known.kinds), None)
+        kind = _shared(named[0].kinds, known.kinds, number if numbers else _any_type(vocabulary)[0])
         return SlotValue("value", kind, f"{{{named[0].key}}}", prefix.value, named[1]) if kind is not None else None
-    for kind in known.kinds:
+    for kind in known.kinds or ((number,) if numbers else ()):
         is_number = vocabulary.types[kind].kind in ("quantity", "number")
         if numbers and prefix.value < 0 and vocabulary.types[kind].kind == "number":
             return SlotValue("value", kind, "1", prefix.last, prefix.last)
@@ -64,6 +65,18 @@ def _value(prefix: Prefix, known: Known, text: Words, vocabulary: Lexicon, conte
     return SlotValue("value", other[0][0], other[1], prefix.value, other[2])
 
 
+def _shared(kinds: tuple[str, ...], others: tuple[str, ...], either: str) -> str | None:
+    """A type that is one of both, where a value without types is of any; `either` where both have none."""
+    if kinds and others:
+        return next((kind for kind in kinds if kind in others), None)
+    return next(iter(kinds or others), either)
+
+
+def _any_type(vocabulary: Lexicon) -> list[str]:
+    """All types, those of names first: a value of any type is said as one of these, without quotes."""
+    return sorted(vocabulary.types, key=lambda kind: vocabulary.types[kind].kind != "names")
+
+
 def _each(
     prefix: Prefix,
     text: Words,
@@ -76,7 +89,13 @@ def _each(
     inner = ReadingContext(vocabulary.values, others)
     inner.keys = context.keys
     first = inner.any(text, prefix.value)
-    kinds = (prefix.key,) if prefix.key in vocabulary.types else first[0] if first is not None else ()
+    kinds = (
+        (prefix.key,)
+        if prefix.key in vocabulary.types
+        else (first[0] or _any_type(vocabulary))
+        if first is not None
+        else ()
+    )
     chosen = (prefix.noun, prefix.last) if prefix.noun is not None else inner.choice(text, prefix.value)
     if chosen is not None and chosen[0].how == ALL:
         kind = chosen[0].type

@@ -9,9 +9,9 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.includes import misplaced
 from btlang.frontends.mission.symbols.names import Load, Names
-from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
+from btlang.frontends.mission.symbols.nodes import Unreadable, read_details, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
-from btlang.frontends.mission.token import Token, begins_condition, go_on
+from btlang.frontends.mission.token import Called, Token, begins_condition, go_on
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_names import called, condition_names
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing, with_verb
@@ -77,6 +77,8 @@ class Lexer:
             self.text, self.vocabulary, self.names.definitions.trie, self.context, self._calls, self.tokens
         )
         endings = tuple(self.vocabulary.doing)
+        behind = ("called", "with", "giving")
+        self._details = {phrase.split()[0] for role in behind for phrase in self.vocabulary.roles[role]}
         self._verb_forms = {word for word in self.text.distinct if word.endswith(endings)}
         self._lines()
         self.conditions = condition_names(self.tokens, self.names.included_conditions())
@@ -212,6 +214,10 @@ class Lexer:
                         origin = (token, *origin[1:]) if shared and origin else (token, at, match, root)
                 else:
                     tokens.append(calls.token(match, at))
+                if words[match.last] in self._details and match.meaning.entry is not None:
+                    at = self._with_details(match.last)
+                    calls.note(match)
+                    continue
                 if role in meanings_of:
                     tokens[-1].role = self.names.meanings.get(" ".join(words[at : match.last]), tokens[-1].role)
                 if role in _ROLES:
@@ -219,6 +225,20 @@ class Lexer:
                 if match.values:
                     calls.note(match)
                 at = match.last
+
+    def _with_details(self, at: int) -> int:
+        """Adds what `called` and `with` say of the phrase before a word to its token. Returns where to go on."""
+        token, text = self.tokens[-1], self.text
+        said = token.value
+        if not isinstance(said, Called) or said.entry.sort not in ("action", "condition"):
+            return at
+        if longest(self.vocabulary.trie, text, at, self.context) is not None:
+            return at  # `with 5 s in between`
+        read = read_details(text, at, dict(said.arguments), self.vocabulary, self.names.definitions.trie)
+        if read is None:
+            return at
+        token.value, token.end = said.replace(details=read[0]), text.ends[read[1] - 1]
+        return read[1]
 
     def _in_its_place(self, match: Match | None, role: str, at: int) -> int:
         """Words that say something in one place only, and forms of verbs. Returns where to go on, 0 for any other."""
