@@ -57,4 +57,4 @@ def printer_of(mission: ast.Program, vocabulary: Lexicon, brackets: str = "neede
     facts = ast.all_facts(mission)
     if facts:
         vocabulary = vocabulary.with_places(tuple(fact.name for fact in facts))
-    return Printer(PRINTERS, vocabulary, ast.all_definitions(mission), brackets)
+    return Printer(PRINTERS, vocabulary, ast.all_definitions(mission), brackets, frozenset(mission.given))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Set
 
 from btlang.printer.phrase import holds_definer, leaf_words, value_of
 from btlang.printer.pieces import CLOSE, LEAF, OPEN, WORD, Piece, Pieces, flat, last_of, mark, reads_on, text_of
@@ -58,6 +58,7 @@ class Printer:
     needs it (see the table in docs/language/joining.md): what binds less tightly than what is around it,
     a chain in an equal chain, and a form that reaches to the right where something follows it. With "clear" there
     are also those without which people could read it in another way, and blocks where even these are too hard to read.
+    `untyped` are the keys of values that are of any type.
     """
 
     def __init__(
@@ -66,11 +67,13 @@ class Printer:
         vocabulary: Lexicon,
         names: Iterable[str | ast.Definition] = (),
         brackets: str = "needed",
+        untyped: Set[str] = frozenset(),
     ) -> None:
         self._printers = printers
         if brackets not in ("needed", "clear", "all"):
             raise ValueError(f'brackets are "needed", "clear" or "all": {brackets!r}')
         self.vocabulary = vocabulary.with_references()
+        self.vocabulary.context.untyped = untyped
         self.all_brackets = brackets == "all"
         self.is_clear = brackets == "clear"
         self.names: TrieNode = {}

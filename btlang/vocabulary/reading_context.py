@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 
 from btlang.record import Record
 from btlang.text.words import Words
@@ -36,7 +36,7 @@ class ReadingContext:
 
     __slots__ = (
         "_most_words", "joiners", "keys", "known", "lacked", "latest", "met", "openers", "pronouns", "starts", "types",
-        "values",
+        "untyped", "values",
     )  # fmt: skip
 
     def __init__(self, values: Values, known: Mapping[str, Known] | None = None) -> None:
@@ -48,6 +48,8 @@ class ReadingContext:
         self.met: set[str] = set()
         self.keys: Mapping[str, str] = {}
         self.known: Mapping[str, Known] | None = {}
+        self.untyped: Set[str] = frozenset()
+        """Where any name in braces is a value, the keys of those that are of any type."""
         self.openers: Mapping[str, frozenset[str]] = {}
         """As those of the values; where the mission names values itself, any value may begin at any word."""
         self._most_words = 0
@@ -163,7 +165,7 @@ class ReadingContext:
         """Whether a name in braces stands at a place that any slot takes."""
         found = self.reference(text, at) if self.known != {} else None
         if found is None or self.known is None:
-            return found is not None
+            return found is not None and found[0] in self.untyped
         return found[0] in self.known and not self.known[found[0]].kinds
 
     def _chosen(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:

@@ -71,6 +71,8 @@ ROWS = {
     # names.md
     "Names": "definitions", "Parameters": "parameters", "Places of the mission": "facts", "include": "includes",
     "Values of the mission": "values_of_the_mission", "for each": "for_each",
+    "Values from outside": "given",
+    "Ports and names behind phrases": "given",
 }  # fmt: skip
 """The headings of the language reference, each with the sample of what stands below it."""
 

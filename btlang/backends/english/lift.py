@@ -60,7 +60,7 @@ class Lifter:
         names = [name for name, _ in tree.subtrees if name not in bodies]
         heads = [ast.Definition(name, known.parameters(name), ast.Nothing(NOWHERE), NOWHERE, NOWHERE,
                                 name not in known.names) for name in names]  # fmt: skip
-        self.printer = Printer(PRINTERS, vocabulary, heads, "clear")
+        self.printer = Printer(PRINTERS, vocabulary, heads, "clear", known.around("").outside)
         self._node_kinds = {model.id: model.kind for model in tree.models}
         for node_id in _asked(tree):
             if vocabulary.entry(node_id) is None:
