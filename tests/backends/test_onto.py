@@ -22,6 +22,7 @@ from btlang.passes import lower_mission
 from btlang.text.source import Source
 from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree
+from btlang.tree.visit import fold
 from tests.backends.any_tree import trees
 from tests.corpus.test_team import FILES, edits_of, read
 from tests.profiles import searches
@@ -103,9 +104,16 @@ def test_a_changed_value_changes_one_line(tree: Tree, data: st.DataObject) -> No
 
 
 def _in_any_order(tree: Tree) -> tuple[Node, str, dict[str, Node]]:
-    """What is said of a tree: a file keeps the order of its trees, and what editors wrote."""
+    """What is said of a tree: a file keeps the order of its trees and attributes, and what editors wrote."""
+
+    def sorted_ports(node: Node, children: list[Node]) -> Node:
+        return node.replace(children=tuple(children), ports=tuple(sorted(node.ports)))  # type: ignore[no-any-return]
+
+    def in_order(root: Node) -> Node:
+        return fold(root, lambda node: node.children, sorted_ports)
+
     bare = without_editors(tree)
-    return bare.root, bare.name, dict(bare.subtrees)
+    return in_order(bare.root), bare.name, {name: in_order(root) for name, root in bare.subtrees}
 
 
 def _written(tree: Tree) -> Source:
