@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import threading
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, partial
 
 from btlang.backends.engine import bind_leaf
@@ -34,10 +34,11 @@ from btlang.run.snapshot import Follower, Snapshot
 from btlang.run.statuses import Status
 from btlang.text.escaping import RED
 from btlang.text.source import NOWHERE, Source
+from btlang.vocabulary.values import key_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
     from types import TracebackType
     from typing import Any, Protocol
 
@@ -100,7 +101,7 @@ class Session:
         rate: float = 20.0,
         time_limit: float | None = None,
         sinks: Iterable[Sink] = (),
-        values: Blackboard | None = None,
+        values: Blackboard | Mapping[str, object] | None = None,
         controls: Controls | None = None,
         seed: int | None = None,
         hooks: Hooks | None = None,
@@ -109,8 +110,9 @@ class Session:
 
         `speed` is "real", "max" or a factor of real time. `rate` is in ticks per second of mission time, and the
         mission ends after `time_limit` seconds. `sinks` get events (see btlang.run.events) according to their policy
-        (see btlang.run.bus). `values` are initial blackboard entries. `controls` may be created before the run. Chance
-        follows from `seed`, by default that of the world, or another one for each run. `hooks` are those of an engine.
+        (see btlang.run.bus). `values` are initial blackboard entries, or values by their names in the mission.
+        `controls` may be created before the run. Chance follows from `seed`, by default that of the world, or another
+        one for each run. `hooks` are those of an engine.
 
         Raises MissionError if a command can't run (BT080) or the robot lacks something it needs (BT101), ValueError for
         another speed or rate, RuntimeError during another run.
@@ -123,6 +125,8 @@ class Session:
         if not RATES[0] <= rate <= RATES[1]:
             raise ValueError(f"rate must be from {RATES[0]:g} to {RATES[1]:g} ticks a second, not {rate!r}")
         chance = self.world.seed if seed is None else seed
+        if isinstance(values, Mapping):
+            values = Blackboard(values={key_of(name.lower().split()): value for name, value in values.items()})
         self.current = Run(mission, self.connection, factor, rate, time_limit, sinks, values, controls, chance, hooks)
         return self.current
 

@@ -41,7 +41,7 @@ def test_a_deep_tree_is_built_compared_copied_and_printed() -> None:
     assert sum(1 for _ in tree.walk()) == DEPTH + 1
     assert plain(tree).count("\n") == DEPTH
     assert deepcopy(tree) == copy(tree) == tree
-    assert repr(tree) == "Tree(root=..., subtrees=(), name='', models=(), origin=None)"
+    assert repr(tree) == "Tree(root=..., subtrees=(), name='', models=(), origin=None, warnings=())"
 
 
 def test_a_deep_tree_is_drawn() -> None:
