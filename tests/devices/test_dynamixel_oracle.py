@@ -30,7 +30,8 @@ def bus() -> Iterator[FakeBus]:
 
 
 @pytest.fixture
-def port(bus: FakeBus) -> Iterator[PortHandler]:
+def port(bus: FakeBus, monkeypatch: pytest.MonkeyPatch) -> Iterator[PortHandler]:
+    monkeypatch.setattr("dynamixel_sdk.port_handler.LATENCY_TIMER", 250)  # ms; a busy machine answers later than a bus
     found = PortHandler(bus.port)
     found.setBaudRate(1_000_000)
     with closing(found.ser):

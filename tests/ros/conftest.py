@@ -80,7 +80,7 @@ def _interfaces() -> None:
             return
         command = [sys.executable, "-m", "btlang.ros.interfaces", *missing]
         environment = {**os.environ, "PYTHONPATH": str(REPOSITORY)}
-        subprocess.run(command, env=environment, check=True, timeout=120, stdout=subprocess.DEVNULL)
+        subprocess.run(command, env=environment, check=True, timeout=500, stdout=subprocess.DEVNULL)
     importlib.invalidate_caches()
 
 
