@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.ros.interfaces import OWN
 from btlang.text.source import Source, Span
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+OWN = Path(__file__).parent / "btlang_interfaces"
+"""The package of btlang's own interfaces."""
 _INSTALL = "Install it: pip install 'btlang[ros]', or source your ROS 2 Jazzy: . /opt/ros/jazzy/setup.bash"
 
 

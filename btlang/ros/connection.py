@@ -14,12 +14,11 @@ from btlang.robots.body import Body
 from btlang.robots.needs import lacking
 from btlang.robots.preflight import check_mission
 from btlang.robots.world import World
-from btlang.ros.available import require_interfaces, require_ros
+from btlang.ros.available import OWN, require_interfaces, require_ros
 from btlang.ros.binding import bind_ros
 from btlang.ros.clients import Clients
 from btlang.ros.connected import is_connected
 from btlang.ros.graph import absent, full_name
-from btlang.ros.interfaces import OWN
 from btlang.ros.latest import NodeClock
 from btlang.ros.node import SpunNode
 from btlang.ros.pace import RosPace

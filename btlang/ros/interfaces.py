@@ -26,9 +26,9 @@ from importlib.util import find_spec
 from io import StringIO
 from pathlib import Path
 
+from btlang.ros.available import OWN
+
 _PREFIX = Path(sys.prefix)
-OWN = Path(__file__).parent / "btlang_interfaces"
-"""The package of btlang's own interfaces."""
 _LIB, _SHARE, _INCLUDE = _PREFIX / "lib", _PREFIX / "share", _PREFIX / "include"
 _SUPPORTS = ("fastrtps_c", "introspection_c")  # rmw_fastrtps_cpp needs both: the second one describes types to peers
 _LIBRARIES = ("generator_c", "generator_py", "typesupport_c", *(f"typesupport_{name}" for name in _SUPPORTS))
