@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from btlang.api import parse_file, parse_tree, world_vocabulary
-from btlang.backends.keyword_pack import KeywordPack, keyword_pack, leaves_of
+from btlang.backends.keyword_pack import KeywordPack, keyword_pack, leaves_of, pack_of_files
 from btlang.backends.keywords import is_unknown
 from btlang.backends.wording import SpokenPorts, phrases
 from btlang.cli import main
@@ -32,11 +32,7 @@ FILES = [*(CORPUS / "team" / f"{name}.xml" for name in TEAM), CORPUS / "good" / 
 
 def pack_of(*sources: Source) -> KeywordPack:
     """As `btc words --from` makes it."""
-    read = read_files(sources)
-    vocabulary = world_vocabulary()
-    return keyword_pack(
-        leaves_of(read.models.values(), read.nodes(), vocabulary), vocabulary, vocabulary_with, read.place
-    )
+    return pack_of_files(sources, world_vocabulary(), vocabulary_with)[0]
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
