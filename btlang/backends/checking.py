@@ -58,7 +58,10 @@ def misnamed(tree: Tree, vocabulary: Lexicon) -> Iterator[Diagnostic]:
             kind = vocabulary.types.get(slots.get(port, ""))
             if kind is None or kind.kind != "names" or "{" in text or vocabulary.value(kind.name, text) is not None:
                 continue
-            near = nearest(text.lower(), vocabulary.values.names(kind.name))
+            names = vocabulary.values.names(kind.name)
+            if text in names:  # what nobody says: `eo`, said as `Esperanto`
+                continue
+            near = nearest(text.lower(), names)
             reason = f"there is no {kind.name} '{text}'" + (f"; similar: {', '.join(near)}" if near else "")
             yield diagnostic("BT132", node.span or NOWHERE, id=node.id, reason=reason)
 
