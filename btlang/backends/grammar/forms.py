@@ -17,7 +17,8 @@ A form is made of a `unit`: a leaf, or anything in brackets. So no sentence has 
 from __future__ import annotations
 
 MISSION = {
-    "mission": r'valued | defined | ((valued | defined) "\n")? (line "\n")* (line | last) | (rule "\n")+ (form "\n")* form',
+    "mission": r'beginning | (beginning "\n")? (line "\n")* (line | last) | (rule "\n")+ (form "\n")* form',
+    "beginning": "valued | defined",
     "line": "form | going-on | if-doing-fails",
     "form": "leaf | bracketed | joined | before | behind",
     "leaf": "plain | waiting | checking",
@@ -144,7 +145,8 @@ DEFINITIONS = {
     "quoted-definition": '"`r3` " <define_strong> " " unit "\\n" <do> " " (<subtree r3> | "`r3`")',
     "with-parameter": "<each-type parameter>",
     "mission-name": '<main_name> " `r4`\\n" unit',
-    "given-values": '<given> " {n1}" (", {n2}\\n" (<keyed n2> | <if> " " <is-keyed n2> ", " <keyed n1>) | "\\n" <keyed n1>)',
+    "given-values": '<given> " {n1}\\n" <keyed n1> | <given> " {n1}, {n2}\\n" (<keyed n2> | keyed-if)',
+    "keyed-if": '<if> " " <is-keyed n2> ", " <keyed n1>',
     "condition-definition": '"c1 " <define_strong> " " part "\\n" <if> " c1, " unit',
     "fact": '"w1 " <fact> " (" value-number ", " value-number ")" (" " <facing> " " value-angle)? "\\n" <at-fact w1>',
     "exact-node": "exact-command | named-command | command-with-ports | exact-check",

@@ -339,7 +339,7 @@ def _slots_of(form: Form) -> tuple[str, ...]:
 
 def _head(form: Form) -> tuple[str, ...]:
     """The words before the first slot."""
-    return tuple(takewhile(lambda part: isinstance(part, str), form))
+    return tuple(map(str, takewhile(lambda part: isinstance(part, str), form)))
 
 
 def _rule_of(kind: str) -> str:
