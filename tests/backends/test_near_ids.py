@@ -58,3 +58,8 @@ def test_no_fix(text: str) -> None:
     problem = problem_of(text)
     assert (problem.code, problem.fix) == ("BT130", None)
     assert "This entry of a keyword file would define it" in problem.hint
+
+
+def test_names_that_are_said_otherwise_are_known() -> None:
+    """The language `eo` is said as Esperanto."""
+    btlang.parse_tree('talk in Esperanto; do "SpeakLanguage" with language "eo"').check()
