@@ -10,7 +10,7 @@ from functools import partial
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
-from btlang.frontends.table import frontend_of, read_text
+from btlang.frontends.table import XML_ENDINGS, frontend_of, read_text
 from btlang.gc_pause import gc_paused
 from btlang.passes import compile_mission, errors_of, lower_mission, run_passes
 from btlang.passes.compilation import Compilation
@@ -20,10 +20,10 @@ from btlang.text.source import Source, Span
 from btlang.text.words import split
 from btlang.tree.ast import Fact, Program, all_facts, says_ports
 from btlang.tree.node import Node, Tree
-from btlang.vocabulary.cache import cached, recent
+from btlang.vocabulary.cache import cached, recent, stamp
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.load import load_vocabulary
+from btlang.vocabulary.load import load_vocabulary, vocabulary_with
 from btlang.vocabulary.nouns import Features
 from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH, STANDARD_BODY
@@ -54,12 +54,13 @@ def parse_tree(
 ) -> Mission:
     """Compiles a mission in English, or a tree: a text that begins with `<` is XML of BehaviorTree.CPP, with `{` JSON.
 
-    `parser` is "shunting-yard" or "lark" (both give the same tree). `keywords` are paths of keyword files, names of
-    installed packs, or functions decorated with `action` or `condition`. `world` is the path of a world file, or its
-    text, by default the world that ships. `main` is the ID of the tree to run, if XML or JSON has several. `language`
-    is that of the mission: "en", "es" or the folder of another one. `values` are what the mission may use by these
-    names though it doesn't set them, or others of the same kind: a run gets them (`Session.prepare`). `origins` gets
-    the nodes by their identities, each with the syntax that it was made of. Raises MissionError with all diagnostics.
+    `parser` is "shunting-yard" or "lark" (both give the same tree). `keywords` are paths of keyword files, paths of
+    XML files whose nodes become words, names of installed packs, or functions decorated with `action` or `condition`.
+    `world` is the path of a world file, or its text, by default the world that ships. `main` is the ID of the tree to
+    run, if XML or JSON has several. `language` is that of the mission: "en", "es" or the folder of another one.
+    `values` are what the mission may use by these names though it doesn't set them, or others of the same kind: a run
+    gets them (`Session.prepare`). `origins` gets the nodes by their identities, each with the syntax that it was made
+    of. Raises MissionError with all diagnostics.
     """
     source = Source(text) if isinstance(text, str) else text
     with gc_paused:
@@ -147,7 +148,7 @@ def mission_vocabulary(
     from btlang.diagnostics.reading import OUTSIDE, included_path, is_below
     from btlang.frontends.mission.symbols.needs import WORDS, find_needs, unusable
 
-    vocabulary = load_vocabulary(keywords, None, language)
+    vocabulary = load_vocabulary([word for word in keywords if not _is_xml(word)], None, language)
     files: dict[str, str] = {}
     lines: dict[str, Span] = {}
     problems: list[Diagnostic] = []
@@ -191,13 +192,38 @@ def world_vocabulary(
     world: str | Source | None = None,
     language: str = ENGLISH,
 ) -> Lexicon:
-    """The words of a language and of the keyword files, and the names of a world. Raises MissionError."""
+    """The words of a language and of the keyword files, and the names of a world; `keywords` as for `parse_tree`.
+
+    Nodes of XML files get words that all others leave free, as `btc words --from` makes them. Raises MissionError.
+    """
     find = partial(_names_by_type, world)
     if isinstance(world, Source):
         by_type, features = recent(_names, world.text, find)
     else:
         by_type, features = cached("world", [DEFAULT_WORLD if world is None else world, STANDARD_BODY], find)
-    return load_vocabulary(keywords, by_type, language, features)
+    others = [word for word in keywords if not _is_xml(word)]
+    vocabulary = load_vocabulary(others, by_type, language, features)
+    models = [str(word) for word in keywords if _is_xml(word)]
+    if not models:
+        return vocabulary
+
+    def make() -> Lexicon:
+        from btlang.backends.keyword_pack import vocabulary_of_models  # most missions have only other words
+
+        return vocabulary_of_models(models, vocabulary, partial(vocabulary_with, keywords=others, language=language))
+
+    try:
+        key = (id(vocabulary), *map(stamp, models))
+    except OSError:
+        return make().with_names(by_type, features)
+    return recent(_with_models, key, lambda: (vocabulary, make()))[1].with_names(by_type, features)
+
+
+_with_models: dict[tuple[object, ...], tuple[Lexicon, Lexicon]] = {}  # the first stays, so that no id is used again
+
+
+def _is_xml(word: object) -> bool:
+    return isinstance(word, str) and word.endswith(XML_ENDINGS)
 
 
 _names: dict[str, tuple[dict[str, tuple[str, ...]], Features]] = {}  # by the text of the world

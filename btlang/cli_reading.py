@@ -22,7 +22,7 @@ def add_words_options(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="FILE",
-        help="another keyword file, or the name of a pack; may be repeated",
+        help="another keyword file, an XML file whose nodes become words, or the name of a pack; may be repeated",
     )
     parser.add_argument(
         "--language", default=ENGLISH, metavar="LANG", help="of the mission: en, es, or a folder (default: en)"

@@ -35,16 +35,13 @@ def _make(options: argparse.Namespace) -> None:
     from functools import partial
 
     from btlang.backends.files import put
-    from btlang.backends.keyword_pack import keyword_pack, leaves_of
+    from btlang.backends.keyword_pack import pack_of_files
     from btlang.diagnostics.reading import read_source
-    from btlang.frontends.btcpp.files import read_files
     from btlang.passes.lint.allow import not_allowed
     from btlang.vocabulary.load import vocabulary_with
 
-    read = read_files([read_source(path) for path in options.sources])
     vocabulary = world_vocabulary(options.keywords, options.world, options.language)
-    leaves = leaves_of(read.models.values(), read.nodes(), vocabulary)
     load = partial(vocabulary_with, keywords=options.keywords, language=options.language)
-    pack = keyword_pack(leaves, vocabulary, load, read.place)
-    options.report.add(not_allowed([*read.warnings, *pack.warnings]))
+    pack, _ = pack_of_files([read_source(path) for path in options.sources], vocabulary, load)
+    options.report.add(not_allowed(pack.warnings))
     put(pack.text, options.out)

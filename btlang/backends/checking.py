@@ -7,6 +7,7 @@ from functools import cache, partial
 
 from btlang.backends.engine import bind_leaf, leaf_binding
 from btlang.backends.keywords import Draft, drafts
+from btlang.backends.near_ids import respelt_leaf, respelt_subtree, said_at
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import in_order
 from btlang.engine.faults import UnknownNode, UnknownSubTree, faults
@@ -34,12 +35,17 @@ def tree_problems(
     `bind` and `services` are those of a run, by default what a keyword entry says, without the robot: a `call` that
     cannot be loaded here is no problem then, as it may be there on the robot.
     """
-    found = faults(tree, bind or cache(partial(bound, vocabulary)), services or {"robot": None})
+    bind, services = bind or cache(partial(bound, vocabulary)), services or {"robot": None}
+    found = faults(tree, bind, services)
     found.sort(key=_place)  # so that an entry is told where it is missed first
     entries = drafts(tree, vocabulary) if any(isinstance(error, UnknownNode) for error in found) else {}
     problems = []
+
+    def fits(node: Node) -> bool:
+        return not faults(Tree(node), bind, services)
+
     for error in found:
-        problems.append(_told(error, tree, vocabulary, entries))
+        problems.append(_told(error, tree, vocabulary, entries, fits))
         entries.pop(error.node.id, None)  # once is enough
     return in_order(problems)
 
@@ -52,26 +58,44 @@ def misnamed(tree: Tree, vocabulary: Lexicon) -> Iterator[Diagnostic]:
             kind = vocabulary.types.get(slots.get(port, ""))
             if kind is None or kind.kind != "names" or "{" in text or vocabulary.value(kind.name, text) is not None:
                 continue
-            near = nearest(text.lower(), vocabulary.values.names(kind.name))
+            names = vocabulary.values.names(kind.name)
+            if text in names:  # what nobody says: `eo`, said as `Esperanto`
+                continue
+            near = nearest(text.lower(), names)
             reason = f"there is no {kind.name} '{text}'" + (f"; similar: {', '.join(near)}" if near else "")
             yield diagnostic("BT132", node.span or NOWHERE, id=node.id, reason=reason)
 
 
-def _told(error: EngineError, tree: Tree, vocabulary: Lexicon, entries: dict[str, Draft | None]) -> Diagnostic:
+def _told(
+    error: EngineError,
+    tree: Tree,
+    vocabulary: Lexicon,
+    entries: dict[str, Draft | None],
+    fits: Callable[[Node], bool],
+) -> Diagnostic:
+    """`fits` says whether a leaf can run."""
     node = error.node
-    span = node.span or NOWHERE
+    span, names = node.span or NOWHERE, [name for name, _ in tree.subtrees]
     if isinstance(error, UnknownSubTree):
         name = node.port("ID")
-        near = nearest(name.lower(), [name for name, _ in tree.subtrees])
-        return _helped(diagnostic("BT126", span, name=name), _near(near), _defining(name, span))
+        near = nearest(name.lower(), names)
+        said = said_at(node, name, vocabulary)
+        fix = respelt_subtree(said, names, vocabulary) if said is not None else None
+        return _helped(diagnostic("BT126", span, fix=fix, name=name), _near(near), _defining(name, span))
     missing = node.id not in CATALOGUE and node.id not in vocabulary.entries
     if not isinstance(error, UnknownNode) and not (node.children and missing):
         return diagnostic("BT132", span, id=node.id, reason=error.message)
     if node.children:
         near = nearest(node.id.lower(), [id for id, kind in CATALOGUE.items() if kind.most])
         return diagnostic("BT131", span, id=node.id, help=_near(near))
-    near = nearest(node.id.lower(), [*vocabulary.entries, *(id for id, kind in CATALOGUE.items() if not kind.least)])
-    return _helped(diagnostic("BT130", span, id=node.id), _near(near), _entry(node, entries))
+    ids = [*vocabulary.entries, *(id for id, kind in CATALOGUE.items() if not kind.least)]
+    said, fix = said_at(node, node.id, vocabulary), None
+    if said is not None and said.may_be_subtree:
+        ids, fix = [*names, *ids], respelt_subtree(said, names, vocabulary)
+    if said is not None and fix is None:
+        fix = respelt_leaf(said, ids, vocabulary, lambda id: fits(node.replace(id=id)))
+    advice = "" if fix else _entry(node, entries)
+    return _helped(diagnostic("BT130", span, fix=fix, id=node.id), _near(nearest(node.id.lower(), ids)), advice)
 
 
 def _helped(told: Diagnostic, *advice: str) -> Diagnostic:

@@ -1,4 +1,7 @@
-"""A keyword pack for the nodes of other programs; before it is given it is loaded, and its phrases are read."""
+"""A keyword pack for the nodes of other programs; before it is given it is loaded, and its phrases are read.
+
+A file with models may stand for the pack that is made of it.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from btlang.backends.keywords import Draft, Leaf, drafted, is_unknown, keyword_text, why_none
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import read_source
+from btlang.frontends.btcpp.files import read_files
 from btlang.frontends.mission.reader import PARSERS, read_mission
 from btlang.passes import lower_mission
 from btlang.record import Record
@@ -14,6 +19,7 @@ from btlang.text.source import NOWHERE, Source, Span
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.keyword_file import KeywordFile, read_keyword_file
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.value_type import ValueType, with_unit
@@ -27,6 +33,31 @@ class KeywordPack(Record):
 
     text: str
     warnings: tuple[Diagnostic, ...]
+
+
+def pack_of_files(
+    sources: Sequence[Source], vocabulary: Lexicon, load: Callable[[Source], Lexicon]
+) -> tuple[KeywordPack, KeywordFile]:
+    """Words for the unknown nodes in XML files, as `keyword_pack`; and what the pack declares, at the nodes' tags.
+
+    The warnings are those of the files, too. Raises MissionError (BT120 to BT129).
+    """
+    read = read_files(sources)
+    places = read.places()
+    pack = keyword_pack(leaves_of(read.models.values(), read.nodes(), vocabulary), vocabulary, load, places)
+    declared = read_keyword_file(Source(pack.text, sources[0].name))
+    entries = tuple(entry.replace(span=places[entry.id]) for entry in declared.entries)
+    return pack.replace(warnings=(*read.warnings, *pack.warnings)), declared.replace(entries=entries)
+
+
+def vocabulary_of_models(
+    paths: Sequence[str], vocabulary: Lexicon, load: Callable[[Source | KeywordFile], Lexicon]
+) -> Lexicon:
+    """A vocabulary with the words of XML files; `load` is that of `keyword_pack`.
+
+    Raises MissionError (BT001, BT002, BT120 to BT129).
+    """
+    return load(pack_of_files([read_source(path) for path in paths], vocabulary, load)[1])
 
 
 def leaves_of(models: Iterable[NodeModel], nodes: Iterable[Node], vocabulary: Lexicon) -> list[Leaf]:
@@ -48,10 +79,10 @@ def keyword_pack(
     leaves: Sequence[Leaf],
     vocabulary: Lexicon,
     load: Callable[[Source], Lexicon],
-    place: Callable[[str], Span | None] = lambda _: None,
+    places: Mapping[str, Span] = {},
 ) -> KeywordPack:
     """Words for these leaves. `load` makes the vocabulary with a keyword file, as a mission with the pack has it;
-    `place` finds an id in the files.
+    `places` are those of ids in the files.
 
     A phrase that either parser reads as anything else gives way to the next one. A leaf without any is left out, with
     the warning BT240.
@@ -66,7 +97,7 @@ def keyword_pack(
         for entry in misread:
             refused.setdefault(entry.id, []).append(entry.phrases[0])
     without = [id for id, draft in found.items() if draft is None]
-    warnings = (diagnostic("BT240", place(id) or NOWHERE, id=id, reason=why_none(id)) for id in without)
+    warnings = (diagnostic("BT240", places.get(id, NOWHERE), id=id, reason=why_none(id)) for id in without)
     return KeywordPack(text, tuple(warnings))
 
 

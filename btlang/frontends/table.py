@@ -41,6 +41,8 @@ FRONTENDS = {
     ),
 }
 """The first that a text begins as reads it."""
+XML_ENDINGS = (".xml", ".btproj")
+"""Of the names of files with trees or models of BehaviorTree.CPP and Groot."""
 
 
 def frontend_of(source: Source) -> str:

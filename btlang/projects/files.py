@@ -9,15 +9,15 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, real_path
+from btlang.frontends.table import XML_ENDINGS
 from btlang.text.source import Source, Span
 
-_ENDINGS = (".xml", ".btproj")
 _ROOT = re.compile(r"\s*(?:<\?.*?\?>\s*|<!--.*?-->\s*|<!DOCTYPE[^>]*>\s*)*<root[\s/>]", re.DOTALL)
 
 
 def tree_files(folder: str) -> list[str]:
     """The files of trees and models in a folder and below it, without hidden ones. Raises MissionError (BT001)."""
-    found = [path for path in files_below(folder, _ENDINGS) if _may_have_trees(path)]
+    found = [path for path in files_below(folder, XML_ENDINGS) if _may_have_trees(path)]
     if not found:
         reason = "there are no trees in XML in this folder"
         raise MissionError([diagnostic("BT001", Span(Source("", folder), 0, 0), file=folder, reason=reason)])

@@ -43,13 +43,15 @@ def load_vocabulary(
 
 
 def vocabulary_with(
-    source: Source, keywords: Sequence[str | Entry | Callable[..., Any]] = (), language: str = ENGLISH
+    file: Source | KeywordFile, keywords: Sequence[str | Entry | Callable[..., Any]] = (), language: str = ENGLISH
 ) -> Lexicon:
-    """The same with a further keyword file, whose text this is. Raises MissionError (BT001, BT002, BT060 to BT065)."""
+    """The same with a further keyword file, its text or what it declares. Raises MissionError (BT001, BT002, BT060 to
+    BT065).
+    """
     folder, english = _folder(language), shipped("keywords", ENGLISH)
     paths, entries = _items(keywords)
     known = None if folder == english else _words(english, (), ())
-    return _made([*keyword_files(folder), *paths], entries, folder, known, [source])
+    return _made([*keyword_files(folder), *paths], entries, folder, known, [file])
 
 
 def _folder(language: str) -> str:
@@ -92,9 +94,9 @@ def _made(
     entries: Iterable[Entry],
     folder: str,
     english: Lexicon | None,
-    sources: Sequence[Source] = (),
+    further: Sequence[Source | KeywordFile] = (),
 ) -> Lexicon:
-    """The vocabulary of keyword files, those of a language among them, of texts of others, and of entries."""
+    """The vocabulary of keyword files, those of a language among them, of further ones, and of entries."""
     from btlang.vocabulary.keyword_file import read_keyword_file  # not where the cache has it
 
     files: list[KeywordFile] = []
@@ -106,7 +108,7 @@ def _made(
             problems += error.diagnostics
     if problems:
         raise MissionError(problems)
-    files += map(read_keyword_file, sources)
+    files += (read_keyword_file(file) if isinstance(file, Source) else file for file in further)
     if not all(file.shipped for file in files):  # what no phrase says is a part of the language
         own = {shown_name(path) for path in keyword_files(folder)}
         files = [

@@ -18,7 +18,8 @@ from btlang.vocabulary.trie import Match, TrieNode, longest
 _ID = re.compile(r"(?:[A-Z][a-z0-9]*)+")
 _PART = re.compile(r"[A-Z][a-z0-9]*")
 _WORD = re.compile(r"[a-z][a-z0-9]*")
-_BEHIND = ("called", "with", "giving")
+BEHIND_ID = ("called", "with", "giving")
+"""The roles of what is said of a node behind its id."""
 _LEAST = 3  # letters of what can be a misspelling
 
 
@@ -57,7 +58,7 @@ def read_id(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, int] | None
     None for what is a command or a condition, or a misspelt one.
     """
     words = text.words
-    if not _WORD.fullmatch(words[at]) or role_end(text, at, _BEHIND, vocabulary):
+    if not _WORD.fullmatch(words[at]) or role_end(text, at, BEHIND_ID, vocabulary):
         return None
     last = at + 1
     while _WORD.fullmatch(words[last]) and not _ends(text, last, vocabulary):
@@ -111,7 +112,7 @@ def _ends(text: Words, at: int, vocabulary: Lexicon) -> bool:
     """Whether what ends an id begins at a word: a connective, or what is said of the node."""
     match = _phrase(text, at, vocabulary)
     joins = match is not None and match.meaning.entry is None and match.meaning.role not in (*NODE_ROLES, *NOT_ALONE)
-    return joins or role_end(text, at, _BEHIND, vocabulary) > 0
+    return joins or role_end(text, at, BEHIND_ID, vocabulary) > 0
 
 
 @lru_cache(maxsize=4)

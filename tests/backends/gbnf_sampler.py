@@ -1,4 +1,4 @@
-"""Reads grammars in GBNF, and derives random sentences of them that use every rule and every alternative."""
+"""Reads grammars in GBNF, derives random sentences of them that use every rule and every alternative, and accepts."""
 
 from __future__ import annotations
 
@@ -86,6 +86,40 @@ def _characters(written: str) -> str:
     return found
 
 
+def accepts(rules: dict[str, Node], text: str) -> bool:
+    """Whether the rule root makes a text."""
+    known: dict[tuple[str, int], frozenset[int]] = {}
+
+    def ends(node: Node, starts: frozenset[int]) -> frozenset[int]:
+        """The places up to which the node makes the text from one of the places on."""
+        if node.kind == "text":
+            return frozenset(at + len(node.text) for at in starts if text.startswith(node.text, at))
+        if node.kind == "chars":
+            return frozenset(at + 1 for at in starts if text[at : at + 1] in tuple(_characters(node.text)))
+        if node.kind == "name":
+            return frozenset().union(*(named(node.text, at) for at in starts))
+        if node.kind == "choice":
+            return frozenset().union(*(ends(part, starts) for part in node.parts))
+        if node.kind == "joined":
+            for part in node.parts:
+                starts = ends(part, starts) if starts else starts
+            return starts
+        found, latest = frozenset[int]() if node.kind == "+" else starts, starts
+        while latest:
+            latest = ends(node.parts[0], latest) - found
+            found |= latest
+            if node.kind == "?":
+                break
+        return found
+
+    def named(name: str, at: int) -> frozenset[int]:
+        if (name, at) not in known:
+            known[name, at] = ends(rules[name], frozenset((at,)))
+        return known[name, at]
+
+    return len(text) in named("root", 0)
+
+
 class Sampler:
     """Derives sentences. Each one uses the rule that was used least so far, and apart from that the alternatives that
     were used least.
@@ -102,9 +136,9 @@ class Sampler:
         self._steps: dict[str, dict[str, int]] = {}
         self._target = ""
 
-    def sentence(self) -> str:
-        """One derivation of the rule root."""
-        self._target = min(self.rules, key=lambda name: self.used[name])
+    def sentence(self, target: str = "") -> str:
+        """One derivation of the rule root that uses a rule, by default the one that was used least."""
+        self._target = target or min(self.rules, key=lambda name: self.used[name])
         return self._derived(Node("name", "root"), 0, aims=True)
 
     def _derived(self, node: Node, depth: int, aims: bool) -> str:

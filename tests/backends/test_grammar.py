@@ -18,8 +18,11 @@ from btlang.backends.grammar.forms import FORMS
 from btlang.backends.grammar.targets import GRAMMARS
 from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
-from btlang.frontends.mission.reader import PARSERS
-from tests.backends.gbnf_sampler import Node, Sampler, read
+from btlang.frontends.mission.reader import PARSERS, read_mission
+from btlang.text.source import Source
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.load import vocabulary_with
+from tests.backends.gbnf_sampler import Node, Sampler, accepts, read
 from tests.profiles import amount
 
 ROOT = Path(__file__).parents[2]
@@ -78,7 +81,8 @@ def test_every_phrase_and_every_form_has_a_rule() -> None:
 
 def test_every_role_that_can_stand_in_one_line_has_a_rule() -> None:
     elsewhere = {  # blocks, files, the words of other forms, what says nothing
-        "following", "in_parallel", "in_order", "include", "here", "newline", "character", "with", "giving",
+        "following", "in_parallel", "in_order", "include", "here", "newline", "character",
+        "giving",  # only words of others have outputs
         "needs_world", "needs_words", "politeness", "times_of_day", "never",
         "all_names", "nearest", "random", "largest", "smallest", "except",  # said as values
     }  # fmt: skip
@@ -135,6 +139,84 @@ def test_words_of_keyword_files_and_worlds_are_in_it(tmp_path: Path, capsys: pyt
     assert not any(line.startswith("juggle") for line in rules)  # there is nothing to juggle with
     assert main(["grammar", "--keywords", str(tmp_path / "juggling.toml")]) == 0
     assert 'juggle-1 ::= "juggle with " value-object\n' in capsys.readouterr().out
+
+
+PLANNER = """
+[[action]]
+id = "ComputePath"
+phrase = "compute path [to {goal}] [planned by {planner}] [trying {tries}] [kept as {path}] [worth {cost}]"
+slots = {goal = "place", planner = "text", tries = "whole_number", path = "text", cost = "text"}
+outputs = ["path", "cost"]
+[[action]]
+id = "MoveArm"
+phrase = "reach for {goal} along {path}"
+slots = {goal = "place", path = "text"}
+outputs = ["path"]
+[[type]]
+name = "whole_number"
+whole = true
+"""
+
+
+@cache
+def planner_words() -> Lexicon:
+    return vocabulary_with(Source(PLANNER)).with_names({"place": ("lab", "kitchen")})
+
+
+@cache
+def planner_rules() -> dict[str, Node]:
+    return read(GRAMMARS["gbnf"](planner_words()))
+
+
+def test_ports_behind_a_phrase_are_in_the_grammar_of_its_words() -> None:
+    rules = planner_rules()
+    assert "word-giving" in rules
+    for line in (
+        'compute path with "goal" "lab", "planner" "fast", "tries" 3 giving {path} giving {cost}',
+        'compute path to lab called "n3"',
+        'do "MoveArm" with "goal" "lab" giving {path}',
+        'do move arm with "goal" "lab" giving {path}',
+        "this mission is given {n1}\ncompute path to {n1}",
+        "this mission is given {n1}, {n2}\ncompute path to {n2}",
+    ):
+        assert accepts(rules, line), line
+        for parser in PARSERS:
+            read_mission(Source(line), planner_words(), parser)
+    for line in ("compute path giving {lab}", "compute path to {n1}", "compute path with lab", ""):
+        assert not accepts(rules, line), line
+
+
+@pytest.mark.parametrize(
+    "node",
+    [
+        '<GoTo name="n3" place="lab"/>',
+        '<MoveForward name="n3" distance="2"/>',
+        '<GoTo place="{n1}"/>',
+        '<PickUp object="{n1}"/>',
+        '<MoveForward distance="{n1}"/>',
+        '<Sleep msec="2000"/>',
+        '<Say text="{n1}"/>',
+        '<Wave name="n3"/>',
+    ],
+)
+def test_the_grammar_makes_what_is_printed(node: str) -> None:
+    xml = f'<root BTCPP_format="4"><BehaviorTree ID="r4">{node}</BehaviorTree></root>'
+    text = str(parse_tree(xml).to("english"))
+    said = "\n".join(line for line in text.splitlines() if not line.startswith("#:"))
+    said = said.partition('"r4"\n')[2]  # a mission has one of both: a name or values from outside
+    assert accepts(read(gbnf()), said), said
+
+
+@pytest.mark.long
+def test_nodes_with_ports_and_values_from_outside_can_run() -> None:
+    sampler = Sampler(gbnf(), seed=5)
+    rules = ("named", "further", "exact-ports", "given-values", "keyed-n1", "keyed-n2", "is-keyed-n2")
+    for number in range(amount(70, 2000)):
+        text = sampler.sentence(rules[number % len(rules)])
+        for parser in PARSERS:
+            mission = parse_tree(text, parser=parser)
+            mission.check()
+            assert UNKNOWABLE.keys() >= {problem.code for problem in mission.warnings}, text
 
 
 @pytest.mark.long

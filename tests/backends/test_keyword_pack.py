@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from btlang.api import parse_file, parse_tree, world_vocabulary
-from btlang.backends.keyword_pack import KeywordPack, keyword_pack, leaves_of
+from btlang.backends.keyword_pack import KeywordPack, keyword_pack, leaves_of, pack_of_files
 from btlang.backends.keywords import is_unknown
 from btlang.backends.wording import SpokenPorts, phrases
 from btlang.cli import main
@@ -32,11 +32,7 @@ FILES = [*(CORPUS / "team" / f"{name}.xml" for name in TEAM), CORPUS / "good" / 
 
 def pack_of(*sources: Source) -> KeywordPack:
     """As `btc words --from` makes it."""
-    read = read_files(sources)
-    vocabulary = world_vocabulary()
-    return keyword_pack(
-        leaves_of(read.models.values(), read.nodes(), vocabulary), vocabulary, vocabulary_with, read.place
-    )
+    return pack_of_files(sources, world_vocabulary(), vocabulary_with)[0]
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
@@ -168,3 +164,24 @@ def test_most_leaves_have_a_phrase_that_says_all_of_their_ports() -> None:
         by_phrase, total = by_phrase + sum(map(bool, said)), total + len(leaves)
     assert total > 100
     assert by_phrase >= 0.7 * total
+
+
+@only_long
+def test_few_leaves_are_said_by_ids_in_quotes() -> None:
+    """In what is printed, with words made from names and with ids in words alone; and no line is long."""
+    quoted = {"words": 0, "ids": 0}
+    total = longest = 0
+    for path in sorted((CORPUS / "team").glob("*.xml")):
+        for way, keywords in (("words", [str(path)]), ("ids", [])):
+            mission = parse_file(str(path), keywords=keywords)
+            lines = [line for line in str(mission.to("english")).splitlines() if line[:2] != "#:"]
+            leaves = [node.id for node in mission.tree.walk() if not node.children]
+            unknown = [node_id for node_id in leaves if is_unknown(node_id, world_vocabulary())]
+            said = re.findall(r'\b(?:do|test) (?:node )?"([^"]*)"', "\n".join(lines))
+            quoted[way] += sum(node_id in unknown for node_id in said)
+            total += len(unknown) if way == "words" else 0
+            longest = max(longest, *map(len, lines))
+    assert total > 100
+    assert quoted["words"] <= 0.3 * total
+    assert quoted["ids"] <= 0.3 * total
+    assert longest <= 200

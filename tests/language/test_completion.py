@@ -117,6 +117,18 @@ def is_finishable(text: str) -> bool:
         ("repeat:\n  wave\n  ", ["wave", "go to "]),
         ("while someone is near:\n  wave\n", ["otherwise", "go to "]),
         ("wave, please, then ", ["wave"]),
+        ("wave ", ["called ", "with ", "giving "]),
+        ("go to the lab wi", ["with "]),
+        ("go to the lab with ", ["manner "]),
+        ('do "PointAtPlace" ', ["with ", "called "]),
+        ("do point at place with ", ["place ", "x "]),
+        ('do point at place with place "lab", ', ["x ", "y "]),
+        ('do "Choose" giving ', ["{output}"]),
+        ('"Tour" is: wave\ndo ', ['"Tour"']),
+        ("this mission is given {goal}, {path}\ngo to ", ["{goal}", "{path}", "lab"]),
+        ("this mission is given {goal}, {path}\ngo to {", ["goal}", "path}"]),
+        ("this mission ", ["is given {"]),
+        ("this mission is gi", ["given {"]),
     ],
 )
 def test_offered(text: str, among: list[str]) -> None:
@@ -140,6 +152,11 @@ def test_offered(text: str, among: list[str]) -> None:
         ("patrol is wave\nwave if pa", ["patrol"]),
         ("wave nod ", ["then"]),
         ('do "GoTo" with ', ["is ", "means "]),
+        ('do point at place with place "lab", ', ["place "]),
+        ('wave called "first" ', ["called "]),
+        ("wave then ", ["called ", "with "]),
+        ("this mission is given {goal}\nwave ", ["{goal}"]),
+        ("wave\nthis is ", ["given {"]),
     ],
 )
 def test_not_offered(text: str, absent: list[str]) -> None:

@@ -6,8 +6,10 @@ The notation is that of `rules.parsed`. What isn't here is made from the vocabul
   condition, `denied` one that says that it isn't so; `value-number` is a value of the type number, and so on;
 - `<role>` is every way to say a role of the language, with a value in its slot;
 - `<doing>` is a command with the verb form that follows `while`, `<together ...>` two commands that need different
-  parts of the robot, with that word between them; `<say n1>`, `<at-fact w1>` and `<subtree r3>` use these names, and
-  `<each-type ...>` makes such a statement for the names of each type, also with `every place` or `a random place`.
+  parts of the robot, with that word between them; `<say n1>`, `<at-fact w1>` and `<subtree r3>` use these names,
+  `<keyed n1>` is a command and `<is-keyed n1>` a condition with this value in any slot, and
+  `<each-type ...>` makes such a statement for the names of each type, also with `every place` or `a random place`;
+- `further` is a command with the ports that its words leave out, `exact-ports` the id of a node with its ports.
 
 A form is made of a `unit`: a leaf, or anything in brackets. So no sentence has two readings.
 """
@@ -15,11 +17,13 @@ A form is made of a `unit`: a leaf, or anything in brackets. So no sentence has 
 from __future__ import annotations
 
 MISSION = {
-    "mission": r'((valued | defined) "\n")? (line "\n")* (line | last) | (rule "\n")+ (form "\n")* form',
+    "mission": r'beginning | (beginning "\n")? (line "\n")* (line | last) | (rule "\n")+ (form "\n")* form',
+    "beginning": "valued | defined",
     "line": "form | going-on | if-doing-fails",
     "form": "leaf | bracketed | joined | before | behind",
     "leaf": "plain | waiting | checking",
-    "plain": "action | <wait> | <wait_time> | <nothing>",
+    "plain": "action | named | further | <wait> | <wait_time> | <nothing>",
+    "named": 'action " " <called> " `n3`"',
     "unit": 'plain | "(" (waiting | checking | bracketed | joined | before | behind) ")"',
     "able": 'action | "(" (action ", " <then> " " unit | checking) ")"',
     "bracketed": '"(" leaf "; " leaf ")"',
@@ -136,18 +140,19 @@ VALUES = {
 
 DEFINITIONS = {
     "defined": "definition | quoted-definition | with-parameter | mission-name | condition-definition | fact"
-    " | given-value | exact-node",
+    " | given-values | exact-node",
     "definition": '"r1 " (<define> | <define_strong>) " " unit "\\nr1"',
     "quoted-definition": '"`r3` " <define_strong> " " unit "\\n" <do> " " (<subtree r3> | "`r3`")',
     "with-parameter": "<each-type parameter>",
     "mission-name": '<main_name> " `r4`\\n" unit',
-    "given-value": '<given> " {n1}\\n" <say n1>',
+    "given-values": '<given> " {n1}\\n" <keyed n1> | <given> " {n1}, {n2}\\n" (<keyed n2> | keyed-if)',
+    "keyed-if": '<if> " " <is-keyed n2> ", " <keyed n1>',
     "condition-definition": '"c1 " <define_strong> " " part "\\n" <if> " c1, " unit',
     "fact": '"w1 " <fact> " (" value-number ", " value-number ")" (" " <facing> " " value-angle)? "\\n" <at-fact w1>',
-    "exact-node": "exact-command | named-command | command-with-port | exact-check",
+    "exact-node": "exact-command | named-command | command-with-ports | exact-check",
     "exact-command": '<do> " " (<node> " ")? exact-action',
     "named-command": '<do> " " exact-action " " <called> " `n3`"',
-    "command-with-port": '<do> " " exact-text',
+    "command-with-ports": '<do> " " exact-ports',
     "exact-check": '<check> " " <test> " " exact-condition',
 }
 

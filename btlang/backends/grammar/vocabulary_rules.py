@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from itertools import chain
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import chain, takewhile
 
 from btlang.backends.grammar.forms import FORMS
 from btlang.backends.grammar.rules import (
@@ -22,10 +22,11 @@ from btlang.backends.grammar.rules import (
 )
 from btlang.tree.catalogue import SUBTREE
 from btlang.vocabulary.correct_words import correct_words
-from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.entry import Entry, SlotSpec
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.node_words import said_id
 from btlang.vocabulary.pattern import Form, Slot, forms, variants
-from btlang.vocabulary.value_type import Unit, ValueType, with_unit
+from btlang.vocabulary.value_type import TEXT, Unit, ValueType, with_unit
 
 _FIGURE = '([1-9] [0-9]? | "0." [1-9])'
 _WHOLE = "[1-9] [0-9]?"
@@ -70,12 +71,8 @@ class _VocabularyRules:
         for name, leaves in (("exact-action", self._actions), ("exact-condition", self._conditions)):
             ids = dict.fromkeys(leaf.entry.id for leaf in leaves if not leaf.entry.slots)
             rules[name] = choice(Text(f'"{node_id}"') for node_id in ids)
-        rules["exact-text"] = choice(
-            parsed(f'"`{leaf.entry.id}` " <with> " {slot.name} " {_rule_of("text")}', self._words)
-            for leaf in self._actions
-            for slot in leaf.entry.slots
-            if slot.type == "text" and slot.name.isalpha()
-        )
+        rules["further"] = choice(self._further(leaf) for leaf in self._actions)
+        rules["exact-ports"] = choice(self._exact(leaf) for leaf in self._actions)
         for leaf in (*self._actions, *self._conditions):
             rules[leaf.name] = choice(self._said(form, leaf) for form in leaf.forms)
         for kind in self._vocabulary.types.values():
@@ -124,6 +121,7 @@ class _VocabularyRules:
         head, _, rest = wanted.partition(" ")
         special = {
             "together": self._together, "compare": self._compared, "say": self._saying, "each-type": self._by_type,
+            "keyed": self._keyed, "is-keyed": self._is_keyed,
         }  # fmt: skip
         if head in special:
             return special[head](rest)
@@ -191,13 +189,74 @@ class _VocabularyRules:
     def _saying(self, name: str) -> Part:
         return self._with_value("text", Text(f'"{_GIVEN % name}"'))
 
+    def _keyed(self, name: str) -> Part:
+        return self._shared(f"keyed-{name}", self._with_key(name, self._actions))
+
+    def _is_keyed(self, name: str) -> Part:
+        return self._shared(f"is-keyed-{name}", self._with_key(name, self._conditions))
+
+    def _with_key(self, name: str, leaves: Sequence[_Leaf]) -> Part:
+        """A phrase with this value in a slot of any type."""
+        key = _GIVEN % name
+        patterns = chain.from_iterable(self._vocabulary.roles.values())
+        roles = [form for pattern in patterns for form in forms(pattern, self._vocabulary.articles)]
+        joining = {_head(form) for form in roles if _slots_of(form)}  # `in {n1}` may be a time
+        return choice(
+            self._said(form, leaf, {slot: Text(f'"{key}"' if leaf.kinds.get(slot) == TEXT else key)})
+            for leaf in leaves
+            for form in leaf.forms
+            if _head(form) not in joining
+            for slot in _slots_of(form)
+        )
+
+    def _further(self, leaf: _Leaf) -> Part:
+        """The shortest way to say a command, with the ports that it leaves out."""
+        form = min(leaf.forms, key=len)
+        behind = {other[len(form)] for other in leaf.forms if other[: len(form)] == form != other}
+        if not behind.isdisjoint(self._vocabulary.roles["with"]):  # `greet Bob with "hello"`
+            return NOTHING
+        return self._with_ports(self._said(form, leaf), leaf, _slots_of(form))
+
+    def _exact(self, leaf: _Leaf) -> Part:
+        """The id of a command with the ports of one way to say it."""
+        node_id, slots = leaf.entry.id, set(_slots_of(min(leaf.forms, key=len)))
+        words = said_id(node_id, "do", self._vocabulary)
+        head = choice((Text(f'"{node_id}"'), *([Text(words)] if words else [])))
+        return self._with_ports(head, leaf, {slot.name for slot in leaf.entry.slots} - slots)
+
+    def _with_ports(self, head: Part, leaf: _Leaf, others: Collection[str]) -> Part:
+        """A node with its ports but for the `others`; NOTHING where there are none."""
+        ports = [slot for slot in leaf.entry.slots if slot.name not in others]
+        if not ports:
+            return NOTHING
+        outputs = [slot.name for slot in ports if slot.name in leaf.entry.outputs]
+        inputs = [self._port(slot) for slot in ports if slot.name not in outputs]
+        parts = [head]
+        if inputs:
+            parts += [parsed('" " <with> " "', self._words), inputs[0]]
+            parts += chain.from_iterable((Text(", "), port) for port in inputs[1:])
+        for name in outputs:
+            parts += [parsed('" " <giving> " "', self._words), Text(_GIVEN % name)]
+        return joined(parts)
+
+    def _port(self, slot: SlotSpec) -> Part:
+        """The name of a port and its text."""
+        kind = self._vocabulary.types[slot.type]
+        if kind.kind == "names":
+            value = choice(Text(f'"{name}"') for name in self._vocabulary.values.names(kind.name))
+        elif kind.kind in ("text", "time"):
+            value = self._value(kind) if kind.kind == "text" else NOTHING
+        else:
+            value = parsed(_WHOLE if kind.whole else _FIGURE, self._words)
+        return joined((Text(f'"{slot.name}" '), value))
+
     def _with_value(self, kind: str, value: Part) -> Part:
         """A command with this value in a slot of the type."""
         return choice(
             self._said(form, leaf, {slot: value})
             for leaf in self._actions
             for form in leaf.forms
-            for slot in [part.name for part in form if isinstance(part, Slot)]
+            for slot in _slots_of(form)
             if leaf.kinds.get(slot) == kind
         )
 
@@ -272,6 +331,15 @@ class _VocabularyRules:
             yield joined(
                 (Chars("[1-9]"), repeated(joined((Text(":"), Chars("[0-5]"), Chars("[0-9]"))), "?"), Text(f" {half}"))
             )
+
+
+def _slots_of(form: Form) -> tuple[str, ...]:
+    return tuple(part.name for part in form if isinstance(part, Slot))
+
+
+def _head(form: Form) -> tuple[str, ...]:
+    """The words before the first slot."""
+    return tuple(map(str, takewhile(lambda part: isinstance(part, str), form)))
 
 
 def _rule_of(kind: str) -> str:

@@ -10,7 +10,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included, real_path
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.models import subtree_defaults
-from btlang.frontends.btcpp.scan import scanned
+from btlang.frontends.btcpp.scan import Document, scanned
 from btlang.text.source import Source, Span
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.model import NodeModel
@@ -78,13 +78,14 @@ class XmlFiles:
         for root in (root for file in self.files for _, root in file.trees):
             yield from Tree(root).walk()
 
-    def place(self, node_id: str) -> Span | None:
-        """The first tag that names a kind of node."""
+    def places(self) -> dict[str, Span]:
+        """The first tag that names each kind of node."""
+        found: dict[str, tuple[Document, int]] = {}
         for document in (file.document for file in self.files):
             for at, (tag, *_) in enumerate(document.elements):
-                if node_id in (tag, document.attributes(at).get("ID")):
-                    return document.span(at)
-        return None
+                for node_id in (tag, document.attributes(at).get("ID", "")):
+                    found.setdefault(node_id, (document, at))
+        return {node_id: document.span(at) for node_id, (document, at) in found.items()}
 
     def circles(self) -> list[Diagnostic]:
         """BT124 for each tree that contains itself."""

@@ -22,7 +22,7 @@ from btlang.frontends.mission.explanations.spelling_rule import is_respelling, w
 from btlang.frontends.mission.explanations.unknown import nearest_known
 from btlang.frontends.mission.grouping.grouping import Grouped, group
 from btlang.frontends.mission.symbols.prefixes import find_prefixes
-from btlang.frontends.mission.token import Called, Header, Listed, Token
+from btlang.frontends.mission.token import Called, Header, Listed, NodeCall, Token
 from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.record import Record
 from btlang.text.source import Source, Span
@@ -57,12 +57,15 @@ class _Statement(Record):
 
 
 class _Trial(Record):
-    """Statements to read with a change in one of them, `own` is that of the problem; how much is wrong without."""
+    """Statements to read with a change in one of them, `own` is that of the problem; how much is wrong without, and
+    which nodes are said by their ids.
+    """
 
     own: _Statement
     statements: tuple[_Statement, ...]
     faults: int
     cost: int
+    ids: frozenset[str]
 
 
 def corrected(lexer: Lexer, problems: list[Diagnostic], compile: Compile | None) -> list[Diagnostic]:
@@ -239,8 +242,8 @@ class _Corrections:
             self._budget -= max(len(around), _LEAST_COST)
             return None
         self._budget -= cost
-        faults = _read(self._lexer, "".join(self._piece(statement, None) for statement in statements))[2]
-        self._trials[number] = _Trial(self._statements[number], statements, len(faults), cost)
+        lexer, _, faults = _read(self._lexer, "".join(self._piece(statement, None) for statement in statements))
+        self._trials[number] = _Trial(self._statements[number], statements, len(faults), cost, _ids(lexer))
         return self._trials[number]
 
     def _suspects(self, problem: Diagnostic, statement: _Statement) -> list[int]:
@@ -292,6 +295,10 @@ class _Corrections:
         sentences = [*map(_Sentences(lexer.text).around, places)]
         if len(faults) >= trial.faults or any(first <= fault <= last for fault in faults for first, last in sentences):
             return None
+        known = self._vocabulary
+        are_known = all(id in trial.ids or id in known.entries or id in known.nodes for id in _ids(lexer))
+        if not are_known and '"' not in change[2]:
+            return None  # words that mean nothing became the id of a node that nobody knows: `do on gripper`
         meaning = [(token.kind, _said(token)) for token in lexer.tokens]
         broken = {bisect_right(ends, fault) - 1 for fault in faults}
         if broken:  # what else is wrong keeps the text from being compiled
@@ -313,6 +320,10 @@ def _read(like: Lexer, text: str) -> tuple[Lexer, Grouped, list[int]]:
     grouped = group(source, lexer.tokens, lexer.conditions, lexer.vocabulary.word)
     unknown = [token.start for token in lexer.tokens if token.kind == "unknown"]
     return lexer, grouped, unknown + [p.span.start for p in (*lexer.problems, *grouped.problems) if p.is_error]
+
+
+def _ids(lexer: Lexer) -> frozenset[str]:
+    return frozenset(token.value.id for token in lexer.tokens if isinstance(token.value, NodeCall))
 
 
 class _Sentences:

@@ -10,6 +10,7 @@ from bisect import bisect_left
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
+from btlang.frontends.mission.completion.node_completion import node_options
 from btlang.frontends.mission.completion.value_completion import value_options
 from btlang.frontends.mission.grouping.grouping import group
 from btlang.frontends.mission.reader import lexed
@@ -96,7 +97,9 @@ class Completer:
     def _options(self, start: str) -> Iterator[Completion]:
         for words, kind in value_options(self._words, self._last, start, self._vocabulary, self._context):
             yield Completion(words, self._start, kind, "named in this mission" if kind == "value" else "")
-        tokens = self._tokens
+        names, tokens = self._lexer.names.definitions, self._tokens
+        of_node = list(node_options(self._words, self._last, start, self._vocabulary, names, tokens, self._tokens_of))
+        yield from (Completion(said, self._start, kind) for said, kind in of_node if kind != "connective")
         joining: list[Completion] = []
         for at in range(max(0, len(tokens) - _MOST_TOKENS_BACK), len(tokens) + 1):
             if at < len(tokens) and tokens[at].kind in _LINE_STARTS:
@@ -107,8 +110,15 @@ class Completer:
                 else:
                     yield option
         yield from joining
+        yield from (Completion(said, self._start, kind) for said, kind in of_node if kind == "connective")
+        line, given = self._text.rpartition("\n")[2].lstrip().lower(), self._vocabulary.word("given")
+        if len(line) >= _LONG_ENOUGH and given.startswith(line):
+            yield Completion(given[len(line) - len(start) :] + " {", self._start, "connective")
         if not start and not self._is_broken(len(tokens)) and self._may_stand(len(tokens), "close"):
             yield Completion(")", self._start, "connective", "ends the group")
+
+    def _tokens_of(self, text: str) -> list[Token]:
+        return self._lexer.again(Source(text)).tokens
 
     def _is_unknown(self) -> bool:
         """Whether the word being written belongs to nothing that is known."""
@@ -161,6 +171,9 @@ class Completer:
         for kind, first, child in slots:
             if any(self._may_stand(at, meaning.role) for meaning in meanings(child)):
                 written = self._words.words[first : self._last]
+                for known in (self._context.known or {}).values() if not written and not start else ():
+                    if not known.words:  # of any type
+                        yield Completion(f"{{{known.key}}}", self._start, "value", "given to this mission")
                 for value in values_on(kind, self._context.values, written, start):
                     yield Completion(value, self._start, "value", kind)
 

@@ -18,9 +18,10 @@ def value_options(
 ) -> Iterator[tuple[str, str]]:
     """(words, kind) that may follow the words before `last`, the next of which begins with `start`."""
     known: Mapping[str, Known] = context.known or {}
-    names = [" ".join(value.words) for value in known.values()]
+    names = [" ".join(value.words) for value in known.values() if value.words]
     if text.words[last - 1] == "{":
-        yield from ((f"{name}}}", "value") for name in names if name.startswith(start))
+        untyped = [value.key for value in known.values() if not value.words]
+        yield from ((f"{name}}}", "value") for name in (*names, *untyped) if name.startswith(start))
         return
     at = last - 1
     while at >= 0 and text.words[at] not in (END_OF_STATEMENT, END_OF_TEXT):

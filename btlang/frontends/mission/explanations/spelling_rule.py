@@ -16,16 +16,18 @@ def is_respelling(written: str, meant: str, vocabulary: Lexicon, before: str = "
     """Whether two texts say the same but for slips in words that are no words; `before` is the word before them.
 
     They also do where only marks or blanks differ, where words are added to none, or to a number, or where the word of
-    a node by its id is taken away (`do wave`). A word of correct English is never changed, nor one that might as well
-    be a negation or a word for how many.
+    a node by its id is taken away, alone or with its article (`do the wave`). A word of correct English is never
+    changed, nor one that might as well be a negation or a word for how many.
     """
     was, now = _PIECE.findall(written.lower()), _PIECE.findall(meant.lower())
     if was == now and not vocabulary.quantifiers.isdisjoint(was):
         return False  # quotes round `hello never wave` would change what it means
     if was == now or not any(piece[0].isalpha() for piece in was):
         return [piece for piece in now if piece[0].isdigit()] == [piece for piece in was if piece[0].isdigit()]
-    if was[1:] == now and any(was[0] in vocabulary.roles[role] for role in NODE_ROLES):
-        return bool(now)
+    if any(was[0] in vocabulary.roles[role] for role in NODE_ROLES) and now[:1] != was[:1]:
+        was, now = ([piece for piece in said if piece not in vocabulary.articles] for said in (was[1:], now))
+        if was == now:
+            return bool(now)
     if len(was) != len(now):
         if min(len(was), len(now)) > 1 or not _are_slips(was, vocabulary, before):
             return False

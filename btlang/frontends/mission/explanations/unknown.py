@@ -22,7 +22,7 @@ from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
-from btlang.vocabulary.node_words import near_commands
+from btlang.vocabulary.node_words import BEHIND_ID, near_commands, role_end
 from btlang.vocabulary.pattern import forms, spelled
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
@@ -259,12 +259,13 @@ def _unknown_phrase(
         fix = None if is_thing else (whole, quoted)
         return diagnostic("BT010", span, fix=fix, kind="word", words=span.text, help=advice)
     kind = "condition" if _asks(before) else "command"
-    meant = longest(vocabulary.trie, text, at + 1, vocabulary.context) if end > at + 1 else None
     is_node = text.words[at] in (phrase for role in NODE_ROLES for phrase in vocabulary.roles[role])
-    if is_node and meant is not None and meant.meaning.entry is not None:  # `do wave`
+    meant = longest(vocabulary.trie, text, at + 1, vocabulary.context) if is_node else None
+    is_phrase = meant is not None and meant.meaning.entry is not None
+    if meant is not None and is_phrase and not role_end(text, meant.last, BEHIND_ID, vocabulary):  # `do wave`
         rest = text.span(at + 1, meant.last).text
         whole = text.span(at, meant.last)
-        return diagnostic("BT010", span, fix=(whole, rest), kind=kind, words=span.text, help=nearest_known([rest]))
+        return diagnostic("BT010", whole, fix=(whole, rest), kind=kind, words=whole.text, help=nearest_known([rest]))
     is_lower = span.text[1:] == span.text[1:].lower()
     near_node = near_commands(text.words[at + 1 : end], vocabulary) if is_node and is_lower else []
     if near_node and near_node[0] not in vocabulary.nodes.values():  # `do wavee`
