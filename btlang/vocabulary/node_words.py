@@ -136,7 +136,13 @@ def _phrases(vocabulary: Lexicon) -> tuple[frozenset[str], frozenset[str], froze
         for form in forms(phrase, vocabulary.articles):
             head = " ".join(str(part) for part in takewhile(lambda part: not isinstance(part, Slot), form))
             (heads if any(isinstance(part, Slot) for part in form) else whole).add(head)
-    return frozenset(whole), frozenset(heads), frozenset(vocabulary.nodes.values())
+    return _one(frozenset(whole)), _one(frozenset(heads)), _one(frozenset(vocabulary.nodes.values()))
+
+
+@lru_cache(maxsize=16)
+def _one(known: frozenset[str]) -> frozenset[str]:
+    """The same object for equal sets, of which a cache would compare all words at each look-up."""
+    return known
 
 
 @lru_cache(maxsize=4096)
