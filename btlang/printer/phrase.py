@@ -145,6 +145,8 @@ def _read_back_value(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
     ways = _ways(text, kind, vocabulary)
     if len(ways) == 1:
         return ways[0]
+    if kind.kind == "names" and text[:1] != "(" and text not in vocabulary.values.listed(kind.name):
+        return ""  # no words of a vocabulary mean it
     return next((way for way in ways if vocabulary.value(kind.name, way) == text), "")
 
 
