@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 
 from btlang.backends.english.candidate import Candidate, Checked
 from btlang.backends.english.code import Computed, computed
