@@ -6,6 +6,7 @@ What is said is read back as it stands, by btlang/frontends/mission/symbols/node
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
 from collections.abc import Iterator, Mapping
 
 from btlang.printer.pieces import COLON, LEAF, Piece, Pieces, mark
@@ -91,10 +92,12 @@ def _in_words(node_id: str, subtree: str, role: str, printer: Printer) -> str:
     said = said_id(node_id, role, printer.vocabulary)
     if not said or (role == "do" and subtree_named(node_id, printer.subtrees, in_words=True) != subtree):
         return ""
+    names, context = printer.names, printer.vocabulary.context
+    if not names:
+        return said
     text = split(Source(f"{printer.vocabulary.word(role)} {said}"), printer.vocabulary.orthography)
     places = (0, len(text.words) - 2 - len(said.split()))
-    names, context = printer.names, printer.vocabulary.context
-    return said if not names or all(longest(names, text, at, context) is None for at in places) else ""
+    return said if all(longest(names, text, at, context) is None for at in places) else ""
 
 
 def _ports(role: str, ports: Mapping[str, str], printer: Printer, *, is_phrase: bool) -> str:
@@ -109,12 +112,15 @@ def _ports(role: str, ports: Mapping[str, str], printer: Printer, *, is_phrase: 
         defines = is_phrase and any(define in name.split("_") for define in defining)
         key = name.replace("_", " ") if _is_words(name, vocabulary) and not defines else key
         value = text if _BARE.fullmatch(text) else quoted(text, vocabulary)
-        begin = split(Source(f"{key} {value}"), vocabulary.orthography)
-        is_free = said and is_port(
-            begin, 0, len(split(Source(key), vocabulary.orthography).words) - 2, vocabulary, printer.names
-        )
+        is_free = said and _is_free(key, value, printer)
         said += f", {key} {value}" if is_free else f" {vocabulary.word(role)} {key} {value}"
     return said
+
+
+def _is_free(key: str, value: str, printer: Printer) -> bool:
+    """Whether a port behind a comma is read as one."""
+    begin = split(Source(f"{key} {value}"), printer.vocabulary.orthography)
+    return is_port(begin, 0, bisect_left(begin.starts, len(key)), printer.vocabulary, printer.names)
 
 
 def quoted(text: str, vocabulary: Lexicon) -> str:

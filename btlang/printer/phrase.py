@@ -74,8 +74,16 @@ def leaf_words(
     for entry in vocabulary.entries.get(node_id, ()):
         spoken = {name: text for name, text in ports.items() if _default(entry, name) != text}
         spoken = _with_point(entry, spoken, vocabulary)
+        types = {slot.name: vocabulary.types[slot.type] for slot in entry.slots}
+        if not spoken.keys() <= types.keys():
+            continue
+        said = {name: _read_back_value(text, types[name], vocabulary) for name, text in spoken.items()}
+        if exactly and not all(said.values()):
+            continue  # nor is it read back in any phrase
         for form, values in _fitting(entry, spoken):
-            words = _filled(form, values, entry, vocabulary)
+            for name, text in values.items():
+                said[name] = said.get(name) or value_of(text, types[name], vocabulary)
+            words = " ".join(said[part.name] if isinstance(part, Slot) else part for part in form)
             if _reads_back(words, entry, spoken, vocabulary, names):
                 return words
             first = first or words
@@ -124,32 +132,37 @@ def _reads_back(
     return named is None or named.last < match.last
 
 
-def _filled(form: Form, values: Mapping[str, str], entry: Entry, vocabulary: Lexicon) -> str:
-    types = {slot.name: vocabulary.types[slot.type] for slot in entry.slots}
-    words = (
-        value_of(values[part.name], types[part.name], vocabulary) if isinstance(part, Slot) else part for part in form
-    )
-    return " ".join(words)
-
-
 def value_of(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
     """A port text as a user would say it: `2 m`, `20%`, `hello`, `"two words"`.
 
     A text that could be taken for something else is quoted.
     """
+    return _read_back_value(text, kind, vocabulary) or _ways(text, kind, vocabulary)[0]
+
+
+def _read_back_value(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
+    """The first way to say a text that is read back as it, "" where none is."""
+    ways = _ways(text, kind, vocabulary)
+    if len(ways) == 1:
+        return ways[0]
+    if kind.kind == "names" and text[:1] != "(" and text not in vocabulary.values.listed(kind.name):
+        return ""  # no words of a vocabulary mean it
+    return next((way for way in ways if vocabulary.value(kind.name, way) == text), "")
+
+
+def _ways(text: str, kind: ValueType, vocabulary: Lexicon) -> list[str]:
+    """The ways to say a text, the most natural first."""
     if text.startswith("{") and kind.kind != "text":
         choice = choice_of(text)
-        return vocabulary.values.choice_words(choice) if choice is not None else text
+        return [vocabulary.values.choice_words(choice) if choice is not None else text]
     if kind.kind == "quantity":
-        return with_unit(text, kind.units[0].words[0])
+        return [with_unit(text, kind.units[0].words[0])]
     if kind.kind in ("number", "time"):
-        return text
+        return [text]
     ways = [f'"{text}"', f"'{text}'"]
     if kind.kind == "names":
-        ways = [vocabulary.values.spoken(kind.name, text), text, *ways]
-    elif not _says_more(text, vocabulary):
-        ways.insert(0, text)
-    return next((way for way in ways if vocabulary.value(kind.name, way) == text), ways[0])
+        return [vocabulary.values.spoken(kind.name, text), text, *ways]
+    return ways if _says_more(text, vocabulary) else [text, *ways]
 
 
 def _says_more(text: str, vocabulary: Lexicon) -> bool:

@@ -13,6 +13,7 @@ from btlang.text.words import Words, split
 from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
 from btlang.vocabulary.pattern import Slot, forms
+from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import Match, TrieNode, longest
 
 _ID = re.compile(r"(?:[A-Z][a-z0-9]*)+")
@@ -23,7 +24,7 @@ BEHIND_ID = ("called", "with", "giving")
 _LEAST = 3  # letters of what can be a misspelling
 
 
-@lru_cache(maxsize=1024)
+@lru_cache(maxsize=4096)  # a file has few ids and ports, each many times
 def said_id(node_id: str, role: str, vocabulary: Lexicon) -> str:
     """`OpenGripper` as `open gripper`; "" where these words behind `do` or `test` are read as anything else.
 
@@ -84,7 +85,7 @@ def is_port(text: Words, at: int, last: int, vocabulary: Lexicon, names: TrieNod
     match = _phrase(text, at, vocabulary)
     if match is not None and match.meaning.role not in NOT_ALONE:
         return False
-    if names and longest(names, text, at, vocabulary.context.with_references()) is not None:
+    if names and longest(names, text, at, _context(vocabulary)) is not None:
         return False
     return not _is_misspelt(text.words[at:last], _phrases(vocabulary)[1], vocabulary)
 
@@ -95,17 +96,29 @@ def _capital(word: str) -> str:
 
 def role_end(text: Words, at: int, roles: tuple[str, ...], vocabulary: Lexicon) -> int:
     """Where the words of one of some roles end that begin at a word; 0 where there are none."""
-    for role in roles:
-        for phrase in vocabulary.roles[role]:
-            words = phrase.split()
-            if text.words[at : at + len(words)] == words:
-                return at + len(words)
+    for words in _words_by_start(roles, vocabulary).get(text.words[at], ()):
+        if text.words[at : at + len(words)] == words:
+            return at + len(words)
     return 0
+
+
+@lru_cache(maxsize=32)
+def _words_by_start(roles: tuple[str, ...], vocabulary: Lexicon) -> dict[str, list[list[str]]]:
+    found: dict[str, list[list[str]]] = {}
+    for words in (phrase.split() for role in roles for phrase in vocabulary.roles[role]):
+        found.setdefault(words[0], []).append(words)
+    return found
+
+
+@lru_cache(maxsize=4)
+def _context(vocabulary: Lexicon) -> ReadingContext:
+    """Any name in braces is a value, whatever values the mission has."""
+    return vocabulary.context.with_references()
 
 
 def _phrase(text: Words, at: int, vocabulary: Lexicon) -> Match | None:
     """The longest phrase that begins at a word, whatever values the mission has."""
-    return longest(vocabulary.trie, text, at, vocabulary.context.with_references())
+    return longest(vocabulary.trie, text, at, _context(vocabulary))
 
 
 def _ends(text: Words, at: int, vocabulary: Lexicon) -> bool:
@@ -124,10 +137,16 @@ def _phrases(vocabulary: Lexicon) -> tuple[frozenset[str], frozenset[str], froze
         for form in forms(phrase, vocabulary.articles):
             head = " ".join(str(part) for part in takewhile(lambda part: not isinstance(part, Slot), form))
             (heads if any(isinstance(part, Slot) for part in form) else whole).add(head)
-    return frozenset(whole), frozenset(heads), frozenset(vocabulary.nodes.values())
+    return _one(frozenset(whole)), _one(frozenset(heads)), _one(frozenset(vocabulary.nodes.values()))
 
 
-@lru_cache(maxsize=4096)  # a file has few ids and ports, each many times
+@lru_cache(maxsize=16)
+def _one(known: frozenset[str]) -> frozenset[str]:
+    """The same object for equal sets, of which a cache would compare all words at each look-up."""
+    return known
+
+
+@lru_cache(maxsize=4096)
 def _is_near(written: str, known: frozenset[str]) -> bool:
     return bool(respellings(written, known))
 

@@ -51,7 +51,7 @@ class ReadingContext:
         self.untyped: Set[str] = frozenset()
         """Where any name in braces is a value, the keys of those that are of any type."""
         self.openers: Mapping[str, frozenset[str]] = {}
-        """As those of the values; where the mission names values itself, any value may begin at any word."""
+        """As those of the values; where the mission names values itself without braces, any may begin at any word."""
         self._most_words = 0
         self.set_known(known or {})
 
@@ -64,7 +64,7 @@ class ReadingContext:
     def with_references(self) -> ReadingContext:
         """The same, where any name in braces is a value of any type, and with pronouns of its own."""
         made = ReadingContext(self.values)
-        made.known, made.openers = None, {}
+        made.known = None
         return made
 
     def read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:

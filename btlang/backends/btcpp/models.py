@@ -44,6 +44,7 @@ class Uses:
                 self._known[model.id] = model
         self._trees = {name for name, _ in tree.subtrees} | {tree.name}
         self._kinds: dict[str, str] = {}
+        self._types: dict[str, dict[str, str]] = {}
 
     @property
     def ids(self) -> list[str]:
@@ -99,8 +100,11 @@ class Uses:
 
     def port_types(self, node_id: str) -> dict[str, str]:
         """The C++ types of the ports of such a node; of any other none are told."""
-        ports = self._model(node_id).ports if node_id in self._ports else ()
-        return {port.name: port.type for port in ports}
+        found = self._types.get(node_id)
+        if found is None:
+            ports = self._model(node_id).ports if node_id in self._ports else ()
+            found = self._types[node_id] = {port.name: port.type for port in ports}
+        return found
 
     def _model(self, node_id: str) -> NodeModel:
         model = self._known.get(node_id)

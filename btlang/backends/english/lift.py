@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 
 from btlang.backends.english.candidate import Candidate, Checked
 from btlang.backends.english.code import Computed, computed
@@ -69,6 +69,7 @@ class Lifter:
         self._comments = comments
         self._conditions: set[str] = set()  # the names that stand for conditions
         self._loops: dict[str, Candidate] = {}
+        self._leaves: dict[tuple[str, tuple[tuple[str, str], ...], Lexicon], str] = {}
         self._checked = Checked(Scope(names, vocabulary.types), known.around(""))
 
     def definition(self, name: str, root: Node) -> ast.Definition:
@@ -277,12 +278,16 @@ class Lifter:
             spoken = [port for port in node.ports if port[0] in defaults and defaults[port[0]] != port[1]]
             ports = tuple(port for port in node.ports if port not in spoken)
             said = texts_of(spoken, self._checked) if entry.sort == sort else None
-            words = self._words(node.id, dict(said)) if said is not None else ""
+            words = self._words(node.id, said) if said is not None else ""
             if words and (not (node.name or ports) or self._ends(words)):
                 yield ast.Phrase(entry, said or (), NOWHERE, node.name, ports, self._given(node, ports))
 
-    def _words(self, node_id: str, texts: Mapping[str, str]) -> str:
-        return leaf_words(node_id, texts, self._checked.around.vocabulary, self.printer.names, exactly=True)
+    def _words(self, node_id: str, texts: tuple[tuple[str, str], ...]) -> str:
+        vocabulary = self._checked.around.vocabulary
+        key = node_id, texts, vocabulary
+        if key not in self._leaves:
+            self._leaves[key] = leaf_words(node_id, dict(texts), vocabulary, self.printer.names, exactly=True)
+        return self._leaves[key]
 
     def _ends(self, words: str) -> bool:
         """Whether a phrase ends where `called` or `with` stands behind it."""

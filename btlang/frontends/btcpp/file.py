@@ -181,10 +181,7 @@ class XmlFile:
             self.uses[head.name] = reader.uses[::-1]
             reader.uses.clear()
             notes = self.notes
-            before, inside, heading, behind = (
-                {at - first: as_written(told) for at in range(first, end) if (told := find(at))} if notes else {}
-                for find in (notes.before, notes.inside, notes.heading, notes.behind)
-            )
+            before, inside, heading, behind = notes.among(first, end)
             after = as_written(notes.inside(head.index))
             attributes = tuple(document.attributes(head.index).items())
             self.origins[head.name] = TreeOrigin(attributes, tags, before, inside, heading, behind, after)

@@ -49,6 +49,15 @@ class Notes:
         """Those behind a node that has ended, on its line."""
         return self._behind.get(index, [])
 
+    def among(self, first: int, end: int) -> tuple[dict[int, tuple[str, ...]], ...]:
+        """Those of some elements, which are numbered from 0: before each, inside it, and on the line of its start tag
+        and of its end.
+        """
+        return tuple(
+            {at - first: as_written(found[at]) for at in range(first, end) if at in found} if found else {}
+            for found in (self._before, self._inside, self._heading, self._behind)
+        )
+
     def _place(self) -> None:
         """In the order of the file; `opened` are the elements around the present place."""
         elements, depths = self._document.elements, self._document.depths
@@ -96,6 +105,8 @@ def as_items(notes: list[Note]) -> Items:
 
 def as_written(notes: list[Note]) -> tuple[str, ...]:
     """Comments as they are written, and texts as they can be."""
+    if len(notes) == 1 and not notes[0].is_text:
+        return (notes[0].text,)  # nearly always
     return tuple(note.text.strip().translate(IN_TEXTS) if note.is_text else note.text for note in notes)
 
 

@@ -178,32 +178,37 @@ class _Reader:
         begins = gives = False
         while True:
             with_at, giving_at = self.word("with", at), self.word("giving", at)
-            following = with_at or giving_at or (self._another(at) if begins else 0)
+            following = with_at or giving_at
             if not following:
-                return outputs, at
-            begins, gives = True, bool(giving_at) or (gives and not with_at)
-            if giving_at and self._text.words[following] == "{":
+                another = self._another(at) if begins else None
+                if another is None:
+                    return outputs, at
+                following, key, value, at = another
+            elif giving_at and self._text.words[following] == "{":
                 value, at = self.text(following)
                 key = value[1:-1].strip()
             else:
                 key, value_at = self.key(following)
                 value, at = self.text(value_at)
+            begins, gives = True, bool(giving_at) or (gives and not with_at)
             if key in ports:
                 raise Unreadable(following, f"another port than {key}")
             ports[key] = value
             outputs += [key] if gives else []
 
-    def _another(self, at: int) -> int:
-        """Where a port begins behind a comma; 0 where something else does."""
+    def _another(self, at: int) -> tuple[int, str, str, int] | None:
+        """Where a port begins behind a comma, its name and text, and where it ends; None where something else does."""
         if self._text.words[at] != ",":
-            return 0
-        following = self.word("with", at + 1)
+            return None
+        behind = self.word("with", at + 1)
+        following = behind or at + 1
         try:
-            value_at = self.key(following or at + 1)[1]
-            self.text(value_at)
+            key, value_at = self.key(following)
+            value, end = self.text(value_at)
         except Unreadable:
-            return 0
-        return following or (at + 1 if is_port(self._text, at + 1, value_at, self._vocabulary, self._names) else 0)
+            return None
+        is_one = behind or is_port(self._text, following, value_at, self._vocabulary, self._names)
+        return (following, key, value, end) if is_one else None
 
     def key(self, at: int) -> tuple[str, int]:
         """The name of a port, in quotes or as words: `number of retries`; and where its text begins."""
