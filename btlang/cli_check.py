@@ -28,7 +28,7 @@ def serve(options: argparse.Namespace) -> int:
         check.mend()
     check.check()
     if not check.failed and not options.report.is_for_programs:
-        show("No problems found.")
+        show("No errors found." if options.report.has_any else "No problems found.")
     return _BAD_INPUT if check.failed else _SUCCESS
 
 

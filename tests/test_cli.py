@@ -294,7 +294,7 @@ def test_certain_corrections_are_written(btc: Screen, tmp_path: Path) -> None:
     file = tmp_path / "mission.txt"
     file.write_text("go to the kitchenn and look around\nwav then nod\nif bumped, nod. Wave. Otherwise say hi\n")
     assert btc("check", "--fix", str(file)) == 0
-    assert btc.out == f"Corrected {file}: 2 changes.\nNo problems found.\n"
+    assert btc.out == f"Corrected {file}: 2 changes.\nNo errors found.\n"
     mended = "go to the kitchen and look around\nwave then nod\nif bumped, nod. Wave. Otherwise say hi\n"
     assert file.read_text() == mended
     assert "BT069" in btc.err

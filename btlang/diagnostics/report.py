@@ -44,6 +44,11 @@ class Report:
             shown = (render(first, colour) + _and_more(others) for first, *others in equal.values())
             show("\n\n".join(shown), stream=sys.stderr)
 
+    @property
+    def has_any(self) -> bool:
+        """Whether anything was reported yet."""
+        return bool(self._held)
+
     def close(self) -> None:
         """Prints the document, `[]` where there was nothing to tell; or, below the text, where more is explained."""
         if self._held and not self.is_for_programs:

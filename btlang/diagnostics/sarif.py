@@ -67,4 +67,5 @@ def _region(span: Span) -> dict[str, int]:
 
 
 def _uri(name: str) -> str:
-    return Path(name).as_uri() if os.path.isabs(name) else quote(name.replace(os.sep, "/"))
+    # bytes that aren't UTF-8 are in a name as halves of characters, which as_uri writes as bytes again, too
+    return Path(name).as_uri() if os.path.isabs(name) else quote(os.fsencode(name.replace(os.sep, "/")))

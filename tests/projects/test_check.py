@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shlex
 import shutil
@@ -10,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from jsonschema import Draft202012Validator
 
 from btlang.cli import main
 from btlang.diagnostics.codes import CODES
@@ -151,6 +153,64 @@ def test_names_of_version_3_stay(tmp_path: Path) -> None:
     path.write_text(text, "utf-8")
     assert main(["check", "--fix", str(path)]) == 0
     assert path.read_text("utf-8") == text
+
+
+def test_a_refused_id_is_told_once_and_no_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Each file has its own warning of other kinds."""
+    tree = '<root BTCPP_format="4">stray<BehaviorTree ID="{}"><Sequence><Wave/>{}</Sequence></BehaviorTree></root>'
+    (tmp_path / "main.xml").write_text(tree.format("Main", '<SubTree ID="Go Home"/>'), "utf-8")
+    (tmp_path / "part.xml").write_text(tree.format("Go Home", "<Nod/>"), "utf-8")
+    assert [problem["code"] for problem in problems(capsys, str(tmp_path))] == ["BT230", "BT238", "BT230"]
+    assert main(["check", str(tmp_path)]) == 0
+    assert capsys.readouterr().out == "No errors found.\n"
+
+
+def sarif(required: str, **properties: Any) -> dict[str, Any]:
+    """An object of SARIF 2.1.0 with these properties and no others."""
+    return {"type": "object", "properties": properties, "required": required.split(), "additionalProperties": False}
+
+
+TEXT = {"type": "string", "minLength": 1}
+LEVEL = {"enum": ["none", "note", "warning", "error"]}
+PLACE = {"type": "integer", "minimum": 1}
+MESSAGE = sarif("text", text=TEXT)
+ARTIFACT = sarif("uri", uri={"type": "string", "pattern": r"^(file:///)?([A-Za-z0-9_.~/-]|%[0-9A-F]{2})+$"})
+REGION = sarif("startLine", startLine=PLACE, startColumn=PLACE, endLine=PLACE, endColumn=PLACE)
+PHYSICAL = sarif("artifactLocation", artifactLocation=ARTIFACT, region=REGION)
+LOCATION = sarif("", id={"type": "integer", "minimum": -1}, physicalLocation=PHYSICAL, message=MESSAGE)
+REPLACEMENT = sarif("deletedRegion", deletedRegion=REGION, insertedContent=sarif("text", text={"type": "string"}))
+SOME = {"type": "array", "minItems": 1, "uniqueItems": True}
+CHANGE = sarif("artifactLocation replacements", artifactLocation=ARTIFACT, replacements={**SOME, "items": REPLACEMENT})
+FIX = sarif("artifactChanges", description=MESSAGE, artifactChanges={**SOME, "items": CHANGE})
+RULE = sarif("id", id=TEXT, shortDescription=MESSAGE, defaultConfiguration=sarif("", level=LEVEL))
+RESULT = sarif(
+    "message", ruleId=TEXT, ruleIndex={"type": "integer", "minimum": -1}, level=LEVEL, message=MESSAGE,
+    locations={"type": "array", "items": LOCATION}, relatedLocations={**SOME, "items": LOCATION},
+    fixes={**SOME, "items": FIX},
+)  # fmt: skip
+RUN = sarif(
+    "tool", columnKind={"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
+    tool=sarif("driver", driver=sarif("name", name=TEXT, rules={"type": "array", "uniqueItems": True, "items": RULE})),
+    results={"type": "array", "items": RESULT},
+)  # fmt: skip
+SARIF = sarif("version runs", version={"const": "2.1.0"}, runs={"type": "array", "items": RUN})
+"""The part of the schema of SARIF 2.1.0 that btc uses."""
+
+
+def test_sarif_has_the_form_of_its_schema_whatever_files_are_called(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (folder / "mistakes" / "deliver.xml").read_bytes()
+    for name in (b"a b#1%20&.xml", b"x:y.xml", b"new\nline.xml", "tür.xml".encode(), b"\xff\xfe.xml"):
+        try:
+            (folder / os.fsdecode(name)).write_bytes(text)
+        except OSError:  # a file system may refuse a name
+            continue
+    for files in (["mistakes"], ["."], [str(folder)], ["-c", "go to the ktichen"], ["nowhere.xml"]):
+        assert main(["check", *files, "--format", "sarif"]) == 2
+        document = json.loads(capsys.readouterr().out)
+        Draft202012Validator(SARIF).validate(document)
+        assert document["runs"][0]["results"]
 
 
 @pytest.mark.usefixtures("folder")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.files import XmlFiles, same_id
@@ -42,7 +44,7 @@ def read_project(read: XmlFiles, palettes: XmlFiles, main: str = "") -> XmlProje
     read.read_trees(models)
     names, trees, used = read.names, read.trees, read.used
     circles = read.circles()
-    problems = [*read.problems, *read.warnings, *palettes.problems, *circles]
+    problems = [*read.problems, *_once(read.warnings), *palettes.problems, *circles]
     problems += [empty_file(file) for file in sound if not (file.heads or file.models or file.includes)]
     mains = frozenset(own for file in sound if (own := _main_of(file, names)) in trees)
     for name, first in again.items():
@@ -55,6 +57,18 @@ def read_project(read: XmlFiles, palettes: XmlFiles, main: str = "") -> XmlProje
             problems.append(no_tree(file.root_span, asked, known))
     dialects = {file.document.source.name: file.dialect for file in read.files}
     return XmlProject(trees, heads, mains, models, dialects, unread, tuple(problems), bool(circles))
+
+
+def _once(warnings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """Each warning about an ID (BT238) where the project has it first: it must be changed in all files at once."""
+    seen: set[str] = set()
+    for warning in warnings:
+        if warning.code == "BT238":
+            node_id = dict(warning.arguments)["id"]
+            if node_id in seen:
+                continue
+            seen.add(node_id)
+        yield warning
 
 
 def _named(files: list[XmlFile]) -> tuple[dict[str, TreeHead], dict[str, str]]:
