@@ -25,7 +25,7 @@ def write_onto(mission: Mission, path: str, out: str | None = None, *, force: bo
     text = source.text if isinstance(source, Source) else ""
     kept = kept_in(text)
     if not force and kept.digest not in ("", digest_of(original.text)):
-        advice = f"Make it anew with 'btc compile {path} --to english', or write it all the same with --force."
+        advice = f"Make the mission again with 'btc compile {path} --to english', or write it anyway with --force."
         raise MissionError([diagnostic("BT136", Span(original, 0, 0), path=path, advice=advice)])
     made = str(mission.to("xml", onto=original))
     mark = "\ufeff" if has_mark(path) else ""

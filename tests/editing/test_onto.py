@@ -90,6 +90,18 @@ def test_the_editor_of_the_user(
     assert tree.read_bytes() == changed
 
 
+def test_a_tree_that_only_other_files_use_is_no_warning(tree: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main_tree, part = (f'<BehaviorTree ID="{name}"><Wave/></BehaviorTree>' for name in ("Main", "Part"))
+    text = f'<root BTCPP_format="4" main_tree_to_execute="Main">{main_tree}{part}</root>'
+    tree.write_text(text, "utf-8")
+    mission = tree.with_suffix(".txt")
+    assert main(["compile", str(tree), "-o", str(mission)]) == 0
+    assert "BT051" not in capsys.readouterr().err
+    assert main(["compile", str(mission), "--onto", str(tree)]) == 0
+    assert capsys.readouterr() == ("", "")
+    assert tree.read_text("utf-8") == text
+
+
 def test_the_main_tree_may_stand_in_an_included_file(tree: Path) -> None:
     english = tree.with_suffix(".txt")
     tree.with_name("inner.xml").write_text('<root><BehaviorTree ID="Inner"><SubTree ID="Greet"/></BehaviorTree></root>')

@@ -9,15 +9,19 @@ from btlang.passes.compilation import Compilation
 from btlang.passes.names import names_in
 from btlang.text.source import Span
 from btlang.tree.ast import Assign, Ast, Remember, all_definitions, bodies, keys_of
+from btlang.tree.comments import KEPT
 
 
 def unused_names(compilation: Compilation) -> Iterator[Diagnostic]:
-    """Not of a text that only defines names or grows, nor of the names of another file: those are for others."""
+    """Not of a text that only defines names or grows, nor of the names of another file: those are for others.
+
+    Nor of the trees of an XML file in English, which other files may use; BT236 is about them.
+    """
     mission = compilation.mission
     if mission.body is None or compilation.grows:
         return
     yield from _values(compilation)
-    if not mission.definitions:
+    if not mission.definitions or f"\n{KEPT} " in mission.span.source.text:
         return
     own = {definition.name: definition.body for definition in mission.definitions}
     reached: set[str] = set()
