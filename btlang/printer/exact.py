@@ -15,6 +15,7 @@ from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
 from btlang.tree.catalogue import SUBTREE
+from btlang.vocabulary.language_tables import CHANGING
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
 from btlang.vocabulary.node_words import id_of_name, is_port, said_id, subtree_named
 from btlang.vocabulary.trie import longest
@@ -50,20 +51,20 @@ def node_head(node: ast.Exact, printer: Printer) -> str:
 def phrase(node: ast.Phrase, _parts: list[Doc], printer: Printer) -> Doc:
     """Words of a keyword entry, and behind them what they don't say of the node."""
     words = Piece(printer.phrase(node.entry.id, node.arguments) or node.span.text, LEAF)
-    details = _details(node, dict(node.ports), printer, is_phrase=True)
+    details = _details(node, dict(node.ports), printer)
     return Doc((words, mark(details.lstrip())) if details else (words,), WHOLE)
 
 
-def _details(node: ast.Exact | ast.Phrase, ports: dict[str, str], printer: Printer, *, is_phrase: bool = False) -> str:
+def _details(node: ast.Exact | ast.Phrase, ports: dict[str, str], printer: Printer) -> str:
     """` called "first" with width 0.05 giving {path}`, "" where nothing of that is to be said."""
     vocabulary, head = printer.vocabulary, ""
     if node.name:
         head += f" {vocabulary.word('called')} {quoted(node.name, vocabulary)}"
     gives = {key: ports.pop(key) for key in node.outputs if _KEY.fullmatch(ports.get(key, ""))}
-    head += _ports("with", ports, printer, is_phrase=is_phrase)
+    head += _ports("with", ports, printer)
     if [f"{{{key}}}" for key in gives] == [*gives.values()] and len(gives) == 1:
         return f"{head} {vocabulary.word('giving')} {''.join(gives.values())}"
-    return head + _ports("giving", gives, printer, is_phrase=is_phrase)
+    return head + _ports("giving", gives, printer)
 
 
 def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
@@ -100,18 +101,13 @@ def _in_words(node_id: str, subtree: str, role: str, printer: Printer) -> str:
     return said if all(longest(names, text, at, context) is None for at in places) else ""
 
 
-def _ports(role: str, ports: Mapping[str, str], printer: Printer, *, is_phrase: bool) -> str:
-    """`with width 0.05, speed 2`; the word again where a name behind a comma would be read as a command.
-
-    Behind a phrase a word that defines is in quotes: the line would be a definition.
-    """
+def _ports(role: str, ports: Mapping[str, str], printer: Printer) -> str:
+    """`with width 0.05, speed 2`; the word again where a name behind a comma would be read as a command."""
     vocabulary, said = printer.vocabulary, ""
-    defining = [word for define in DEFINING for word in vocabulary.roles[define]]
     for name, text in ports.items():
-        key = name if _IDENTIFIER.fullmatch(name) else quoted(name, vocabulary)
-        defines = is_phrase and any(define in name.split("_") for define in defining)
-        key = name.replace("_", " ") if _is_words(name, vocabulary) and not defines else key
-        value = text if _BARE.fullmatch(text) else quoted(text, vocabulary)
+        key = _key(name, vocabulary)
+        is_bare = _BARE.fullmatch(text) and text[1:-1] not in _claiming(vocabulary)
+        value = text if is_bare else quoted(text, vocabulary)
         is_free = said and _is_free(key, value, printer)
         said += f", {key} {value}" if is_free else f" {vocabulary.word(role)} {key} {value}"
     return said
@@ -121,6 +117,13 @@ def _is_free(key: str, value: str, printer: Printer) -> bool:
     """Whether a port behind a comma is read as one."""
     begin = split(Source(f"{key} {value}"), printer.vocabulary.orthography)
     return is_port(begin, 0, bisect_left(begin.starts, len(key)), printer.vocabulary, printer.names)
+
+
+def _key(name: str, vocabulary: Lexicon) -> str:
+    """The name of a port, as words if they are read back as it."""
+    if _is_words(name, vocabulary):
+        return name.replace("_", " ")
+    return name if _IDENTIFIER.fullmatch(name) else quoted(name, vocabulary)
 
 
 def quoted(text: str, vocabulary: Lexicon) -> str:
@@ -146,8 +149,17 @@ def _pieces(text: str, vocabulary: Lexicon) -> Iterator[str]:
 
 
 def _is_words(name: str, vocabulary: Lexicon) -> bool:
-    """Whether its words are read back as this name."""
+    """Whether its words are read back as this name, and not as a text, as `with` or as part of another name."""
     if not _WORDS.fullmatch(name):
         return False
+    first, *rest = name.split("_")
+    if any(first == phrase.split()[0] for phrase in vocabulary.roles["with"]):
+        return False
     others = {phrase.split()[0] for role in ("newline", "character") for phrase in vocabulary.roles[role]}
-    return not any(word in others or word in vocabulary.articles for word in name.split("_"))
+    others |= {*vocabulary.articles, *_claiming(vocabulary)}
+    return others.isdisjoint((first, *rest))
+
+
+def _claiming(vocabulary: Lexicon) -> set[str]:
+    """The words that make names or values of the words beside them."""
+    return {word for role in (*DEFINING, *CHANGING) for word in vocabulary.roles[role]}

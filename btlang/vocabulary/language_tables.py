@@ -31,6 +31,9 @@ NO_PHRASES = frozenset((
 ))  # fmt: skip
 """Roles whose words are looked for where definitions, facts and nodes are, and nowhere else."""
 
+CHANGING = ("increase", "decrease")
+"""Roles whose words change the value whose name is behind them, wherever they are found."""
+
 NOT_ALONE = frozenset(("ordinal", "keep", "fails"))
 """The roles whose words are ordinary words everywhere but in one place."""
 

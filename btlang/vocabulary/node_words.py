@@ -10,7 +10,7 @@ from itertools import takewhile
 from btlang.text.source import Source
 from btlang.text.spelling import respellings
 from btlang.text.words import Words, split
-from btlang.vocabulary.language_tables import NOT_ALONE
+from btlang.vocabulary.language_tables import CHANGING, NOT_ALONE
 from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.reading_context import ReadingContext
@@ -28,10 +28,11 @@ _LEAST = 3  # letters of what can be a misspelling
 def said_id(node_id: str, role: str, vocabulary: Lexicon) -> str:
     """`OpenGripper` as `open gripper`; "" where these words behind `do` or `test` are read as anything else.
 
-    So they are where a command goes on behind them with a value, and where a line would define something.
+    So they are where a command goes on behind them with a value, and where a line would define or change something.
     """
     said = " ".join(word.lower() for word in _PART.findall(node_id)) if _ID.fullmatch(node_id) else ""
-    if role == "do" and any(word in vocabulary.roles[define] for define in DEFINING for word in said.split()):
+    claiming = (*DEFINING, *CHANGING) if role == "do" else CHANGING
+    if any(word in vocabulary.roles[claim] for claim in claiming for word in said.split()):
         return ""
     text = split(Source(f"{vocabulary.word(role)} {said}"), vocabulary.orthography)
     head = longest(vocabulary.trie, text, 0, vocabulary.context)

@@ -123,6 +123,7 @@ IDS = [
     *((known, f'do "{known}"') for known in ("OpenGripper", "SayHello", "Say", "TurnLeft2M", "GoToTheLab")),  # phrases
     *((slip, f'do "{slip}"') for slip in ("Wavee", "RecoveryNodes", "Sequence2")),  # near to what is known
     *((joins, f'do "{joins}"') for joins in ("PickAndPlace", "MoveUntilWall", "DoorIsOpen", "RunTwice")),
+    ("IncreaseSpeed", 'do "IncreaseSpeed"'),
     ("WaitForGoal", "do wait for goal"),
     ("CheckBattery", "do check battery"),
 ]  # fmt: skip
@@ -151,12 +152,34 @@ def test_ports_stand_behind_one_with_and_outputs_last() -> None:
     ]
 
 
+PORTS_LIKE_WORDS = [
+    ('with="3"', 'with "with" 3'),
+    ('speed="2" with="{k}"', 'with speed 2 with "with" {k}'),
+    ('speed="2" with_care="1" use_with="2"', "with speed 2, with_care 1, use with 2"),
+    ('is_open="true" door_is_open="{k}"', 'with is_open "true", door_is_open {k}'),
+    ('is="{is}" means="{means}"', 'with "is" "{is}", "means" "{means}"'),
+    ('increase_rate="2" rate="{decrease}"', 'with increase_rate 2, rate "{decrease}"'),
+    ('then="{then}" called="{k}" giving="4"', "with then {then}, called {k}, giving 4"),
+]
+
+
+@pytest.mark.parametrize(("ports", "text"), PORTS_LIKE_WORDS)
+def test_ports_and_keys_may_be_words_of_the_language(ports: str, text: str) -> None:
+    assert said(f"<OpenBox {ports}/>") == [f"do open box {text}"]
+    assert said(f"<Gate {ports}><OpenBox/></Gate>") == [f"do gate {text}:", "  do open box"]
+
+
 def test_what_only_editors_write_is_not_said() -> None:
     ports = '_uid="3" _fullpath="a/b" _collapsed="1" _skipIf="x &gt; 1" _onSuccess="y := 2"'
     assert said(f"<!-- ////// --><OpenBox {ports}/><!-- ---\n===\nlid -->") == [
         "# lid",
         'do open box with _skipIf "x > 1", _onSuccess "y := 2"',
     ]
+
+
+def test_a_subtree_whose_name_would_change_a_value_is_said_in_quotes() -> None:
+    text = said('<SubTree ID="slowly increase"/></BehaviorTree><BehaviorTree ID="slowly increase"><Wave/>')
+    assert text == ['"slowly increase" means wave', 'do "slowly increase"']
 
 
 def test_a_subtree_is_said_by_its_name() -> None:

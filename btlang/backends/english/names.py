@@ -14,6 +14,7 @@ from btlang.text.words import split
 from btlang.tree import ast
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Tree
+from btlang.vocabulary.language_tables import CHANGING
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import keys_set_in
 
@@ -146,6 +147,8 @@ def is_phrase(name: str, vocabulary: Lexicon) -> bool:
     keys = parameters(name)
     own = (key.replace("_", "x") for key in keys)
     if not all(word.isalnum() for word in (*words, *own)) or name != name.lower() or len(keys) > len(set(keys)):
+        return False
+    if any(word in vocabulary.roles[role] for role in CHANGING for word in words):
         return False
     text = split(
         Source(f"{name} {vocabulary.word('define_strong')} {vocabulary.word('nothing')}"), vocabulary.orthography
