@@ -44,7 +44,8 @@ def pack_of_files(
     """
     read = read_files(sources)
     places = read.places()
-    pack = keyword_pack(leaves_of(read.models.values(), read.nodes(), vocabulary), vocabulary, load, places)
+    models = [*read.known_models(), *read.models.values()]  # what the files themselves describe counts, even if bare
+    pack = keyword_pack(leaves_of(models, read.nodes(), vocabulary), vocabulary, load, places)
     declared = read_keyword_file(Source(pack.text, sources[0].name))
     entries = tuple(entry.replace(span=places[entry.id]) for entry in declared.entries)
     return pack.replace(warnings=(*read.warnings, *pack.warnings)), declared.replace(entries=entries)

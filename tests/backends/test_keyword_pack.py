@@ -65,6 +65,14 @@ def test_conditions_say_what_is_so() -> None:
     ]  # fmt: skip
 
 
+def test_kinds_follow_from_tags_and_from_nav2() -> None:
+    tree = '<Sequence><Condition ID="Quiet"/><IsStuck/><Spin spin_dist="{d}" error_code_id="{e}"/></Sequence>'
+    pack = pack_of(Source(f'<root BTCPP_format="4"><BehaviorTree ID="A">{tree}</BehaviorTree></root>')).text
+    entries = re.findall(r'\[\[(\w+)\]\]\nphrase = ".*"\nid = "(\w+)"', pack)
+    assert entries == [("condition", "Quiet"), ("condition", "IsStuck"), ("action", "Spin")]
+    assert 'outputs = ["error_code_id"]' in pack
+
+
 def test_phrases_that_mean_something_else_get_another_form() -> None:
     """Those of words that ship, of the language, and of the pack itself."""
     ids = ("OpenGripper", "If", "DoNothing", "Pour", "pour", "POUR", "Pour_")

@@ -9,14 +9,17 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included, real_path
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
-from btlang.frontends.btcpp.models import subtree_defaults
+from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models, subtree_defaults
 from btlang.frontends.btcpp.scan import Document, scanned
+from btlang.frontends.btcpp.spelling import MODEL, TO_4
 from btlang.text.source import Source, Span
-from btlang.tree.catalogue import SUBTREE
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import in_order_of_use
 
+_NO_NODES = CATALOGUE.keys() | TO_4.keys() | {"root", "BehaviorTree", MODEL, *MODEL_KINDS}
+"""Tags that are no ids of nodes that somebody made."""
 _ROS_FOLDERS = "AMENT_PREFIX_PATH"  # where ROS 2 has its packages
 
 
@@ -32,6 +35,7 @@ class XmlFiles:
         self.problems: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
         self._read: set[str] = set()
+        self._kinds: dict[str, str] = {}  # of nodes, which models and tags tell
         self._follows_includes = follows_includes
 
     def add(self, source: Source) -> None:
@@ -60,18 +64,30 @@ class XmlFiles:
         """The names of the trees that others use."""
         return {node.port("ID") for file in self.files for nodes in file.uses.values() for node in nodes}
 
-    def read_trees(self, models: Mapping[str, NodeModel]) -> dict[str, str]:
-        """Reads the trees of all files that are sound; in each, an ID means a tree of its own before others.
-
-        Returns the kinds of nodes that models and tags tell, by id.
-        """
-        kinds = {node_id: model.kind for node_id, model in models.items() if model.kind != SUBTREE}
+    def read_trees(self, models: Mapping[str, NodeModel]) -> None:
+        """Reads the trees of all files that are sound; in each, an ID means a tree of its own before others."""
+        kinds = self._kinds = {node_id: model.kind for node_id, model in models.items() if model.kind != SUBTREE}
         names, defaults = self.names, subtree_defaults(models.values())
         for file in self._sound:
             own = {head.id: head.name for head in file.heads}
             file.read_trees({**names, **own}, kinds, defaults)
             self.problems += file.problems
-        return kinds
+
+    def known_models(self) -> list[NodeModel]:
+        """The models of the files, then kinds that tags tell, then what is known of Nav2's nodes that are used; once
+        the trees are read.
+        """
+        told = self.models
+        for node_id, kind in self._kinds.items():
+            told.setdefault(node_id, NodeModel(kind, node_id))
+        tags = {element[0] for file in self.files for element in file.document.elements}
+        bare = {node_id for node_id, model in told.items() if not model.ports}
+        strange = sorted((tags - _NO_NODES - self.trees.keys() - told.keys()) | bare)
+        if strange:
+            for node_id, model in nav2_models(strange).items():
+                if node_id not in told or told[node_id].kind == model.kind:
+                    told[node_id] = model
+        return list(told.values())
 
     def nodes(self) -> Iterator[Node]:
         """Every node of every tree."""

@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.files import XmlFiles, repeated
 from btlang.frontends.btcpp.kept import digest_of
-from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models
 from btlang.frontends.btcpp.origin import XmlOrigin
-from btlang.frontends.btcpp.spelling import MAIN_TREE, MODEL, TO_4
+from btlang.frontends.btcpp.spelling import MAIN_TREE
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
-from btlang.tree.catalogue import CATALOGUE
-from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 
-_NO_NODES = CATALOGUE.keys() | TO_4.keys() | {"root", "BehaviorTree", MODEL, *MODEL_KINDS}
-"""Tags that are no ids of nodes that somebody made."""
 MAIN = "main_tree_to_execute"
 """The attribute of <root> with the ID of the main tree."""
 
@@ -48,8 +43,7 @@ class _Reader:
         read.problems += repeated(heads) if heads else [empty_file(file)]
         self._stop_where_wrong()
         # what a file tells counts for more than what those tell that it includes
-        models = read.models
-        kinds = read.read_trees(models)
+        read.read_trees(read.models)
         trees = read.trees
         read.problems += read.circles()
         main = self._main_tree(trees, {head.name: head for head in heads})
@@ -57,7 +51,7 @@ class _Reader:
         written = {head.name: head.written for head in heads}
         is_usual = main == MAIN_TREE or not written[main]
         subtrees = tuple(tree for tree in trees.items() if tree[0] != main)
-        tree = Tree(trees[main], subtrees, "" if is_usual else main, tuple(_known(models, kinds, trees, read.files)))
+        tree = Tree(trees[main], subtrees, "" if is_usual else main, tuple(read.known_models()))
         asked = (written[main] or main) if self._main else ""
         return tree.replace(origin=_origin(file, tree, asked), warnings=tuple(read.warnings))  # type: ignore[no-any-return]
 
@@ -101,23 +95,6 @@ def no_tree(span: Span, name: str, trees: Collection[str]) -> Diagnostic:
     near = nearest(name, trees)
     told = f"Similar: {', '.join(near)}" if near else f"There are: {', '.join(list(trees)[:8])}"
     return diagnostic("BT126", span, name=name, help=told)
-
-
-def _known(
-    models: dict[str, NodeModel], kinds: dict[str, str], trees: dict[str, Node], files: Sequence[XmlFile]
-) -> list[NodeModel]:
-    """The models of the files, then kinds that tags tell, then what is known of Nav2's nodes that are used."""
-    told = dict(models)
-    for node_id, kind in kinds.items():
-        told.setdefault(node_id, NodeModel(kind, node_id))
-    tags = {element[0] for file in files for element in file.document.elements}
-    bare = {node_id for node_id, model in told.items() if not model.ports}
-    strange = sorted((tags - _NO_NODES - trees.keys() - told.keys()) | bare)
-    if strange:
-        for node_id, model in nav2_models(strange).items():
-            if node_id not in told or told[node_id].kind == model.kind:
-                told[node_id] = model
-    return list(told.values())
 
 
 def _origin(file: XmlFile, tree: Tree, asked: str) -> XmlOrigin:
