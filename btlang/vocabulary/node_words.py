@@ -17,8 +17,9 @@ from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import Match, TrieNode, longest
 
 _ID = re.compile(r"(?:[A-Z][a-z0-9]*)+")
-_PART = re.compile(r"[A-Z][a-z0-9]*")
+_PART = re.compile(r"[A-Z]{2,}[0-9]*(?![a-z])|[A-Z][a-z0-9]*")
 _WORD = re.compile(r"[a-z][a-z0-9]*")
+_ACRONYM = re.compile(r"[A-Z]{2,}[0-9]*")
 BEHIND_ID = ("called", "with", "giving")
 """The roles of what is said of a node behind its id."""
 _LEAST = 3  # letters of what can be a misspelling
@@ -26,17 +27,19 @@ _LEAST = 3  # letters of what can be a misspelling
 
 @lru_cache(maxsize=4096)  # a file has few ids and ports, each many times
 def said_id(node_id: str, role: str, vocabulary: Lexicon) -> str:
-    """`OpenGripper` as `open gripper`; "" where these words behind `do` or `test` are read as anything else.
+    """`OpenGripper` as `open gripper`, `PlanMTCTask` as `plan MTC task`; "" where these words behind `do` or `test` are
+    read as anything else.
 
     So they are where a command goes on behind them with a value, and where a line would define or change something.
     """
-    said = " ".join(word.lower() for word in _PART.findall(node_id)) if _ID.fullmatch(node_id) else ""
+    parts = _PART.findall(node_id) if _ID.fullmatch(node_id) else []
+    said = " ".join(part if _ACRONYM.fullmatch(part) else part.lower() for part in parts)
     claiming = (*DEFINING, *CHANGING) if role == "do" else CHANGING
-    if any(word in vocabulary.roles[claim] for claim in claiming for word in said.split()):
+    if any(word in vocabulary.roles[claim] for claim in claiming for word in said.lower().split()):
         return ""
     text = split(Source(f"{vocabulary.word(role)} {said}"), vocabulary.orthography)
     head = longest(vocabulary.trie, text, 0, vocabulary.context)
-    if not said or said in _phrases(vocabulary)[1] or head is None or head.meaning.role != role or head.meaning.node:
+    if not said or said.lower() in _phrases(vocabulary)[1] or head is None or head.meaning.role != role or head.meaning.node:
         return ""
     return said if read_id(text, head.last, vocabulary) == (node_id, len(text.words) - 2) else ""
 
@@ -57,7 +60,7 @@ def subtree_named(written: str, subtrees: Collection[str], *, in_words: bool) ->
 def read_id(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, int] | None:
     """The id that the words from a place on make, and where they end: at a mark, a number or a connective.
 
-    None for what is a command or a condition, or a misspelt one.
+    An acronym in capitals stays as it is beside other words. None for what is a command or a condition, or a misspelt one.
     """
     words = text.words
     if not _WORD.fullmatch(words[at]) or role_end(text, at, BEHIND_ID, vocabulary):
@@ -65,15 +68,15 @@ def read_id(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, int] | None
     last = at + 1
     while _WORD.fullmatch(words[last]) and not _ends(text, last, vocabulary):
         last += 1
-    written = text.source.text[text.starts[at] : text.ends[last - 1]]
+    written = [text.source.text[text.starts[place] : text.ends[place]] for place in range(at, last)]
     match = _phrase(text, at, vocabulary)
     is_phrase = match is not None and match.last >= last
     is_node = _is_near(" ".join(words[at:last]), _phrases(vocabulary)[2])
-    if is_phrase or is_node or written != written.lower():
+    lower = [word.islower() for word in written]
+    is_odd = not any(lower) or not all(low or _ACRONYM.fullmatch(word) for low, word in zip(lower, written, strict=True))
+    if is_phrase or is_node or is_odd or _is_misspelt(words[at:last], _phrases(vocabulary)[0], vocabulary):
         return None
-    if _is_misspelt(words[at:last], _phrases(vocabulary)[0], vocabulary):
-        return None
-    return "".join(map(_capital, words[at:last])), last
+    return "".join(map(_capital, written)), last
 
 
 def near_commands(words: list[str], vocabulary: Lexicon) -> list[str]:

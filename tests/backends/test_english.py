@@ -118,7 +118,11 @@ def said(xml: str) -> list[str]:
 IDS = [
     ("OpenBox", "do open box"),
     ("Move2Box", "do move2 box"),
-    ("GetXYZ", "do get x y z"),
+    ("GetXYZ", "do get XYZ"),
+    ("InitializeMTCTask", "do initialize MTC task"),
+    ("UIShowRRT2Path", "do UI show RRT2 path"),
+    ("MoveX", "do move x"),
+    *((odd, f'do "{odd}"') for odd in ("XYZ", "MoveTHEArm", "GoToA", "WAVENow")),  # shouted, or with an article
     *((odd, f'do "{odd}"') for odd in ("openBox", "Move_To", "PickAThing", "open", "ReadyÄ", "Box-1")),  # no CamelCase
     *((known, f'do "{known}"') for known in ("OpenGripper", "SayHello", "Say", "TurnLeft2M", "GoToTheLab")),  # phrases
     *((slip, f'do "{slip}"') for slip in ("Wavee", "RecoveryNodes", "Sequence2")),  # near to what is known
