@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import pytest
@@ -16,6 +16,16 @@ LONG = "BTLANG_LONG"
 def amount(usual: int, long: int) -> int:
     """A test that is marked `long` does so many in each run, and so many in a long one."""
     return long if os.environ.get(LONG) else usual
+
+
+def cases(names: str | tuple[str, ...], values: Sequence[Any], usual: int, **options: Any) -> Callable[[Any], Any]:
+    """A test of many cases does `usual` of them in each run, one here and one there, and all in a long one."""
+    some = values[:: -(-len(values) // amount(usual, len(values)))]
+
+    def decorate(test: Any) -> Any:
+        return pytest.mark.long(pytest.mark.parametrize(names, some, **options)(test))
+
+    return decorate
 
 
 def only_long(test: Any) -> Any:

@@ -11,6 +11,7 @@ import pytest
 from btlang import examples
 from btlang.cli import main
 from tests.examples.cases import CASES
+from tests.profiles import cases
 
 ROOT = Path(__file__).parent.parent
 FOLDERS = ["guide", "rover"]
@@ -68,7 +69,7 @@ def test_a_copy_has_all_missions_and_worlds(tmp_path: Path, capsys: pytest.Captu
     assert set(capsys.readouterr().out.splitlines()[:-1]) == {str(folder / name) for name in written}
 
 
-@pytest.mark.parametrize("name", CASES)
+@cases("name", [*CASES], 11)
 def test_the_command_of_a_copy_runs_in_its_folder(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

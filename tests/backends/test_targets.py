@@ -23,6 +23,7 @@ from btlang.frontends.json.reader import read_json
 from btlang.text.source import Source
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
+from tests.profiles import cases
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.txt"))
@@ -76,7 +77,7 @@ def test_deep_trees_have_text(name: str) -> None:
     assert len(compiled(deep().tree, deep().vocabulary, name)) > 40
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@cases("path", EXAMPLES, 14, ids=lambda path: path.stem)
 def test_examples_can_be_compiled_to_all(path: Path) -> None:
     tree = example(path)
     for name in ("json", "dot", "python", "keywords", "tree", "py_trees"):

@@ -25,6 +25,7 @@ from btlang.robots.world_file import load_world
 from btlang.run.events import Event, Said
 from btlang.vocabulary.shipped import shipped
 from tests.components.robots import robot_file
+from tests.profiles import cases
 
 SHIPPED = Path(shipped("examples"))
 
@@ -39,7 +40,7 @@ def run(text: str | Path, robot: Any, world: str | None = None, **options: Any) 
     return outcome, events
 
 
-@pytest.mark.parametrize("example", examples(), ids=lambda example: example.name)
+@cases("example", examples(), 11, ids=lambda example: example.name)
 def test_examples_run_unchanged_over_devices(example: Any) -> None:
     world = str(SHIPPED / "worlds" / Path(example.world).name) if example.world else None
     path = SHIPPED / f"{example.name}.txt"

@@ -21,7 +21,7 @@ NAMES = st.sampled_from(("a", "b2", "goal_pose", "Über", "x-y", "値", "request
 CONDITIONS = st.sampled_from(("_failureIf", "_successIf", "_skipIf", "_while", "_onSuccess", "_onHalted", "_post"))
 LEAF_IDS = st.sampled_from((
     "GoTo", "Wave", "Say", "Öffne", "Move Base", "request.done", "is-ready", "Action", "Root", "1st", "Battery", "Spin",
-    "MainTree",
+    "MainTree", "PlanMTCTask", "UIShow",
 ))  # fmt: skip
 INNER_IDS = st.sampled_from(("Shuffle", "Odd Decorator", "SpeedController", "SingleTrigger"))
 TREE_NAMES = (

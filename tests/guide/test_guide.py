@@ -28,10 +28,6 @@ def test_missions_fit_the_robot(path: Path, capsys: pytest.CaptureFixture[str]) 
     assert capsys.readouterr().err == ""
 
 
-def test_its_tests_pass(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["test", str(GUIDE), "--jobs", "1", "--keep", str(tmp_path)]) == 0, capsys.readouterr().out
-
-
 class Strokes:
     """How far strokes are from their words, and what was left out."""
 
@@ -50,14 +46,14 @@ class Strokes:
 @pytest.mark.parametrize("rate", [20.0, 50.0, 10.0, 5.0][: amount(1, 4)])
 def test_strokes_meet_their_words_in_all_commentaries(rate: float) -> None:
     strokes = Strokes()
-    for path in MISSIONS:
+    for path in MISSIONS[:: amount(len(MISSIONS) // 2, 1)]:
         mission = btlang.parse_tree(path.read_text(encoding="utf-8"), keywords=robot_words(ROBOT), world=WORLD)
         with Session(ROBOT, world=WORLD) as session:
             run = session.prepare(mission, speed="max", rate=rate, seed=1, time_limit=600.0, sinks=[strokes])
             assert run.execute().stopped in ("", "time limit")
     gaps = sorted(strokes.gaps)
     print(f"{len(gaps)} strokes at {rate:g} Hz: p95 {gaps[int(0.95 * len(gaps))]:.3f} s, at most {gaps[-1]:.3f} s")
-    assert len(gaps) > 50
+    assert len(gaps) > amount(10, 50)
     assert gaps[int(0.95 * len(gaps))] <= _MOST
     assert strokes.warnings == []
 

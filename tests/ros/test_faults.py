@@ -14,6 +14,7 @@ from std_msgs.msg import String
 
 import btlang
 from btlang.run.events import Warned
+from tests.profiles import cases
 from tests.ros.client import Client
 from tests.ros.declared import Peer, words
 from tests.ros.domains import free_domain
@@ -70,7 +71,7 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
 NOT_FINITE = "no odometry for 2 s: /odom sends numbers that are not finite"
 
 
-@pytest.mark.parametrize(
+@cases(
     ("mission", "fault", "reason"),
     [
         ("move forward 2 m", "nan", NOT_FINITE),
@@ -81,6 +82,7 @@ NOT_FINITE = "no odometry for 2 s: /odom sends numbers that are not finite"
         ("turn left", "inf", NOT_FINITE),
         ("turn left", "frozen", "stuck after 0 degrees"),
     ],
+    3,
 )
 def test_a_drive_ends_whatever_the_odometry_says(lab: Lab, mission: str, fault: str, reason: str) -> None:
     lab.misbehave(f"odom={fault}@moving")

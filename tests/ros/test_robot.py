@@ -15,6 +15,7 @@ import pytest
 from geometry_msgs.msg import Twist
 
 from btlang.cli import main
+from tests.profiles import cases
 from tests.ros.client import Client
 from tests.ros.processes import LONG, REPOSITORY, Command, start, wait_until
 
@@ -132,7 +133,7 @@ def test_turning(robot: Callable[..., Script], run: Run) -> None:
     assert code == 0, err
 
 
-@pytest.mark.parametrize(
+@cases(
     ("parts", "mission", "reason"),
     [
         (["base=mute"], "move forward 1 m", "MoveForward: no odometry for 2 s: /odom is silent"),
@@ -148,6 +149,7 @@ def test_turning(robot: Callable[..., Script], run: Run) -> None:
         (["hand=full"], "close the hand", "CloseHand: the right hand already holds the cup"),
         (["hand=mute"], "close the hand", "CloseHand: no answer from /right_hand/close for 3 s"),
     ],
+    4,
 )
 def test_what_goes_wrong_is_a_failure_with_its_reason(
     parts: list[str],

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.profiles import cases
 from tests.ros.declared import Peer
 from tests.ros.processes import LONG, Command
 
@@ -49,7 +50,7 @@ def run(tmp_path: Path, domain: int) -> Iterator[Callable[..., Command]]:
         each.process.wait()
 
 
-@pytest.mark.parametrize(
+@cases(
     ("mode", "number", "reason"),
     [
         ("reject", signal.SIGINT, f": {REFUSED}"),
@@ -57,6 +58,7 @@ def run(tmp_path: Path, domain: int) -> Iterator[Callable[..., Command]]:
         ("linger", signal.SIGTERM, f": {UNENDED}"),
         ("lie", signal.SIGINT, ""),
     ],
+    2,
 )
 def test_a_robot_that_is_driven_on(
     mode: str,
