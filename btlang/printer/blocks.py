@@ -95,9 +95,13 @@ def _sections(node: ast.Ast, said: Doc, among: str, unclear: bool) -> Callable[[
 
 
 def _is_try(node: ast.Chain) -> bool:
-    """Whether two parts are better `try:` and `otherwise:`: one is a sequence, which is then lines."""
+    """Whether two parts are better `try:` and `otherwise:`: one is a sequence, which is then lines.
+
+    Not where one is a fallback itself: read back, its lines are `try:` and `otherwise:`, and the words would change.
+    """
     operators = [item.operator for item in node.items if isinstance(item, ast.Chain)]
-    return len(node.items) == 2 and "sequence" in operators and "fallback" not in operators
+    is_inner = "fallback" in operators or any(isinstance(item, ast.Try) for item in node.items)
+    return len(node.items) == 2 and "sequence" in operators and not is_inner
 
 
 def _try_otherwise(node: ast.Chain, printer: Printer) -> Iterator[Section]:

@@ -62,6 +62,7 @@ def _placed(fact: ast.Fact) -> tuple[object, ...]:
 @given(st.one_of(sentences.missions, sentences.broken_missions()))
 @example("repeat a until p 3t NL")
 @example("try try a 3t otherwise b NL")
+@example("a then repeat : NL IN a NL DE NL otherwise : NL IN a then repeat : NL IN a NL DE NL otherwise a NL DE NL")
 def test_sentences_keep_their_tree(words: str) -> None:
     try:
         mission = read(sentences.english(words))
