@@ -80,6 +80,7 @@ class Alignment:
         """Pairs what are children of the same, and then what is below them."""
         while waiting:
             old, new = waiting.pop()
+            old, new = self._free(old, self._new), self._free(new, self._old)  # some have gone elsewhere
             before, after = self._numbers.of(old), self._numbers.of(new)
             matcher = SequenceMatcher(a=before, b=after, autojunk=False)
             for tag, first, last, begin, end in matcher.get_opcodes():
@@ -99,7 +100,8 @@ class Alignment:
 
     def _pair_whole(self, old: Node, new: Node) -> None:
         for one, other in zip(Tree(old).walk(), Tree(new).walk(), strict=True):
-            self._pair(one, other)
+            if id(one) not in self._new and id(other) not in self._old:
+                self._pair(one, other)
 
     def _alike(self, old: Nodes, new: Nodes) -> list[tuple[Node, Node]]:
         """Of two lists the pairs, in their order, that have most in common together."""

@@ -79,6 +79,17 @@ def _read_by_people(text: str) -> list[str]:
     return [line for line in text.split("\n") if not line.startswith("#:")]
 
 
+def test_a_node_that_went_elsewhere_is_not_taken_twice() -> None:
+    wave, sleep = Node("Wave"), Node("Sleep", ports=(("msec", "1500"),))
+    other = Node("Sleep", ports=(("msec", "{_1}"),))
+    before = Tree(Node("Sequence", (wave, sleep)))
+    round_ = Node("Repeat", (Node("Sequence", (Node("Script", ports=(("code", "_1 := 2"),)), other)),))
+    patrol = Node("Sequence", (wave, Node("Sequence", (sleep,))))
+    after = Tree(round_.replace(ports=(("num_cycles", "3"),)), (("patrol", patrol),))
+    made = written_onto(_written(before), after, WORDS)
+    assert _in_any_order(read_xml(Source(made))) == _in_any_order(after)
+
+
 @searches(10, 3000, deadline=None)
 @given(trees(), trees())
 def test_any_tree_onto_any_other(before: Tree, after: Tree) -> None:
