@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 
 from btlang.api import Mission
 from btlang.backends.files import write_file
@@ -10,22 +11,24 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import has_mark, read_source
 from btlang.frontends.btcpp.kept import digest_of, kept_in, with_digest
+from btlang.frontends.btcpp.reader import read_xml
 from btlang.text.source import Source, Span
 
 
 def write_onto(mission: Mission, path: str, out: str | None = None, *, force: bool = False) -> None:
     """Writes a mission onto an XML file at once, or what that gives into the file `out`.
 
-    If the mission's text tells of which state of the file it was made, and the file is another by now, this is refused
-    but with `force`; else the text gets to know the new state where it is in a file. Raises MissionError (BT136, and
-    those of reading and writing).
+    Unless `force` is set, a file that has changed since the mission was made from it is refused. If the mission is a
+    file itself, it then notes the new state of the XML. Raises MissionError (BT136, and those of reading and writing).
     """
     original = read_source(path)
     source = mission.tree.origin
     text = source.text if isinstance(source, Source) else ""
     kept = kept_in(text)
     if not force and kept.digest not in ("", digest_of(original.text)):
-        advice = f"Make the mission again with 'btc compile {path} --to english', or write it anyway with --force."
+        read_xml(original)  # what is no tree hasn't only changed
+        again = f"btc compile {shlex.quote(path)} --to english"
+        advice = f"Make the mission again with '{again}', or write it anyway with --force."
         raise MissionError([diagnostic("BT136", Span(original, 0, 0), path=path, advice=advice)])
     made = str(mission.to("xml", onto=original))
     mark = "\ufeff" if has_mark(path) else ""

@@ -54,10 +54,13 @@ def test_an_edit_changes_what_was_edited(tree: Path, capsys: pytest.CaptureFixtu
     [(b"wave\n", "BT120"), (b"<root/>", "BT122"), (b"<root><BehaviorTree>", "BT120"), (b"", "BT120")],
 )
 def test_what_is_no_tree_stays(tree: Path, content: bytes, code: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Also where the mission was made from the file when it was one."""
+    assert main(["compile", "tree.xml", "-o", "tree.txt"]) == 0
     tree.write_bytes(content)
-    assert main(["compile", "-c", "wave", "--onto", "tree.xml"]) == 2
-    assert code in capsys.readouterr().err
-    assert tree.read_bytes() == content
+    for mission in (["-c", "wave"], ["tree.txt"]):
+        assert main(["compile", *mission, "--onto", "tree.xml"]) == 2
+        assert code in capsys.readouterr().err
+        assert tree.read_bytes() == content
 
 
 def test_the_editor_of_the_user(
