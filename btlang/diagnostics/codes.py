@@ -167,7 +167,7 @@ _ALL = (
     Code("BT134", "{target} can't express the node '{id}': {reason}."),
     Code("BT135", "The tree '{name}' can't be changed here, because it is in another file.",
          "Change it in {path}, which this file includes."),
-    Code("BT136", "{path} has changed since this mission was made from it.", "{advice}"),
+    Code("BT136", "This mission can't be written onto {path}: {reason}.", "{advice}"),
     Code("BT141", "I can't read on at '{words}': {wanted} is needed.", "Write for example: do \"OpenGripper\" with width 0.05"),
     Code("BT142", "English can't express this tree: {reason}."),
     Code("BT143", "I can't read which values the mission is given in '{words}'.", "Name each in braces, for example: {example}"),

@@ -21,6 +21,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     import argparse
 
+_FAILED = 1
 _USUAL = "vi"  # as POSIX has it where neither VISUAL nor EDITOR is set
 
 
@@ -38,21 +39,31 @@ def edit_xml(options: argparse.Namespace) -> int:
     folder = tempfile.mkdtemp(prefix="btlang-")
     path = os.path.join(folder, f"{os.path.splitext(os.path.basename(options.file))[0]}.txt")
     write_file(path, text)
-    editor = shlex.split(os.environ.get("VISUAL") or os.environ.get("EDITOR") or _USUAL)
+    command = os.environ.get("VISUAL") or os.environ.get("EDITOR") or _USUAL
+    try:
+        editor = shlex.split(command)
+    except ValueError:
+        options.refuse(f"the editor {command} can't be started: a quote isn't closed")
+    kept = f"{options.file} stays as it is. Your text is in {path}."
     try:
         code = subprocess.run([*editor, path], check=False).returncode
+        if not os.path.isfile(path):
+            show(f"{options.file} stays as it is. The editor left no file.")
+            return _FAILED
+        edited = read_source(path)
+        if edited.text == text:
+            show(f"{options.file} stays as it is.")
+        elif code:  # it may not have written all of it
+            show(kept)
+            return _FAILED
+        else:
+            write_onto(words.mission(edited), options.file)
+            show(f"Wrote {options.file}.")
     except OSError as error:
         options.refuse(f"the editor {editor[0]} can't be started: {os.strerror(error.errno or 0).lower()}")
-    edited = read_source(path)
-    if code or edited.text == text:
-        show(f"{options.file} stays as it is.")
-    else:
-        try:
-            write_onto(words.mission(edited), options.file)
-        except MissionError:
-            show(f"{options.file} stays as it is. Your text is in {path}.")
-            raise
-        show(f"Wrote {options.file}.")
+    except (MissionError, KeyboardInterrupt):
+        show(kept)
+        raise
     os.remove(path)
     os.rmdir(folder)
     return 0

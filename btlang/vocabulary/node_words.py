@@ -39,7 +39,9 @@ def said_id(node_id: str, role: str, vocabulary: Lexicon) -> str:
         return ""
     text = split(Source(f"{vocabulary.word(role)} {said}"), vocabulary.orthography)
     head = longest(vocabulary.trie, text, 0, vocabulary.context)
-    if not said or said.lower() in _phrases(vocabulary)[1] or head is None or head.meaning.role != role or head.meaning.node:
+    if not said or said.lower() in _phrases(vocabulary)[1]:
+        return ""
+    if head is None or head.meaning.role != role or head.meaning.node:
         return ""
     return said if read_id(text, head.last, vocabulary) == (node_id, len(text.words) - 2) else ""
 
@@ -60,7 +62,7 @@ def subtree_named(written: str, subtrees: Collection[str], *, in_words: bool) ->
 def read_id(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, int] | None:
     """The id that the words from a place on make, and where they end: at a mark, a number or a connective.
 
-    An acronym in capitals stays as it is beside other words. None for what is a command or a condition, or a misspelt one.
+    An acronym in capitals stays as it is beside other words. None for what is a command, a condition or a misspelt one.
     """
     words = text.words
     if not _WORD.fullmatch(words[at]) or role_end(text, at, BEHIND_ID, vocabulary):
@@ -72,8 +74,8 @@ def read_id(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, int] | None
     match = _phrase(text, at, vocabulary)
     is_phrase = match is not None and match.last >= last
     is_node = _is_near(" ".join(words[at:last]), _phrases(vocabulary)[2])
-    lower = [word.islower() for word in written]
-    is_odd = not any(lower) or not all(low or _ACRONYM.fullmatch(word) for low, word in zip(lower, written, strict=True))
+    in_capitals = [word for word in written if not word.islower()]
+    is_odd = len(in_capitals) == len(written) or not all(map(_ACRONYM.fullmatch, in_capitals))
     if is_phrase or is_node or is_odd or _is_misspelt(words[at:last], _phrases(vocabulary)[0], vocabulary):
         return None
     return "".join(map(_capital, written)), last

@@ -97,7 +97,8 @@ def test_any_tree_onto_any_other(before: Tree, after: Tree) -> None:
     original = _written(before)
     _written(after)
     made = written_onto(original, after, WORDS)
-    assert _in_any_order(read_xml(Source(made))) == _in_any_order(after), f"{original.text}\n\n{_written(after).text}\n\n{made}"
+    told = f"{original.text}\n\n{_written(after).text}\n\n{made}"
+    assert _in_any_order(read_xml(Source(made))) == _in_any_order(after), told
     assert written_onto(Source(made), after, WORDS) == made
 
 

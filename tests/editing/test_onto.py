@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
@@ -75,22 +76,48 @@ def test_the_editor_of_the_user(
     assert main(["edit", "--editor", "tree.xml"]) == 0
     changed = TREE.replace(b"'hello'", b"'hi'")
     assert tree.read_bytes() == changed
-    for program in ("pass", "path.write_text('nonsense here'); sys.exit(1)"):
+    editor("pass")
+    assert main(["edit", "--editor", "tree.xml"]) == 0
+    assert capsys.readouterr().out.endswith("tree.xml stays as it is.\n")
+    text = b"nonsense here"
+    for program, code in ((f"path.write_bytes({text})", 2), (f"path.write_bytes({text}); sys.exit(1)", 1),
+                          ("path.write_bytes(b'\\xff')", 2)):  # fmt: skip
         editor(program)
-        assert main(["edit", "--editor", "tree.xml"]) == 0
-        assert "tree.xml stays as it is." in capsys.readouterr().out
-    editor("path.write_text('nonsense here')")
-    assert main(["edit", "--editor", "tree.xml"]) == 2
-    told = capsys.readouterr()
-    kept = Path(told.out.partition("Your text is in ")[2].strip().removesuffix("."))
-    assert kept.read_text() == "nonsense here"
-    assert "BT0" in told.err
+        assert main(["edit", "--editor", "tree.xml"]) == code
+        told = capsys.readouterr()
+        kept = Path(told.out.partition("tree.xml stays as it is. Your text is in ")[2].strip().removesuffix("."))
+        assert kept.read_bytes() in (text, b"\xff")
+        assert ("BT0" in told.err) == (code == 2)
+    editor("path.unlink(); import os; os.mkfifo(path)")
+    assert main(["edit", "--editor", "tree.xml"]) == 1
+    for command in ("no-such-editor", '"unclosed'):
+        monkeypatch.setenv("VISUAL", command)
+        with pytest.raises(SystemExit):
+            main(["edit", "--editor", "tree.xml"])
+        assert "can't be started" in capsys.readouterr().err
     assert tree.read_bytes() == changed
-    monkeypatch.setenv("VISUAL", "no-such-editor")
-    with pytest.raises(SystemExit):
-        main(["edit", "--editor", "tree.xml"])
-    assert "can't be started" in capsys.readouterr().err
-    assert tree.read_bytes() == changed
+
+
+def test_a_file_that_the_mission_was_not_made_from_stays(tree: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    other = tree.with_name("other one.xml")
+    other.write_text('<root BTCPP_format="4"><BehaviorTree ID="Other"><Nod/></BehaviorTree></root>')
+    assert main(["compile", str(other), "-o", "other.txt"]) == 0
+    tree.with_name("hand.txt").write_text("wave")
+    text = tree.with_name("other.txt").read_text()
+    tree.with_name("damaged.txt").write_text(text.replace('digest="', "digest="))
+    for mission, reason in (
+        ("other.txt", "it was made from other one.xml"),
+        ("hand.txt", "it doesn't say which file it was made from"),
+        ("damaged.txt", "it doesn't say which file it was made from"),
+    ):
+        assert main(["compile", mission, "--onto", "tree.xml"]) == 2
+        told = capsys.readouterr().err
+        assert f"error BT136: This mission can't be written onto tree.xml: {reason}." in told
+        assert f"or write it anyway: btc compile {mission} --onto tree.xml --force" in told
+        assert tree.read_bytes() == TREE
+    os.mkfifo("pipe.xml")
+    assert main(["compile", "hand.txt", "--onto", "pipe.xml"]) == 2
+    assert "BT009" in capsys.readouterr().err
 
 
 def test_a_tree_that_only_other_files_use_is_no_warning(tree: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -133,5 +160,5 @@ def test_new_leaves_are_written_as_the_others_are(root: str, leaf: str, new: str
     )
     text = "\n".join(lines)
     tree.write_text(text.format(""))
-    assert main(["compile", "-c", "nod then wave", "--onto", "tree.xml"]) == 0
+    assert main(["compile", "-c", "nod then wave", "--onto", "tree.xml", "--force"]) == 0
     assert tree.read_text() == text.format(f"\n{new}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 
 from btlang.backends.btcpp.markup import sound_comment
@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
     Raw: TypeAlias = Mapping[tuple[str, ...], str]
     """Comments of nodes that are gone, as they were written, by their lines in English."""
+    Lines: TypeAlias = dict[float, Counter[str]]
+    """How often comments stand at the lines of a mission."""
 
 
 def written_onto(original: Source, tree: Tree, vocabulary: Lexicon) -> str:
@@ -198,36 +200,74 @@ class _Onto:
             first.setdefault(line_of(node), node)
         top = HEAD if self._after.name else min((line for line in first if line), default=HEAD)
         there, gone = self._comments_by_line(top)
-        come: Counter[str] = Counter()
-        left: Counter[str] = Counter()
+        come: Lines = {}
+        left: Lines = {}
         for line in sorted({*there, *wanted}):
             has = Counter(text for said in there.get(line, ()) for text in said.lines)
-            come += Counter(wanted.get(line, ())) - has
-            left += has - Counter(wanted.get(line, ()))
-        stays = come & left, come & left  # said in another statement, as English puts comments before whole ones
-        raw = {said.lines: said.note.text for said in gone}
+            come[line] = Counter(wanted.get(line, ())) - has
+            left[line] = has - Counter(wanted.get(line, ()))
+        stays = self._staying(come, left, nodes)
+        raw = {said.lines: self._raw(said.note) for said in gone}
         for line in sorted({*there, *wanted}):
-            new = self._changed_line(there.get(line, []), wanted.get(line, []), stays, raw)
+            kept = stays[0].get(line, Counter()), stays[1].get(line, Counter())
+            new = self._changed_line(there.get(line, []), wanted.get(line, []), kept, raw)
             if line in (HEAD, FOOT):
                 self._text.add_around(new, at_end=line == FOOT)
             elif new:
-                self._text.add_comments(first[line], new)
+                self._add_comments(first[line], new)
+
+    def _add_comments(self, node: Node, comments: list[str]) -> None:
+        """Before a node; not in a file that this one includes."""
+        for name, root in self._elsewhere.items():
+            if name in self._new and any(node is each for each in Tree(self._new[name]).walk()):
+                raise MissionError([_in_other_file(name, root, self._new[name])])
+        self._text.add_comments(node, comments)
+
+    def _staying(self, come: Lines, left: Lines, nodes: Sequence[Node]) -> tuple[Lines, Lines]:
+        """Of the comments that come and have left, by line, those that only are said in another statement: as English
+        puts comments before whole ones, they stand at a node around their own one, or the other way round.
+        """
+        above: defaultdict[float, set[float]] = defaultdict(set)
+        around: dict[int, Node] = {id(child): node for node in nodes for child in node.children}
+        for node in nodes:
+            place = line_of(node)
+            if place in come or place in left:
+                outer: Node | None = node
+                while (outer := around.get(id(outer))) is not None:
+                    above[place].add(line_of(outer))
+        new: Lines = {line: Counter() for line in come}
+        old: Lines = {line: Counter() for line in left}
+        for at, texts in left.items():
+            for text in texts.elements():
+                for line, others in come.items():
+                    is_same = {HEAD, FOOT} & {at, line} or at in above[line] or line in above[at]
+                    if is_same and others[text] > new[line][text]:
+                        new[line][text] += 1
+                        old[at][text] += 1
+                        break
+        return old, new
 
     def _changed_line(
         self, there: list[_Said], wanted: list[str], stays: tuple[Counter[str], Counter[str]], raw: Raw
     ) -> list[str]:
-        """Changes the comments of one statement to those that are wanted; returns those that are new."""
+        """Changes the comments of one statement to those that are wanted, but for old and new ones that stay elsewhere;
+        returns those that are new.
+        """
         has = [(said, at, text) for said in there for at, text in enumerate(said.lines)]
         texts = [text for _, _, text in has]
         if Counter(texts) == Counter(wanted):
             return []
         changed: defaultdict[int, dict[int, str | None]] = defaultdict(dict)
         come: list[str] = []
-        for tag, first, last, begin, end in SequenceMatcher(a=texts, b=wanted, autojunk=False).get_opcodes():
+        codes = SequenceMatcher(a=texts, b=wanted, autojunk=False).get_opcodes()
+        same = Counter(text for tag, first, last, _, _ in codes if tag == "equal" for text in texts[first:last])
+        in_other_order = (Counter(texts) & Counter(wanted)) - same  # these stay where they are
+        old_stay, new_stay = stays[0] + in_other_order, stays[1] + in_other_order
+        for tag, first, last, begin, end in codes:
             if tag == "equal":
                 continue
-            old = [each for each in has[first:last] if not _taken(stays[0], each[2])]
-            new = [text for text in wanted[begin:end] if not _taken(stays[1], text)]
+            old = [each for each in has[first:last] if not _taken(old_stay, each[2])]
+            new = [text for text in wanted[begin:end] if not _taken(new_stay, text)]
             for (said, at, _), text in zip(old, new, strict=False):
                 changed[id(said)][at] = text
             for said, at, _ in old[len(new) :]:
@@ -236,17 +276,16 @@ class _Onto:
         for said in there:
             if id(said) in changed:
                 self._change_comment(said, changed[id(said)])
-        written = raw.get(tuple(come))
-        return [written] if written is not None else [f"<!-- {sound_comment(text)} -->" for text in come]
+        return list(_comments(come, raw))
 
     def _change_comment(self, said: _Said, lines: Mapping[int, str | None]) -> None:
         if len(lines) == len(said.lines) and not any(lines.values()):
             self._text.remove_comment(said.note)
             return
-        start, end = self._text.span_of(said.note)
-        raw = self._file.document.source.text[start:end]
+        raw = self._raw(said.note)
         kept: list[str] = []
         at = 0
+        text: str | None = None
         for line in raw.removeprefix("<!--").removesuffix("-->").split("\n"):
             if not lines_of((f"<!--{line}-->",)):
                 kept.append(line)
@@ -257,7 +296,14 @@ class _Onto:
                 kept.append(line if at not in lines else line.replace(inner, sound_comment(text)))
             at += 1
         inner = "\n".join(kept)
-        self._text.change(start, end, f"<!--{inner}-->")
+        if line.strip() and text is None:  # the last line is gone: what ends it ends the one before
+            inner = inner.rstrip() + line[len(line.rstrip()) :]
+        self._text.change(*self._text.span_of(said.note), f"<!--{inner}-->")
+
+    def _raw(self, note: Note) -> str:
+        """A comment with its line ends."""
+        start, end = self._text.span_of(note)
+        return self._file.document.source.text[start:end]
 
     def _comments_by_line(self, top: float) -> tuple[dict[float, list[_Said]], list[_Said]]:
         """The comments of the file by the line of the mission in which their node is said; and those of nodes that are
@@ -302,6 +348,16 @@ def _in_other_file(name: str, old: Node, new: Node) -> Diagnostic:
 
 def _told(node: Node) -> list[tuple[str, str]]:
     return [port for port in node.ports if not is_editors(port[0])]
+
+
+def _comments(lines: Sequence[str], raw: Raw) -> Iterator[str]:
+    """New comments; several lines that were one comment are one again, as it was written."""
+    at = 0
+    while at < len(lines):
+        same = [old for old in raw if tuple(lines[at : at + len(old)]) == old]
+        longest = max(same, key=len, default=())
+        yield raw[longest] if longest else f"<!-- {sound_comment(lines[at])} -->"
+        at += len(longest) or 1
 
 
 def _taken(counter: Counter[str], text: str) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from bisect import bisect_left
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from btlang.backends.btcpp.markup import Markers
 from btlang.frontends.btcpp.fragments import Notes
@@ -40,12 +40,15 @@ class _Slice(Record):
 
 
 class _Element(Record):
-    """A node to be written at a margin. `lead` is what stands before it, where that isn't what the file has there."""
+    """A node to be written at a margin. `lead` is what stands before it, where that isn't what the file has there, and
+    `bare` whether its comments are written already.
+    """
 
     node: Node
     shift: Shift
     margin: str
     lead: str | None = None
+    bare: bool = False
 
 
 class Rewriter:
@@ -64,6 +67,7 @@ class Rewriter:
         self._markers = Markers()
         self._changes: list[tuple[int, int, str]] = []
         self._leads: dict[int, list[str]] = {}  # comments to come before nodes
+        self._removed: set[int] = set()  # comments, by their `id()`
         told = [note for note in document.notes if not note.is_text]
         self._spans = {id(note): span for note, span in zip(told, self._layout.notes, strict=True)}
         self._parents: list[int] = []
@@ -147,6 +151,7 @@ class Rewriter:
 
     def remove_comment(self, note: Note) -> None:
         """With its line, where nothing else stands there."""
+        self._removed.add(id(note))
         start, end = self.span_of(note)
         line = self._text.rfind("\n", 0, start) + 1
         after = re.compile(r"[ \t]*(\r?\n|\Z)").match(self._text, end)
@@ -222,6 +227,8 @@ class Rewriter:
         place, [inner] = self._layout.places[part], self._children[part]
         margin = self._margin(inner)
         lead = None if self._known(root) == inner else self._lead_text(inner)
+        if lead is not None and self._notes.before(inner):  # these go with what was there
+            lead = "" if margin is None else self.line_end + margin
         return [
             _Slice(self._lead(part), self._opened(part), STAYS),
             _Element(root, STAYS, self._unit * 2 if margin is None else margin, lead),
@@ -271,13 +278,11 @@ class Rewriter:
     def _again(self, item: _Element, number: int) -> list[Work]:
         """A node that is in the file already."""
         place, shift = self._layout.places[number], item.shift
-        if item.lead is None:
-            work: list[Work] = [_Slice(self._lead(number), place.start, shift)]
-        else:
-            work = [item.lead]
+        work: list[Work] = [_Slice(self._lead(number), place.start, shift) if item.lead is None else item.lead]
         margin = self._margin(number)
         own = shift if margin is None else (margin, item.margin) if margin != item.margin else STAYS
-        work += self._comments(item, own)
+        notes = self._own_notes(number, item) if item.lead is not None and not item.bare else []
+        work += self._comments(item, self._lead_text(number) if item.lead is None else item.lead, notes)
         children = item.node.children
         inner = self._inner_margin(number, own)
         if place.head == place.end:  # no end tag
@@ -285,19 +290,36 @@ class Rewriter:
                 return [*work, _Slice(place.start, self._ended(number), own, True)]
             tag = self._text[slice(*self._layout.tag(number))]
             work += (_Slice(place.start, place.head - 2, own, True), ">")
-            work += [self._child(child, number, own, inner) for child in children]
+            work += self._inner(children, number, own, inner)
             return [*work, f"{self.line_end}{item.margin}</{tag}>", _Slice(place.end, self._ended(number), own)]
         work += (_Slice(place.start, place.head, own, True), _Slice(place.head, self._opened(number), own))
-        work += [self._child(child, number, own, inner) for child in children]
+        work += self._inner(children, number, own, inner)
         last = self._children[number][-1:]
         begin = self._ended(last[0]) if last else self._opened(number)
         return [*work, _Slice(begin, place.end, own), _Slice(place.end, self._ended(number), own)]
 
-    def _child(self, child: Node, parent: int, shift: Shift, margin: str) -> _Element:
+    def _own_notes(self, number: int, item: _Element) -> list[Work]:
+        """The comments before a node, which goes elsewhere."""
+        left = [note for note in self._notes.before(number) if id(note) not in self._removed]
+        return [part for note in left for part in (_Slice(*self.span_of(note), STAYS), self.line_end + item.margin)]
+
+    def _inner(self, children: tuple[Node, ...], parent: int, shift: Shift, margin: str) -> list[Work]:
+        """What is inside a node that is in the file already."""
+        work: list[Work] = []
+        before: int | None = -1
+        for child in children:
+            work.append(self._child(child, parent, shift, margin, before))
+            before = self._known(child)
+        return work
+
+    def _child(self, child: Node, parent: int, shift: Shift, margin: str, before: int | None) -> _Element:
+        """One of them; `before` is the one before it, -1 for none, None where that is new."""
         number = self._known(child)
         in_line = self._is_in_line(parent)
         if number is not None and self._parents[number] == parent:
             own = self._margin(number)
+            if self._before[number] != before and "\n" not in self._lead_text(number) and not in_line:
+                return _Element(child, STAYS, margin, self.line_end + margin)
             return _Element(child, shift, margin if own is None else _moved(own, shift))
         if number is not None and not in_line and (own := self._margin(number)) is not None:
             return _Element(child, (own, margin), margin)
@@ -329,13 +351,17 @@ class Rewriter:
                 work.append(_Element(child, (own, inner), inner))
         if first is not None and (margin := self._margin(first)) is not None and "\n" in str(lead):
             lead = _Slice(self._lead(first), self._layout.places[first].start, (margin, item.margin))
-            work[0] = _Element(children[0], STAYS, inner, self.line_end + inner)
+            work[0] = _Element(children[0], STAYS, inner, self.line_end + inner, bare=True)
+        comments = self._comments(item, str(lead) if item.lead is None else item.lead)
         if not children:
-            return [lead, *self._comments(item, STAYS), f"{head}/>"]
-        return [lead, *self._comments(item, STAYS), f"{head}>", *work, f"{self.line_end}{item.margin}</{tag}>"]
+            return [lead, *comments, f"{head}/>"]
+        return [lead, *comments, f"{head}>", *work, f"{self.line_end}{item.margin}</{tag}>"]
 
-    def _comments(self, item: _Element, shift: Shift) -> list[Work]:
-        return [f"{text}{self.line_end}{item.margin}" for text in self._leads.get(id(item.node), ())]
+    def _comments(self, item: _Element, lead: str, notes: Sequence[Work] = ()) -> list[Work]:
+        """Comments that come before a node, on lines of their own: behind what is on the line they'd belong to that."""
+        margin = self.line_end + item.margin
+        texts = [*notes, *(f"{text}{margin}" for text in self._leads.get(id(item.node), ()))]
+        return [margin, *texts] if texts and "\n" not in lead else texts
 
 
 def _moved(margin: str, shift: Shift) -> str:
