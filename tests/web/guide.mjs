@@ -33,6 +33,8 @@ await visit(base, async (page) => {
   await page.waitForFunction(() => document.querySelector(".says mark")?.textContent && document.querySelector(".bubble:not([hidden]) mark"));
   assert.match(await canvas.getAttribute("aria-label"), /in 3D: .*say/);
   await page.waitForSelector(".now h1:has-text('tour')");
+  await page.click(".controls button:text-is('Pause')"); // it goes on for as long as a busy computer needs
+  await page.waitForSelector(".controls button:text-is('Go on')");
   await accessible(page, "guide");
   await page.setViewportSize({ width: 360, height: 740 });
   await fits(page);
