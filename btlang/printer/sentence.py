@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from btlang.printer import naming
 from btlang.printer.exact import exact, phrase
-from btlang.printer.pieces import COMMA, LEAF, Piece, Pieces, mark
+from btlang.printer.pieces import COMMA, LEAF, Piece, Pieces, flat, mark
 from btlang.printer.printer import AND, FORM, LOOSE, OR, THEN, WHOLE, Doc, Printer, bracketed
 from btlang.tree import ast
 from btlang.tree.journeys import takes_its_time
@@ -58,6 +58,8 @@ def _chain(node: ast.Chain, parts: list[Doc], printer: Printer) -> Doc:
     words = [word] * (len(inner) - 1)
     if node.operator == "parallel":  # whatever people take the plain word for
         words = [printer.word("meanwhile") if takes_its_time(item) else word for item in node.items[:-1]]
+        remember = f"{printer.word('remember').text} "  # directly behind `and` this means `then`
+        inner[1:] = [printer.inside(p, next(flat(p.pieces)).text.startswith(remember)) for p in inner[1:]]
     return Doc(tuple(_joined(inner, words)), level, *_flags(inner))
 
 

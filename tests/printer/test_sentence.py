@@ -75,6 +75,7 @@ def test_sentences_keep_their_tree(words: str) -> None:
 @given(trees.missions())
 @example(ast.Program(ast.Every("5", ast.Repeat("1", trees.phrase("u"), trees.SPAN), "", trees.SPAN), (), trees.SPAN))
 @example(ast.Program(ast.Try(trees.phrase("u"), trees.either("v", "w"), trees.SPAN), (), trees.SPAN))
+@example(ast.Program(trees.and_remember("u"), (), trees.SPAN))
 def test_syntax_trees_keep_their_tree(mission: ast.Program) -> None:
     keeps_its_tree(mission, letters())
 

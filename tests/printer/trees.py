@@ -27,6 +27,19 @@ def either(*letters: str) -> ast.Ast:
     return ast.Chain("fallback", tuple(map(phrase, letters)), False, SPAN)
 
 
+def _entry(node_id: str) -> Entry:
+    entry = letters().entry(node_id)
+    assert entry is not None
+    return entry
+
+
+REMEMBERED = ast.Remember("level", _entry("Battery"), (), SPAN)
+
+
+def and_remember(letter: str) -> ast.Ast:
+    return ast.Chain("parallel", (phrase(letter), ast.Repeat("2", REMEMBERED, SPAN)), False, SPAN)
+
+
 def _chain(operator: str, items: list[ast.Ast], bracketed: bool) -> ast.Ast:
     """An equal chain inside it has brackets, as the parsers make it."""
     kept = [
@@ -38,12 +51,6 @@ def _chain(operator: str, items: list[ast.Ast], bracketed: bool) -> ast.Ast:
 
 def _chains(operators: list[str], inner: Trees) -> Trees:
     return st.builds(_chain, st.sampled_from(operators), st.lists(inner, min_size=2, max_size=3), st.booleans())
-
-
-def _entry(node_id: str) -> Entry:
-    entry = letters().entry(node_id)
-    assert entry is not None
-    return entry
 
 
 def _at_least(inner: Trees) -> Trees:
@@ -72,7 +79,7 @@ valued: Trees = st.one_of(
         _span,
     ),
     st.builds(ast.Assign, st.just("mood"), st.just("set"), st.just("text"), _texts, _span),
-    st.just(ast.Remember("level", _entry("Battery"), (), SPAN)),
+    st.just(REMEMBERED),
     _texts.map(lambda text: ast.Phrase(_entry("Murmur"), (("text", text),), SPAN)),
     st.builds(ast.Wait, st.just("{pause}"), _span),
 )
@@ -86,7 +93,7 @@ defined = (
     ast.Assign("pause", "set", "duration", "2", SPAN),
     ast.Assign("lunch", "set", "time_of_day", "12:00", SPAN),
     ast.Assign("rounds", "set", _NUMBER, "2", SPAN),
-    ast.Remember("level", _entry("Battery"), (), SPAN),
+    REMEMBERED,
 )
 
 conditions: Trees = st.recursive(
