@@ -41,7 +41,7 @@ class Report:
                 words = problem.span.text.lower()
                 same = id(problem) if problem.is_error else (problem.code, words, problem.message, problem.hint)
                 equal.setdefault(same, []).append(problem)
-            shown = (render(first, colour) + _and_more(others) for first, *others in equal.values())
+            shown = (render(first, colour) + _and_more(first, others) for first, *others in equal.values())
             show("\n\n".join(shown), stream=sys.stderr)
 
     @property
@@ -76,11 +76,14 @@ class Report:
         return as_json(self._held)
 
 
-def _and_more(others: list[Diagnostic]) -> str:
-    """A line for warnings that are equal to the one above it."""
+def _and_more(first: Diagnostic, others: list[Diagnostic]) -> str:
+    """A line for warnings that are equal to one above it, in its file or in others."""
     if not others:
         return ""
     lines = [str(other.span.source.position(other.span.start)[0]) for other in others]
+    what = f"line{'s' * (len(lines) > 1)} "
+    if any(other.span.source.name != first.span.source.name for other in others):
+        what = ""
+        lines = [f"{other.span.source.name}:{line}" for other, line in zip(others, lines, strict=True)]
     some = ", ".join(lines[:_MOST_LINES]) + (", ..." if len(lines) > _MOST_LINES else "")
-    where = f"line{'s' * (len(lines) > 1)} {some}"
-    return f"\n  And {len(others)} more: {where}"
+    return f"\n  And {len(others)} more: {what}{some}"

@@ -26,7 +26,7 @@ from btlang.vocabulary.lexicon import Lexicon
 def project_problems(project: XmlProject, vocabulary: Lexicon) -> list[Diagnostic]:
     """Errors and warnings of all files, in order, without those that comments allow."""
     found = list(project.problems)
-    if project.trees and not project.is_round:
+    if project.trees:
         found += _Check(project, vocabulary).problems()
     wrong = {_place(problem.span) for problem in found if problem.is_error and problem.code != "BT132"}
     return in_order(not_allowed(each for each in found if each.code != "BT132" or _place(each.span) not in wrong))
@@ -49,11 +49,13 @@ class _Check:
         self._described = {*CATALOGUE, *self._models, *nav2_models(ids)}
 
     def problems(self) -> Iterator[Diagnostic]:
-        """Of the trees; only warnings where there is an error that would mislead them."""
+        """Of the trees; only those of single nodes where trees contain themselves."""
         yield from unknown_nodes(self._nodes, self._described, self._words, self._project.dialects)
         yield from self._wrong_ports()
         yield from unused_trees(self._project)
         yield from unread_outputs(self._nodes, self._models, keys_read(self._nodes, self._models))
+        if self._project.is_round:
+            return
         yield from self._faults()
         compilation = Compilation(self._vocabulary, tree=self._whole(self._project.trees))
         for one in PASSES:

@@ -1,4 +1,7 @@
-"""Comments of a file whose English is edited: each is there once, as the mission has it, around the mission's tree."""
+"""Comments of a file whose English is edited: each is there once, as the mission has it, around the mission's tree.
+
+Instructions for other programs, which English doesn't say, are all there, too.
+"""
 
 from __future__ import annotations
 
@@ -39,6 +42,10 @@ def comments_in(xml: str) -> list[str]:
     return sorted(lines_of(re.findall(r"<!--.*?-->", xml, re.DOTALL)))
 
 
+def instructions_in(xml: str) -> list[str]:
+    return sorted(re.findall(r"<\?keep.*?\?>", xml))
+
+
 def comments_of(text: str) -> list[str]:
     """All comments of a mission."""
     return sorted(line.strip()[2:] for line in text.splitlines() if line.strip().startswith("# "))
@@ -50,7 +57,7 @@ def written(shapes: list[Shape], line_end: str) -> str:
 
     def comment(lines: int, margin: str) -> str:
         texts = [f"note {next(numbers)}" for _ in range(lines)]
-        return f"<!-- {f'{line_end}{margin}  '.join(texts)} -->" if texts else ""
+        return f"<!-- {f'{line_end}{margin}  '.join(texts)} --><?keep {next(numbers)}?>" if texts else ""
 
     def element(shape: Shape, depth: int) -> str:
         name, children, (before, heading, inside, behind), on_line = shape
@@ -133,5 +140,6 @@ def test_they_are_those_of_the_mission(shapes: list[Shape], line_end: str, edits
     told = f"{original.text}\n{text}\n{made}"
     assert plain(read_xml(Source(made))) == plain(tree), told
     assert comments_in(made) == comments_of(text), told
+    assert instructions_in(made) == instructions_in(original.text), told
     assert written_onto(Source(made), tree, WORDS) == made, told
     assert not re.search(r"(?<!\r)\n|\r(?!\n)" if line_end == "\r\n" else "\r", made), told

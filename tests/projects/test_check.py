@@ -100,6 +100,29 @@ def test_trees_that_there_are_are_listed_by_id(tmp_path: Path, capsys: pytest.Ca
     assert problem["hint"] == "There are: Patrol, MainTree, MainTree (2)"
 
 
+def test_trees_in_each_other_do_not_hide_what_else_is_wrong(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = '<root BTCPP_format="4"><BehaviorTree ID="{}"><Sequence><SubTree ID="{}"/><{}/></Sequence></BehaviorTree></root>'
+    Path("a.xml").write_text(text.format("A", "B", 'Foo a="1"'), "utf-8")
+    Path("b.xml").write_text(text.format("B", "A", "Sleep"), "utf-8")
+    found = {(problem["code"], problem["file"]) for problem in problems(capsys, "a.xml", "b.xml")}
+    assert {("BT124", "a.xml"), ("BT231", "a.xml")} <= found
+
+
+def test_equal_warnings_of_several_files_name_their_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    model = '<TreeNodesModel><Action ID="Foo"><input_port name="y"/></Action></TreeNodesModel>'
+    for name in "abc":
+        text = f'<root BTCPP_format="4">\n<BehaviorTree ID="{name}"><Foo/></BehaviorTree>{model}</root>'
+        Path(f"{name}.xml").write_text(text, "utf-8")
+    assert main(["check", "."]) == 0
+    assert "And 2 more: b.xml:2, c.xml:2\n" in capsys.readouterr().err
+
+
 def test_missions_beside_trees(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "good.txt").write_text("wave\n", "utf-8")
     (folder / "bad.txt").write_text("flarp\n", "utf-8")

@@ -307,16 +307,21 @@ class _Onto:
 
     def _comments_by_line(self, top: float) -> tuple[dict[float, list[_Said]], list[_Said]]:
         """The comments of the file by the line of the mission in which their node is said; and those of nodes that are
-        gone. What stands before all trees belongs to the first statement.
+        gone. What stands before all trees belongs to the first statement. What English can't say (processing
+        instructions) goes from a node that is gone to the next one that isn't.
         """
         found: defaultdict[float, list[_Said]] = defaultdict(list)
         gone: list[_Said] = []
+        unsaid: list[str] = []
 
         def put(notes: Iterable[Note], node: Node | None, line: float | None = None) -> None:
             for note in notes:
                 lines = tuple(lines_of((note.text,))) if not note.is_text else ()
                 if lines and node is None and line is None:
                     gone.append(_Said(note, lines))
+                    self._text.remove_comment(note)
+                elif node is None and line is None and not note.is_text:
+                    unsaid.append(self._raw(note))
                     self._text.remove_comment(note)
                 elif lines:
                     found[line_of(node) if node is not None else line].append(_Said(note, lines))  # type: ignore[index]
@@ -338,6 +343,10 @@ class _Onto:
                 number, new = self._elements[id(old)], self._alignment.new(old)
                 places = notes.before(number), notes.heading(number), notes.behind(number), notes.inside(number)
                 put((note for place in places for note in place), new)
+                if new is not None and unsaid:
+                    self._text.add_comments(new, unsaid)
+                    unsaid = []
+        self._text.add_around(unsaid, at_end=True)
         return found, gone
 
 

@@ -8,7 +8,8 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.passes.names import names_in
 from btlang.text.source import Span
-from btlang.tree.ast import Assign, Ast, Remember, all_definitions, bodies, keys_of
+from btlang.tree.ast import Assign, Ast, Exact, Remember, all_definitions, bodies, keys_of
+from btlang.tree.catalogue import SUBTREE
 from btlang.tree.comments import KEPT
 
 
@@ -60,7 +61,11 @@ def _values(compilation: Compilation) -> Iterator[Diagnostic]:
 
 
 def _asked(nodes: Iterable[Ast]) -> set[str]:
-    """The keys of values that nodes ask for."""
-    return {
-        key for node in nodes for key in keys_of(node) if not isinstance(node, (Assign, Remember)) or key != node.key
-    }
+    """The keys of values that nodes ask for, as do subtrees called by their ids: what is set inside goes out there."""
+    asked: set[str] = set()
+    for node in nodes:
+        own = node.key if isinstance(node, (Assign, Remember)) else ""
+        asked.update(key for key in keys_of(node) if key != own)
+        if isinstance(node, Exact) and node.id == SUBTREE:
+            asked.update(port for port, _ in node.ports)
+    return asked
