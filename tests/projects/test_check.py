@@ -104,7 +104,8 @@ def test_trees_in_each_other_do_not_hide_what_else_is_wrong(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    text = '<root BTCPP_format="4"><BehaviorTree ID="{}"><Sequence><SubTree ID="{}"/><{}/></Sequence></BehaviorTree></root>'
+    tree = '<BehaviorTree ID="{}"><Sequence><SubTree ID="{}"/><{}/></Sequence></BehaviorTree>'
+    text = f'<root BTCPP_format="4">{tree}</root>'
     Path("a.xml").write_text(text.format("A", "B", 'Foo a="1"'), "utf-8")
     Path("b.xml").write_text(text.format("B", "A", "Sleep"), "utf-8")
     found = {(problem["code"], problem["file"]) for problem in problems(capsys, "a.xml", "b.xml")}
