@@ -59,7 +59,7 @@ def _chain(node: ast.Chain, parts: list[Doc], printer: Printer) -> Doc:
     if node.operator == "parallel":  # whatever people take the plain word for
         words = [printer.word("meanwhile") if takes_its_time(item) else word for item in node.items[:-1]]
         remember = f"{printer.word('remember').text} "  # directly behind `and` this means `then`
-        inner[1:] = [printer.inside(p, next(flat(p.pieces)).text.startswith(remember)) for p in inner[1:]]
+        inner[1:] = [bracketed(p) if next(flat(p.pieces)).text.startswith(remember) else p for p in inner[1:]]
     return Doc(tuple(_joined(inner, words)), level, *_flags(inner))
 
 

@@ -37,7 +37,8 @@ REMEMBERED = ast.Remember("level", _entry("Battery"), (), SPAN)
 
 
 def and_remember(letter: str) -> ast.Ast:
-    return ast.Chain("parallel", (phrase(letter), ast.Repeat("2", REMEMBERED, SPAN)), False, SPAN)
+    twice = ast.Repeat("2", REMEMBERED, SPAN)
+    return ast.Chain("parallel", (phrase(letter), REMEMBERED, twice), False, SPAN)
 
 
 def _chain(operator: str, items: list[ast.Ast], bracketed: bool) -> ast.Ast:
