@@ -29,6 +29,8 @@ def serve(options: argparse.Namespace) -> int:
         options.refuse(f"{name} takes one file; several are for --to {_PAGES}")
     options.file = options.file[0] if options.file else None
     if options.onto is not None:
+        if options.dialect is not None:
+            options.refuse("the dialect is that of the file with --onto")
         from btlang.editing.onto import write_onto
 
         write_onto(mission_of(options), options.onto, options.out, force=options.force)

@@ -155,7 +155,7 @@ _ALL = (
     Code("BT123", "<{tag}> needs the attribute {attribute}.", "{advice}"),
     Code("BT124", "The tree '{name}' contains itself: {circle}.", "To do it again, put it below a Repeat node."),
     Code("BT125", "There are several trees, and it isn't clear which is the main one: {names}.",
-         "Write into <root>: main_tree_to_execute=\"{first}\"\nOr choose one: btc run --main \"{first}\" FILE"),
+         "Write into <root>: main_tree_to_execute=\"{first}\"\nOr choose one: --main \"{first}\""),
     Code("BT126", "There's no tree called '{name}'."),
     Code("BT127", "There are two trees called '{name}'.", "Give each a different ID."),
     Code("BT128", "'{path}' can't be included: {reason}."),

@@ -20,7 +20,7 @@ def write_pages(project: DocumentedProject, paths: Sequence[str], out: str | Non
     """
     writer = PageWriter(project)
     is_single = len(paths) == 1 and not os.path.isdir(paths[0])
-    if out is None or (is_single and out.endswith(".md")):
+    if out is None or (out.endswith(".md") and not os.path.isdir(out)):
         if not is_single:
             return False
         [file] = project.files

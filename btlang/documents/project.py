@@ -14,7 +14,7 @@ from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.btcpp.reader import MAIN
 from btlang.frontends.btcpp.spelling import MAIN_TREE
 from btlang.frontends.table import frontend_of
-from btlang.projects.files import begins_as_tree, files_below, named_files
+from btlang.projects.files import begins_as_tree, files_below, named_files, nothing_in
 from btlang.record import Record
 from btlang.testing.names import is_test_file
 from btlang.text.source import Source
@@ -72,7 +72,7 @@ def read_documents(
 ) -> DocumentedProject:
     """Reads files, and in folders those that are trees in XML or missions; both are told by what they hold.
 
-    Raises MissionError for a file that is named, or begins as a tree, and can't be read.
+    Raises MissionError for a file that is named, or begins as a tree, and can't be read, and where nothing is found.
     """
     base = _common_folder(paths)
     trees: list[tuple[str, Source]] = []
@@ -93,6 +93,8 @@ def read_documents(
             if path in paths:
                 raise
             left_out.append(name)
+    if not names:
+        raise nothing_in(paths[0], "there are no trees in XML and no missions in it that can be read")
     read = read_files(source for _, source in trees)
     models, described = read.models, dict[str, tuple[NodeModel, ...]]()
     for (name, _), file in zip(trees, read.files, strict=True):

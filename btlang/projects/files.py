@@ -19,9 +19,13 @@ def tree_files(folder: str) -> list[str]:
     """The files of trees and models in a folder and below it, without hidden ones. Raises MissionError (BT001)."""
     found = [path for path in files_below(folder, XML_ENDINGS) if _may_have_trees(path)]
     if not found:
-        reason = "there are no trees in XML in this folder"
-        raise MissionError([diagnostic("BT001", Span(Source("", folder), 0, 0), file=folder, reason=reason)])
+        raise nothing_in(folder, "there are no trees in XML in this folder")
     return found
+
+
+def nothing_in(folder: str, reason: str) -> MissionError:
+    """For a folder in which nothing of what is wanted is (BT001)."""
+    return MissionError([diagnostic("BT001", Span(Source("", folder), 0, 0), file=folder, reason=reason)])
 
 
 def named_files(paths: Sequence[str], inside: Callable[[str], Iterable[str]] = tree_files) -> Iterator[str]:

@@ -73,6 +73,21 @@ def test_kinds_follow_from_tags_and_from_nav2() -> None:
     assert 'outputs = ["error_code_id"]' in pack
 
 
+def test_what_a_phrase_writes_is_no_value_that_the_mission_needs(tmp_path: Path) -> None:
+    ports = '<input_port name="goal"/><output_port name="reason"/>'
+    models = f'<Action ID="Drive">{ports}</Action><Action ID="Report"><input_port name="words"/></Action>'
+    tree = '<Sequence><Drive goal="{goal}" reason="{why}"/><Report words="{why}"/></Sequence>'
+    main_tree = f'<BehaviorTree ID="MainTree">{tree}</BehaviorTree>'
+    file, words = tmp_path / "drive.xml", tmp_path / "words.toml"
+    file.write_text(f'<root BTCPP_format="4">{main_tree}<TreeNodesModel>{models}</TreeNodesModel></root>')
+    assert main(["words", "--from", str(file), "-o", str(words)]) == 0
+    mission = parse_file(str(file), keywords=[str(words)])
+    text = str(mission.to("english"))
+    assert "this mission is given {goal}\n" in text
+    for said in (text, text.replace('"{why}"', "{why}")):
+        assert plain(parse_tree(said, keywords=[str(words)]).tree) == plain(mission.tree)
+
+
 def test_phrases_that_mean_something_else_get_another_form() -> None:
     """Those of words that ship, of the language, and of the pack itself."""
     ids = ("OpenGripper", "If", "DoNothing", "Pour", "pour", "POUR", "Pour_")

@@ -100,9 +100,13 @@ def test_what_can_not_be_read_is_told(tmp_path: Path, capsys: pytest.CaptureFixt
     assert main(["compile", str(tmp_path), "--to", "markdown", "-o", str(tmp_path / "docs")]) == 2
     assert "broken.xml:1:" in capsys.readouterr().err
     (tmp_path / "broken.xml").unlink()
+    assert main(["compile", str(tmp_path), "--to", "markdown", "-o", str(tmp_path / "docs")]) == 2
+    assert "there are no trees in XML and no missions in it that can be read" in capsys.readouterr().err
+    assert not (tmp_path / "docs").exists()
+    (tmp_path / "wave.txt").write_text("wave\n")
     made = documented(tmp_path / "docs", tmp_path)
     assert "- notes.txt" in made["index.md"]
-    for words in (["--to", "markdown"], ["--to", "json"]):
+    for words in (["--to", "markdown"], ["-o", str(tmp_path / "one.md")], ["--to", "json"]):
         with pytest.raises(SystemExit):
             main(["compile", str(tmp_path), str(TEAM), *words])
 

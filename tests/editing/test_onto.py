@@ -115,6 +115,8 @@ def test_a_file_that_the_mission_was_not_made_from_stays(tree: Path, capsys: pyt
         assert f"error BT136: This mission can't be written onto tree.xml: {reason}." in told
         assert f"or write it anyway: btc compile {mission} --onto tree.xml --force" in told
         assert tree.read_bytes() == TREE
+    with pytest.raises(SystemExit):
+        main(["compile", "other.txt", "--onto", "tree.xml", "--dialect", "3"])
     os.mkfifo("pipe.xml")
     assert main(["compile", "hand.txt", "--onto", "pipe.xml"]) == 2
     assert "BT009" in capsys.readouterr().err

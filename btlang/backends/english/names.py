@@ -136,7 +136,10 @@ class _Said:
     def _node(self, node: ast.Exact | ast.Phrase) -> None:
         ports = dict(node.ports)
         self.outputs.update(key for text in ports.values() for key in keys_set_in(text))
-        self.outputs.update(ports[port][1:-1] for port in node.outputs if ports[port][:1] == "{")
+        outputs = [ports[port] for port in node.outputs]
+        if isinstance(node, ast.Phrase):
+            outputs += [text for slot, text in node.arguments if slot in node.entry.outputs]
+        self.outputs.update(text[1:-1] for text in outputs if text[:1] == "{")
         if isinstance(node, ast.Exact) and node.id == SUBTREE:
             self.arguments.setdefault(ports.pop("ID", ""), set()).update(ports)
 

@@ -10,8 +10,9 @@ from btlang.frontends.mission.token import Header
 from btlang.text.words import Words, statements
 from btlang.tree.catalogue import SUBTREE
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.pattern import forms
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.references import keys_set_in
+from btlang.vocabulary.references import keys_in, keys_set_in
 from btlang.vocabulary.trie import longest
 
 
@@ -73,12 +74,26 @@ def _listed(text: Words, at: int, last: int, vocabulary: Lexicon) -> list[str]:
 
 
 def find_outputs(text: Words, vocabulary: Lexicon) -> set[str]:
-    """The keys of the values that nodes give: `giving {path}`, and those that their scripts set."""
+    """The keys of the values that nodes give: `giving {path}`, those that their scripts set, and those in slots of
+    phrases that are outputs.
+    """
     found = {key for word in text.distinct if word[0] == '"' for key in keys_set_in(word)}
+    found.update(_in_phrases(text, vocabulary) if "{" in text.source.text else ())
     firsts = {phrase.split()[0] for phrase in vocabulary.roles["giving"]}
     for at, word in enumerate(text.words) if not firsts.isdisjoint(text.distinct) else ():
         found.update(outputs_at(text, at, vocabulary) if word in firsts else ())
     return found
+
+
+def _in_phrases(text: Words, vocabulary: Lexicon) -> Iterator[str]:
+    writing = [entry for known in vocabulary.entries.values() for entry in known if entry.outputs]
+    firsts = {form[0] for entry in writing for phrase in entry.phrases for form in forms(phrase)}
+    context = vocabulary.context.with_references()
+    for at, word in enumerate(text.words) if not firsts.isdisjoint(text.distinct) else ():
+        match = longest(vocabulary.trie, text, at, context) if word in firsts else None
+        if match is not None and match.meaning.entry is not None:
+            written = [value.text for value in match.values if value.name in match.meaning.entry.outputs]
+            yield from (key for text in written for key in keys_in(text) if text == f"{{{key}}}")
 
 
 def find_arguments(
