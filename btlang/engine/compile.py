@@ -196,7 +196,8 @@ def compile_node(instance: NodeInstance, children: Sequence[Compiled]) -> Compil
         compiled = _compile_leaf(instance, children)
     else:
         if not kind.least <= len(children) <= kind.most and kind.id != SUBTREE:
-            raise instance.error(f"{node.id} has {len(children)} children instead of {_how_many(kind)}")
+            has = f"{len(children)} child{'ren' * (len(children) != 1)}"
+            raise instance.error(f"{node.id} has {has} instead of {_how_many(kind)}")
         compiled = _compile_built_in(instance, kind, children)
     return conditioned(instance, compiled) if node.ports else compiled
 

@@ -277,7 +277,7 @@ class NoHalt:
         (n("A", n("AlwaysSuccess")), lambda: None, "A is a leaf, which takes no children"),
         (n("Sequence"), None, "Sequence has 0 children instead of 1 or more"),
         (n("Inverter"), None, "Inverter has 0 children instead of 1"),
-        (n("IfThenElse", n("AlwaysSuccess")), None, "IfThenElse has 1 children instead of 2 or 3"),
+        (n("IfThenElse", n("AlwaysSuccess")), None, "IfThenElse has 1 child instead of 2 or 3"),
         (n("Repeat", n("AlwaysSuccess")), None, "Repeat needs a port num_cycles"),
         (n("Repeat", n("AlwaysSuccess"), num_cycles="1.0"), None, "num_cycles must be a whole number from -1 "),
         (n("Timeout", n("AlwaysSuccess"), msec="-5"), None, "msec must be a whole number from 0 "),

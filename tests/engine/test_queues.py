@@ -87,11 +87,11 @@ def test_what_is_no_queue(held: Any, reason: str) -> None:
         (n("Precondition", n("AlwaysSuccess")), "Precondition needs a port if"),
         (n("Precondition", n("AlwaysSuccess"), **{"if": "1 +"}), "its if '1 +' cannot be read: a value is missing"),
         (n("RateController", n("AlwaysSuccess"), hz="0"), "hz must be a number above 0, not '0'"),
-        (n("TryCatch", n("AlwaysSuccess")), "TryCatch has 1 children instead of 2 or more"),
+        (n("TryCatch", n("AlwaysSuccess")), "TryCatch has 1 child instead of 2 or more"),
         (n("TryCatch", *[n("AlwaysSuccess")] * 2, catch_on_halt="yes"), "catch_on_halt must be true or 1 or false "),
         (n("Switch2", *[n("AlwaysSuccess")] * 2, variable="1"), "Switch2 has 2 children instead of 3"),
         (n("Switch2", *[n("AlwaysSuccess")] * 3, case_3="1"), "Switch2 takes no port case_3"),
-        (n("RecoveryNode", n("AlwaysSuccess")), "RecoveryNode has 1 children instead of 2"),
+        (n("RecoveryNode", n("AlwaysSuccess")), "RecoveryNode has 1 child instead of 2"),
     ],
 )
 def test_errors_of_compiling(node: Node, message: str) -> None:

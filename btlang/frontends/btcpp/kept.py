@@ -30,7 +30,7 @@ _OWN = {"ID", "_name", "BTCPP_format", "main_tree_to_execute"}
 """Attributes that the writer gives anew."""
 _FILE = "file"
 _DIGEST = re.compile(rf'^({KEPT} <{_FILE} [^\n]*digest=")[0-9a-f]*', re.MULTILINE)
-_TOLD = "For btc, of the XML that this was made from; leave it as it is."
+_TOLD = "So that btc can write this onto its XML file again; don't change it."
 
 
 class Kept(Record):
