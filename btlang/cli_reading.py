@@ -112,7 +112,9 @@ def add_compile_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--onto", metavar="XML", help="the file that the mission was made from: changes what was edited"
     )
-    parser.add_argument("--force", action="store_true", help="with --onto: also onto a file that has changed since, or another one")
+    parser.add_argument(
+        "--force", action="store_true", help="with --onto: also where the file has changed, or is another one"
+    )
 
 
 def add_listing_options(parser: argparse.ArgumentParser) -> None:
