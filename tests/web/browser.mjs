@@ -25,7 +25,12 @@ export async function visit(base, act, options = {}, expected = REFUSED, draws =
     page.on("pageerror", (error) => faults.push(error.message));
     page.on("console", (message) => message.type() === "error" && !expected.test(message.text()) && faults.push(message.text()));
     page.on("request", (request) => !request.url().startsWith(base) && !request.url().startsWith("data:") && faults.push(request.url()));
-    await act(page, context);
+    try {
+      await act(page, context);
+    } catch (error) {
+      console.error(`${page.url()} said:\n${(await page.innerText("body", { timeout: 5000 }).catch(String)).slice(0, 3000)}`);
+      throw error;
+    }
     assert.deepEqual(faults, []);
   } finally {
     await browser.close();
