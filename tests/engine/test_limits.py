@@ -16,7 +16,7 @@ from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.tree.dump import outline, plain
 from btlang.tree.node import Node, Tree
-from tests.profiles import amount
+from tests.profiles import amount, cases
 
 from .scripted import World, n
 
@@ -50,7 +50,7 @@ def test_a_deep_tree_is_drawn() -> None:
 
 
 @pytest.mark.parametrize("watched", [False, True])
-@pytest.mark.parametrize(
+@cases(
     ("id", "ports"),
     [
         ("ForceSuccess", {}),
@@ -59,6 +59,7 @@ def test_a_deep_tree_is_drawn() -> None:
         ("SubTree", {}),
         ("Repeat", {"num_cycles": "{n}", "_while": "true", "_onHalted": "n += 0", "_post": "n += 0"}),
     ],
+    usual=3,
 )
 def test_a_deep_tree_runs(id: str, ports: dict[str, str], watched: bool) -> None:
     world = World()

@@ -18,6 +18,7 @@ import btlang
 from btlang.api import world_vocabulary
 from btlang.cli import main
 from btlang.vocabulary.shipped import DEFAULT_WORLD
+from tests.profiles import only_long
 from tests.ros.client import Client, Goal, answer
 from tests.ros.processes import LONG, REPOSITORY, Command, wait_until
 
@@ -164,6 +165,7 @@ def commands(log: Path) -> Counter[tuple[str, str]]:
     return Counter((node_id, status) for node_id, status in ended if node_id in entries)
 
 
+@only_long
 def test_two_servers_do_a_mission_that_ships(start_sim, serve, tmp_path: Path, domain: int, nav2: object, capsys):
     """It has a condition too, which is looked at where the mission runs. The lobby is near the kitchen."""
     path = str(REPOSITORY / "examples" / "tea_service.txt")

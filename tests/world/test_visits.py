@@ -11,6 +11,7 @@ from btlang.robots.visits import Visits
 from btlang.robots.world_file import WorldError, load_world
 from btlang.text.source import Source
 from btlang.text.time_of_day import DAY
+from tests.profiles import only_long
 from tests.world.test_people import Life
 
 CROWD = """
@@ -47,6 +48,7 @@ def test_a_visit_lies_between_its_times(
     assert visits.next(now, weekday, "1 Vera") == (comes, leaves)
 
 
+@only_long
 def test_a_crowd_comes_on_its_day_and_not_on_the_next() -> None:
     life = Life(load_world(Source(CROWD, "world.toml")))
     life.after(420)
