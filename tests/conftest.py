@@ -29,11 +29,16 @@ sys.dont_write_bytecode = False  # and each worker the tests
 # error about locked ports (Fast DDS 5737, 6117)
 os.environ["FASTDDS_BUILTIN_TRANSPORTS"] = "UDPv4"
 
+REAL_TIME = ("tests/ros/", "tests/web/", "tests/terminal/")
+"""Folders of tests in which several processes must be quick enough for one another."""
+
 
 def pytest_configure(config: pytest.Config) -> None:
-    """`-m long` is known before the tests are read."""
+    """`-m long` is known before the tests are read, and the first worker, which has those in REAL_TIME, goes first."""
     if config.option.markexpr == "long":
         os.environ[LONG] = "1"
+    if os.environ.get("PYTEST_XDIST_WORKER", "gw0") != "gw0":
+        os.nice(10)
 
 
 def pytest_xdist_auto_num_workers() -> int | None:
@@ -42,8 +47,8 @@ def pytest_xdist_auto_num_workers() -> int | None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tests with ROS 2 come first: most of them share a worker, and none of the long ones is left for the end."""
-    items.sort(key=lambda item: not item.nodeid.startswith("tests/ros/"))
+    """Those in REAL_TIME come first: most of them share a worker, and none of the long ones is left for the end."""
+    items.sort(key=lambda item: not item.nodeid.startswith(REAL_TIME))
 
 
 def pytest_collection_finish() -> None:

@@ -18,6 +18,7 @@ from btlang.robots.geometry import Pose, wrap
 from btlang.ros.awake import AWAKE
 from btlang.ros.executor_thread import ExecutorThread
 from btlang.ros.gate import pose_fault
+from btlang.ros.goal_handle import unanswered
 from btlang.ros.lease import Lease
 from btlang.ros.poses import pose_of
 
@@ -85,7 +86,7 @@ class ServerGoal:
         self._reported: Pose | None = None
 
     def cancel(self) -> None:
-        """Gives up: the goal is withdrawn, as soon as it is accepted where it is not yet."""
+        """Gives up: the goal is withdrawn."""
         self.end(f"{self._task.noun} was cancelled")
 
     def end(self, failure: str | None, *, withdraw: bool = True) -> None:
@@ -174,20 +175,30 @@ class ServerGoal:
             self._over()
             return
         self._since, self._stood = AWAKE.now(), (self._stood[0], self._now())
-        self._handle, self._result = handle, handle.get_result_async()
-        self._result.add_done_callback(lambda _: self._over())
+        if self._handle is None:
+            self._follow(handle)
         if self.done:
             self._withdraw()
 
+    def _follow(self, handle: Any) -> None:
+        self._handle, self._result = handle, handle.get_result_async()
+        self._result.add_done_callback(lambda _: self._over())
+
     def _withdraw(self) -> None:
-        """A goal that is not accepted yet is withdrawn when it is."""
-        if self._handle is not None and not self._withdrawing:  # the second answer would call it terminated
+        """One that is not accepted, as far as is known, is withdrawn by its id, and again when it is accepted."""
+        if not self._withdrawing:  # the second answer would call it terminated
             self._withdrawing = True
-            self._handle.cancel_goal_async().add_done_callback(self._cancelled)
+            handle = self._handle or unanswered(self._client, self._goal_id)
+            handle.cancel_goal_async().add_done_callback(self._cancelled)
 
     def _cancelled(self, answer: Any) -> None:
         response = answer.result()
         code = response.return_code
+        if self._handle is None:
+            if code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
+                self._withdrawing = False
+                return
+            self._follow(unanswered(self._client, self._goal_id))
         if self._result.done() or code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
             self._over()
         elif response.goals_canceling or code == CancelGoal.Response.ERROR_GOAL_TERMINATED:  # its result comes, or not

@@ -33,11 +33,12 @@ class Trip:
             self._word.set()  # the journey looks at the clock when it is accepted
         return self.seconds
 
-    def begin(self) -> ServerGoal:
+    def begin(self, *, is_answered: bool = True) -> ServerGoal:
         """It is accepted."""
         journey = self._navigation.start("kitchen", Pose(4.0, -1.0))
-        wait_until(lambda: self.pass_by(0.0) is None and self._word.is_set(), "an answer")
-        self.peer.expect("executing")
+        wait_until(lambda: self.pass_by(0.0) is None and self.peer.has_told("executing"), "the goal")
+        if is_answered:
+            wait_until(lambda: self.pass_by(0.0) is None and self._word.is_set(), "an answer")
         return journey
 
     def pass_by(self, seconds: float) -> None:
@@ -85,6 +86,17 @@ def test_a_server_that_gives_no_word_while_the_robot_stands(trip: Callable[[str]
         "sends no feedback"
     )
     way.peer.expect("cancelled")
+
+
+def test_a_server_whose_answer_gets_lost(trip: Callable[[str], Trip], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("btlang.ros.server_goal._ANSWER", 1.0)
+    way = trip("lost")
+    journey = way.begin(is_answered=False)
+    wait_until(lambda: way.pass_by(0.0) is None and journey.done, "the end")
+    assert journey.failure == "the navigation server on /navigate_to_pose does not answer"
+    way.peer.expect("cancelled")
+    assert journey.withdrawn.wait(5)
+    assert journey.pending == ""
 
 
 def test_a_server_that_talks_while_the_robot_stands(trip: Callable[[str], Trip]) -> None:

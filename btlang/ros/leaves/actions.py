@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Mapping
 from math import inf
+from uuid import uuid4
 
 from action_msgs.msg import GoalStatus
 from action_msgs.srv import CancelGoal
+from unique_identifier_msgs.msg import UUID
 
 from btlang.engine.leaves.leaf import ActionFailed, Failed, described
 from btlang.ros.awake import AWAKE
 from btlang.ros.clients import Clients
 from btlang.ros.filling import filler
+from btlang.ros.goal_handle import unanswered
 from btlang.ros.leaves.server import ANSWER, WAIT, Judge, Presence, awaited, nothing
 from btlang.ros.word import Word
 
@@ -38,16 +41,18 @@ class Goal:
         self._name = name
         self._message = message
         self._wake = wake
+        self._goal_id = clients.lease.goal_id() if clients.lease is not None else UUID(uuid=list(uuid4().bytes))
         self._handle: Any = None
         self._cancelled = False
         self._waits_for = ""
+        self._not_ended = f"{name} hasn't ended the cancelled goal"
 
     def send(self) -> None:
         """Asks the server to begin."""
         self._clients.post(self._send)
 
     def cancel(self) -> None:
-        """Asks the server to end, as soon as it has accepted the goal; nothing where it has ended."""
+        """Asks the server to end, and again when it accepts the goal after that; nothing where it has ended."""
         if self.answer is None and not self._cancelled:
             self._cancelled = True
             self._waits_for = f"{self._name} hasn't answered the halted goal"
@@ -63,8 +68,7 @@ class Goal:
             self._end("it was halted before it was sent")
             return
         try:
-            goal_id = self._clients.lease.goal_id() if self._clients.lease is not None else None
-            sent = self._client.send_goal_async(self._message, self._hear, goal_uuid=goal_id)
+            sent = self._client.send_goal_async(self._message, self._hear, goal_uuid=self._goal_id)
             sent.add_done_callback(self._answered)
         except Exception as problem:
             self._end(f"the goal could not be sent to {self._name}: {described(problem)}")
@@ -77,19 +81,29 @@ class Goal:
         if handle is None or not handle.accepted:
             self._end(f"{self._name} rejected the goal")
             return
-        self._handle, self.accepted = handle, True
         self._hear()
-        handle.get_result_async().add_done_callback(lambda ended: self._end(ended.result()))
+        if self._handle is None:
+            self._follow(handle)
         if self._cancelled:
             self._cancel()
 
+    def _follow(self, handle: Any) -> None:
+        self._handle, self.accepted = handle, True
+        handle.get_result_async().add_done_callback(lambda ended: self._end(ended.result()))
+
     def _cancel(self) -> None:
-        if self._handle is not None and self.answer is None:
-            self._waits_for = f"{self._name} hasn't ended the cancelled goal"
-            self._handle.cancel_goal_async().add_done_callback(self._cancel_answered)
+        if self.answer is None:
+            self._waits_for = self._waits_for if self._handle is None else self._not_ended
+            handle = self._handle or unanswered(self._client, self._goal_id)
+            handle.cancel_goal_async().add_done_callback(self._cancel_answered)
 
     def _cancel_answered(self, future: Any) -> None:
         response = future.result()
+        if self._handle is None:
+            if response.return_code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
+                return
+            self._waits_for = self._not_ended
+            self._follow(unanswered(self._client, self._goal_id))
         if response.return_code in _REFUSED and not response.goals_canceling:
             self._waits_for = f"{self._name} refused to cancel its goal"
 

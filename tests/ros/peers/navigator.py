@@ -1,6 +1,7 @@
 """An action server of nav2_msgs/action/NavigateToPose. `navigator.py MODE [SECONDS]`
 
-MODE is `arrive` (after SECONDS), `hang` (until it is cancelled), `slow` (accepts after SECONDS, then hangs), `reject`,
+MODE is `arrive` (after SECONDS), `hang` (until it is cancelled), `slow` (accepts after SECONDS, then hangs), `lost`
+(as `hang`, but its answer that it accepts gets lost, as it may in DDS), `reject`,
 `abort` (for a reason), `blame` (succeeds with an error code), `code` (the same without a word), `meddle` (cancels its
 goals after SECONDS) or `still` (gives feedback and goes nowhere, until it is cancelled).
 """
@@ -41,7 +42,7 @@ async def _execute(handle: Any) -> NavigateToPose.Result:
     tell("executing")
     result = NavigateToPose.Result()
     until = time.monotonic() + SECONDS
-    while MODE in ("hang", "slow", "meddle", "still") or time.monotonic() < until:
+    while MODE in ("hang", "slow", "lost", "meddle", "still") or time.monotonic() < until:
         if handle.is_cancel_requested:
             handle.canceled()
             tell("cancelled")
@@ -62,14 +63,30 @@ async def _execute(handle: Any) -> NavigateToPose.Result:
     return result
 
 
+class _Losing:
+    """What is below a server, but for the answers to goals."""
+
+    def __init__(self, handle: Any) -> None:
+        self._handle = handle
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._handle, name)
+
+    def send_goal_response(self, *_: object) -> None:
+        tell("lost")
+
+
 def _make(node: Node) -> object:
     if MODE == "meddle":  # a request that names no goal is for all of them
         client = node.create_client(CancelGoal, "/navigate_to_pose/_action/cancel_goal")
         node.create_timer(SECONDS, lambda: client.call_async(CancelGoal.Request()))
-    return ActionServer(
+    server = ActionServer(
         node, NavigateToPose, "/navigate_to_pose", _execute, goal_callback=_goal, cancel_callback=_cancel,
         callback_group=ReentrantCallbackGroup(),
     )  # fmt: skip
+    if MODE == "lost":
+        server._handle = _Losing(server._handle)
+    return server
 
 
 if __name__ == "__main__":
