@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from btlang.engine.leaves.leaf import ActionFailed
+from btlang.ros.awake import AwakeClock
 from btlang.ros.latest import Latest, NodeClock
 
 
@@ -19,6 +20,12 @@ class Node:
 
     def get_clock(self) -> Any:
         return SimpleNamespace(now=lambda: SimpleNamespace(nanoseconds=int(self.said * 1e9)))
+
+
+@pytest.fixture(autouse=True)
+def awake(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a process that never was asleep, as one may have been that other tests held up."""
+    monkeypatch.setattr("btlang.ros.latest.AWAKE", AwakeClock())
 
 
 def test_a_message_grows_old() -> None:

@@ -9,6 +9,7 @@ import pytest
 from std_msgs.msg import Bool
 from std_srvs.srv import Empty, SetBool
 
+from tests.conftest import without_overruns
 from tests.ros.client import LATCHED, Client
 from tests.ros.processes import LONG, Command
 
@@ -109,7 +110,7 @@ def hall(tmp_path: Path, domain: int, start_sim: Callable[..., Command], nav2: o
 
 def told(out: str) -> list[str]:
     """The lines without their times, but for commands that begin or succeed."""
-    lines = [line.split(maxsplit=1)[1] for line in out.splitlines() if line[:1] == " "]
+    lines = [line.split(maxsplit=1)[1] for line in without_overruns(out).splitlines() if line[:1] == " "]
     return [" ".join(line.split()) for line in lines if not line.startswith(("start", "done"))]
 
 
