@@ -116,7 +116,7 @@ def test_halted_in_the_stroke(watched: WatchedSim, how: str) -> None:
             def bows(plain: str = plain) -> bool:
                 return watched.last.text == plain and 3.0 < watched.last.joint("waist tilt") < 20.0
 
-            wait_until(lambda: "look" in watched.out, "the first look")
+            wait_until(lambda: watched.looks, "the first look")
             wait_until(bows, "the bow")
             if how == "halt":
                 going.stop()

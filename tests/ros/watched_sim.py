@@ -60,8 +60,8 @@ class WatchedSim(Command):
     @property
     def last(self) -> Look:
         """The latest one; there has to be one."""
-        line = self.out[-_LINE:].rpartition("\n")[0].rpartition("\n")[2]
-        return Look(line)
+        whole = self.out[-_LINE:].split("\n")[:-1]
+        return Look(next(line for line in reversed(whole) if line.startswith('["look"')))
 
     def late(self, gesture: Gesture, text: str, word: float) -> float | None:
         """Seconds by which the joints had the stroke of a gesture after a second of a text that it said; None where
