@@ -108,6 +108,9 @@ def test_halted_in_the_stroke(watched: WatchedSim, how: str) -> None:
     found: list[float] = []
     with Session(robot=speaker(), world=Source(ROOM, "room.toml")) as session:
         for number in range(12):
+            run(session, 'say "<bow> And up again."')
+            wait_until(lambda: watched.looks and not watched.last.moving, "rest")
+            assert watched.last.joint("waist tilt") == pytest.approx(0.0, abs=0.5)
             text = f"Number {number}. {TEXT}"
             mission = btlang.parse_tree(f'say "{text}"', world=Source(ROOM, "room.toml"))
             going = session.start(mission)
@@ -116,7 +119,6 @@ def test_halted_in_the_stroke(watched: WatchedSim, how: str) -> None:
             def bows(plain: str = plain) -> bool:
                 return watched.last.text == plain and 3.0 < watched.last.joint("waist tilt") < 20.0
 
-            wait_until(lambda: watched.looks, "the first look")
             wait_until(bows, "the bow")
             if how == "halt":
                 going.stop()
