@@ -88,6 +88,21 @@ def test_what_a_phrase_writes_is_no_value_that_the_mission_needs(tmp_path: Path)
         assert plain(parse_tree(said, keywords=[str(words)]).tree) == plain(mission.tree)
 
 
+def test_a_phrase_that_is_too_long_for_a_line_is_said_by_its_ports(tmp_path: Path) -> None:
+    names = [f"{word}_of_the_gripper" for word in ("pose", "speed", "force", "width", "height", "depth", "weight")]
+    ports = "".join(f'<input_port name="{name}"/>' for name in names)
+    values = " ".join(f'{name}="as before"' for name in names)
+    file, words = tmp_path / "grip.xml", tmp_path / "words.toml"
+    tree = f'<BehaviorTree ID="MainTree"><Grip {values}/></BehaviorTree>'
+    model = f'<TreeNodesModel><Action ID="Grip">{ports}</Action></TreeNodesModel>'
+    file.write_text(f'<root BTCPP_format="4">{tree}{model}</root>')
+    assert main(["words", "--from", str(file), "-o", str(words)]) == 0
+    mission = parse_file(str(file), keywords=[str(words)])
+    lines = str(mission.to("english")).splitlines()
+    assert max(map(len, lines)) < 120
+    assert plain(parse_tree("\n".join(lines), keywords=[str(words)]).tree) == plain(mission.tree)
+
+
 def test_phrases_that_mean_something_else_get_another_form() -> None:
     """Those of words that ship, of the language, and of the pack itself."""
     ids = ("OpenGripper", "If", "DoNothing", "Pour", "pour", "POUR", "Pour_")

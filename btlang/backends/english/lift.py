@@ -28,6 +28,7 @@ from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.trie import longest
 
+_MOST_WORDS = 160  # characters of a phrase besides its longest value: it can't go on in another line, as ports can
 _ASKING = frozenset((
     "Sequence", "Fallback", "ReactiveSequence", "ReactiveFallback", "IfThenElse", "WhileDoElse", "Whenever", "Inverter",
 ))  # fmt: skip
@@ -279,6 +280,8 @@ class Lifter:
             ports = tuple(port for port in node.ports if port not in spoken)
             said = texts_of(spoken, self._checked) if entry.sort == sort else None
             words = self._words(node.id, said) if said is not None else ""
+            if len(words) - max((len(text) for _, text in said or ()), default=0) > _MOST_WORDS:
+                continue
             if words and (not (node.name or ports) or self._ends(words)):
                 yield ast.Phrase(entry, said or (), NOWHERE, node.name, ports, self._given(node, ports))
 
