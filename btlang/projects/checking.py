@@ -15,7 +15,7 @@ from btlang.passes.compilation import Compilation
 from btlang.passes.lint.allow import not_allowed
 from btlang.projects.ports import port_problems, subtree_problems
 from btlang.projects.unknown import unknown_nodes
-from btlang.projects.unused import keys_read, unread_outputs, unused_trees
+from btlang.projects.unused import keys_read, unread_outputs, unread_subtree_ports, unused_trees
 from btlang.text.source import Span
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SEQUENCE, SUBTREE
 from btlang.tree.node import Node, Tree
@@ -56,6 +56,7 @@ class _Check:
         yield from unread_outputs(self._nodes, self._models, keys_read(self._nodes, self._models))
         if self._project.is_round:
             return
+        yield from unread_subtree_ports(self._nodes, self._project.trees)
         yield from self._faults()
         compilation = Compilation(self._vocabulary, tree=self._whole(self._project.trees))
         for one in PASSES:

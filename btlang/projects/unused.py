@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
 from btlang.frontends.btcpp.project import XmlProject
+from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
 from btlang.projects.places import attribute_value
 from btlang.tree.catalogue import SCRIPT, SUBTREE, held
 from btlang.tree.model import NodeModel
@@ -43,6 +44,36 @@ def unread_outputs(
             key = blackboard_key(name, text) if name in outputs else None
             if key is not None and key not in read and key[:1] != "@":
                 yield diagnostic("BT235", attribute_value(node, name), key=key, port=name, id=node.id)
+
+
+def unread_subtree_ports(nodes: Iterable[Node], trees: Mapping[str, Node]) -> Iterator[Diagnostic]:
+    """BT235 for values that a tree is given and doesn't name anywhere."""
+    named: dict[str, set[str]] = {}
+    for node in nodes:
+        root = trees.get(node.port("ID")) if node.id == SUBTREE else None
+        if root is None:
+            continue
+        known = named.get(node.port("ID"))
+        if known is None:
+            known = named[node.port("ID")] = _named(root, trees)
+        for name, _ in node.ports:
+            if name != "ID" and name[:1] != "_" and _WORD.fullmatch(name) and name not in known:
+                yield diagnostic("BT235", attribute_value(node, name), key=name, port=name, id=node.port("ID"))
+
+
+def _named(root: Node, trees: Mapping[str, Node]) -> set[str]:
+    """All words of a tree that may be keys, and of those that see its keys by their own names."""
+    words: set[str] = set()
+    waiting, done = [root], set[str]()
+    while waiting:
+        for node in Tree(waiting.pop()).walk():
+            for _, text in node.ports:
+                words.update(_WORD.findall(text))
+            name = node.port("ID")
+            if node.id == SUBTREE and node.port(AUTOREMAP) in TRUE and name in trees and name not in done:
+                done.add(name)
+                waiting.append(trees[name])
+    return words
 
 
 def _outputs(node: Node, models: Mapping[str, NodeModel]) -> set[str]:

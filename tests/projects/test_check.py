@@ -124,6 +124,21 @@ def test_equal_warnings_of_several_files_name_their_files(
     assert "And 2 more: b.xml:2, c.xml:2\n" in capsys.readouterr().err
 
 
+def test_a_tree_names_what_it_is_given(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    use = '<SubTree ID="Talk" what="hello" volume="3" out="{x}" deep="1" a-b="2"/>'
+    script = "<Script code=\"out := 'said'\"/>"
+    inner = '<SubTree ID="Deep" _autoremap="true"/>'
+    trees = {
+        "Main": use,
+        "Talk": f'<Sequence><Say text="{{what}}"/>{script}{inner}</Sequence>',
+        "Deep": '<Say text="{deep}"/>',
+    }
+    text = "".join(f'<BehaviorTree ID="{name}">{tree}</BehaviorTree>' for name, tree in trees.items())
+    (tmp_path / "talk.xml").write_text(f'<root BTCPP_format="4" main_tree_to_execute="Main">{text}</root>')
+    found = [problem["message"] for problem in problems(capsys, str(tmp_path)) if problem["code"] == "BT235"]
+    assert found == ["Nothing reads 'volume', which the port volume of Talk sets."]
+
+
 def test_missions_beside_trees(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "good.txt").write_text("wave\n", "utf-8")
     (folder / "bad.txt").write_text("flarp\n", "utf-8")
