@@ -46,6 +46,7 @@ def said_id(node_id: str, role: str, vocabulary: Lexicon) -> str:
     return said if read_id(text, head.last, vocabulary) == (node_id, len(text.words) - 2) else ""
 
 
+@lru_cache(maxsize=4096)  # each use of a tree asks for those of all trees
 def id_of_name(name: str) -> str:
     """The id that the words of a name make: `Approach shelf` as `ApproachShelf`."""
     return "".join(map(_capital, name.split()))
