@@ -188,16 +188,18 @@ class ServerGoal:
         """One that is not accepted, as far as is known, is withdrawn by its id, and again when it is accepted."""
         if not self._withdrawing:  # the second answer would call it terminated
             self._withdrawing = True
+            was_accepted = self._handle is not None
             handle = self._handle or unanswered(self._client, self._goal_id)
-            handle.cancel_goal_async().add_done_callback(self._cancelled)
+            handle.cancel_goal_async().add_done_callback(lambda answer: self._cancelled(answer.result(), was_accepted))
 
-    def _cancelled(self, answer: Any) -> None:
-        response = answer.result()
+    def _cancelled(self, response: CancelGoal.Response, was_accepted: bool) -> None:
         code = response.return_code
+        if code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID and not was_accepted:
+            self._withdrawing = False
+            if self._handle is not None:  # it has been accepted in between
+                self._withdraw()
+            return
         if self._handle is None:
-            if code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
-                self._withdrawing = False
-                return
             self._follow(unanswered(self._client, self._goal_id))
         if self._result.done() or code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
             self._over()

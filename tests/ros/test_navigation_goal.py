@@ -88,6 +88,16 @@ def test_a_server_that_gives_no_word_while_the_robot_stands(trip: Callable[[str]
     way.peer.expect("cancelled")
 
 
+def test_a_server_that_accepts_what_was_given_up(trip: Callable[[str], Trip], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("btlang.ros.server_goal._ANSWER", 0.05)
+    way = trip("slow")
+    journey = way.begin(is_answered=False)
+    assert journey.failure == "the navigation server on /navigate_to_pose does not answer"
+    way.peer.expect("cancelled")
+    assert journey.withdrawn.wait(5)
+    assert journey.pending == ""
+
+
 def test_a_server_whose_answer_gets_lost(trip: Callable[[str], Trip], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("btlang.ros.server_goal._ANSWER", 1.0)
     way = trip("lost")
