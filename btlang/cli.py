@@ -150,7 +150,7 @@ def _examples(options: argparse.Namespace) -> int:
     chosen = examples.found(options.name) if options.name else examples.all_examples()
     if options.copy is not None:
         written = examples.copied(options.copy, chosen)
-        show("\n".join((*written, f"To run a mission, use the command at its top, in the folder {options.copy}.")))
+        show("\n".join((*written, *examples.beginnings(options.copy, chosen))))
     elif options.name:
         show("\n\n".join(example.text.rstrip("\n") for example in chosen))
     else:

@@ -74,6 +74,15 @@ def listing(width: int = 80) -> list[str]:
     return [*lines, "", "To read one:    btc examples NAME", "To copy them:   btc examples --copy FOLDER [NAME ...]"]
 
 
+def beginnings(folder: str, chosen: Sequence[Example]) -> list[str]:
+    """How to begin with what was copied to a folder, in lines."""
+    readmes = [os.path.join(folder, example.file) for example in chosen if example.file.endswith(_README)]
+    lines = [f"To begin, read {readme}" for readme in readmes]
+    if len(readmes) < len(chosen):
+        lines.append(f"To run a mission, use the command at its top, in this folder: {folder}")
+    return lines
+
+
 def copied(folder: str, chosen: Sequence[Example]) -> list[str]:
     """Copies missions to a folder, with their worlds, parts and tests in its `worlds`, `parts` and `tests`.
 

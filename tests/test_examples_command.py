@@ -66,7 +66,16 @@ def test_a_copy_has_all_missions_and_worlds(tmp_path: Path, capsys: pytest.Captu
     written = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
     shipped = ROOT / "examples"
     assert written == {path.relative_to(shipped).as_posix() for path in shipped.rglob("*.*") if path.suffix != ".pyc"}
-    assert set(capsys.readouterr().out.splitlines()[:-1]) == {str(folder / name) for name in written}
+    lines = capsys.readouterr().out.splitlines()
+    begin = [f"To begin, read {folder / name / 'README.md'}" for name in FOLDERS]
+    assert lines[-3:] == [*begin, f"To run a mission, use the command at its top, in this folder: {folder}"]
+    assert set(lines[:-3]) == {str(folder / name) for name in written}
+
+
+def test_no_help_shows_what_only_programs_understand(capsys: pytest.CaptureFixture[str]) -> None:
+    for verb in ("robot", "task", "run", "serve", "examples"):
+        assert main(["help", verb]) == 0
+        assert " object at " not in capsys.readouterr().out
 
 
 @cases("name", [*CASES], 11)

@@ -45,6 +45,8 @@ def note_given(parser: argparse.ArgumentParser) -> None:
     """To be called when a parser has all options: `given` can then tell those that were given from the other ones."""
     options = [action for action in parser._actions if action.option_strings and action.dest != "help"]
     flags = {action.dest: action.option_strings[-1] for action in options}
+    for action in options:
+        action.help = (action.help or "").replace("%(default)s", str(action.default))
     usual = {action.dest: action.default for action in options if not isinstance(action.default, list)}
     parser.set_defaults(**dict.fromkeys(usual, _NOT_GIVEN), usual=usual, flags=flags)
 
