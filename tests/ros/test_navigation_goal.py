@@ -93,7 +93,7 @@ def test_a_server_that_accepts_what_was_given_up(trip: Callable[[str], Trip], mo
     way = trip("slow")
     journey = way.begin(is_answered=False)
     assert journey.failure == "the navigation server on /navigate_to_pose does not answer"
-    way.peer.expect("cancelled")
+    wait_until(lambda: way.peer.has_told("cancelled"), "the cancel")
     assert journey.withdrawn.wait(5)
     assert journey.pending == ""
 
@@ -104,7 +104,7 @@ def test_a_server_whose_answer_gets_lost(trip: Callable[[str], Trip], monkeypatc
     journey = way.begin(is_answered=False)
     wait_until(lambda: way.pass_by(0.0) is None and journey.done, "the end")
     assert journey.failure == "the navigation server on /navigate_to_pose does not answer"
-    way.peer.expect("cancelled")
+    wait_until(lambda: way.peer.has_told("cancelled"), "the cancel")
     assert journey.withdrawn.wait(5)
     assert journey.pending == ""
 
