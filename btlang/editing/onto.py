@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import os
 import shlex
 
@@ -24,23 +23,23 @@ def write_onto(mission: Mission, path: str, out: str | None = None, *, force: bo
     MissionError (BT136, and those of reading and writing).
     """
     if os.path.exists(path) and not os.path.isfile(path):  # a pipe would be waited for
-        raise MissionError([unwritable(path, OSError(errno.EINVAL, "it isn't a regular file"))])
+        raise MissionError([unwritable(path, "it isn't a regular file")])
     original = read_source(path)
     source = mission.tree.origin
     text = source.text if isinstance(source, Source) else ""
+    file = source.name if isinstance(source, Source) and os.path.isfile(source.name) else ""
     kept = kept_in(text)
     reason = "" if force else _why_not(kept, original, is_replaced=out is None)
     if reason:
         read_xml(original)  # what is no tree is said first
-        name = source.name if isinstance(source, Source) and os.path.isfile(source.name) else "MISSION"
-        anyway = shlex.join(["btc", "compile", name, "--onto", path, "--force"])
+        anyway = shlex.join(["btc", "compile", file or "MISSION", "--onto", path, "--force"])
         advice = f"Make it again with 'btc compile {shlex.quote(path)} --to english', or write it anyway: {anyway}"
         raise MissionError([diagnostic("BT136", Span(original, 0, 0), path=path, reason=reason, advice=advice)])
     made = str(mission.to("xml", onto=original))
     mark = "\ufeff" if has_mark(path) else ""
     write_file(out or path, mark + made)
-    if isinstance(source, Source) and kept.digest and out is None and os.path.isfile(source.name):
-        write_file(source.name, with_digest(text, digest_of(made)))
+    if file and kept.digest and out is None:
+        write_file(file, with_digest(text, digest_of(made)))
 
 
 def _why_not(kept: Kept, original: Source, *, is_replaced: bool) -> str:

@@ -50,15 +50,14 @@ def unread_subtree_ports(nodes: Iterable[Node], trees: Mapping[str, Node]) -> It
     """BT235 for values that a tree is given and doesn't name anywhere."""
     named: dict[str, set[str]] = {}
     for node in nodes:
-        root = trees.get(node.port("ID")) if node.id == SUBTREE else None
-        if root is None:
+        used = node.port("ID")
+        if node.id != SUBTREE or used not in trees:
             continue
-        known = named.get(node.port("ID"))
-        if known is None:
-            known = named[node.port("ID")] = _named(root, trees)
+        if used not in named:
+            named[used] = _named(trees[used], trees)
         for name, _ in node.ports:
-            if name != "ID" and name[:1] != "_" and _WORD.fullmatch(name) and name not in known:
-                yield diagnostic("BT235", attribute_value(node, name), key=name, port=name, id=node.port("ID"))
+            if name != "ID" and name[:1] != "_" and _WORD.fullmatch(name) and name not in named[used]:
+                yield diagnostic("BT235", attribute_value(node, name), key=name, port=name, id=used)
 
 
 def _named(root: Node, trees: Mapping[str, Node]) -> set[str]:

@@ -11,30 +11,21 @@ from itertools import count
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from btlang.api import world_vocabulary
 from btlang.backends.btcpp.onto import written_onto
 from btlang.backends.english import to_english
 from btlang.backends.english.comments import lines_of
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.btcpp.reader import read_xml
-from btlang.frontends.mission.reader import read_mission
-from btlang.passes import lower_mission
 from btlang.text.source import Source
 from btlang.tree.dump import plain
-from btlang.tree.node import Tree
+from tests.backends.test_onto import WORDS, mission_of
 from tests.profiles import searches
 
-WORDS = world_vocabulary()
 LEAVES = ("Foo", "Bar", "Baz", "Qux")
 Shape = tuple[str, tuple["Shape", ...], tuple[int, int, int, int], bool]
 """A node: its id, its children, how many lines its comments have (before it, behind its tag, inside it and behind it),
 and whether it begins on a line of its own.
 """
-
-
-def mission_of(text: str) -> Tree:
-    """The tree of a text in English."""
-    return lower_mission(read_mission(Source(text, "mission.txt"), WORDS).mission, WORDS)
 
 
 def comments_in(xml: str) -> list[str]:

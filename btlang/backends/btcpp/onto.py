@@ -315,14 +315,14 @@ class _Onto:
         unsaid: list[str] = []
 
         def put(notes: Iterable[Note], node: Node | None, line: float | None = None) -> None:
-            for note in notes:
-                lines = tuple(lines_of((note.text,))) if not note.is_text else ()
-                if lines and node is None and line is None:
-                    gone.append(_Said(note, lines))
+            for note in (note for note in notes if not note.is_text):
+                lines = tuple(lines_of((note.text,)))
+                if node is None and line is None:
                     self._text.remove_comment(note)
-                elif node is None and line is None and not note.is_text:
-                    unsaid.append(self._raw(note))
-                    self._text.remove_comment(note)
+                    if lines:
+                        gone.append(_Said(note, lines))
+                    else:
+                        unsaid.append(self._raw(note))
                 elif lines:
                     found[line_of(node) if node is not None else line].append(_Said(note, lines))  # type: ignore[index]
 

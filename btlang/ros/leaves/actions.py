@@ -93,7 +93,8 @@ class Goal:
 
     def _cancel(self) -> None:
         if self.answer is None:
-            self._waits_for = self._waits_for if self._handle is None else self._not_ended
+            if self._handle is not None:
+                self._waits_for = self._not_ended
             handle = self._handle or unanswered(self._client, self._goal_id)
             handle.cancel_goal_async().add_done_callback(self._cancel_answered)
 
