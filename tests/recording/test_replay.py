@@ -140,8 +140,8 @@ def test_it_begins_where_one_wants(tmp_path: Path) -> None:
     assert timeline.failures == [pytest.approx(5.0, abs=0.1)]
     seen = list[Event]()
     began = time.monotonic()
-    Player(timeline, [seen.append], Controls()).play(20.0, start=9.0)
-    assert time.monotonic() - began < 0.3
+    Player(timeline, [seen.append], Controls()).play(5.0, start=9.0)
+    assert time.monotonic() - began < 1.5  # from the beginning it would be 2 or more
     assert seen == timeline.events  # a sink without jumps gets all
 
 

@@ -139,7 +139,7 @@ def test_the_last_period_ends_with_the_time_limit(monkeypatch: pytest.MonkeyPatc
 
 
 def test_a_leaf_wakes_the_run_from_another_thread() -> None:
-    """At one tick a second: what has ended is noticed in a small part of that."""
+    """At one tick in 5 s: what has ended is noticed in a small part of that."""
     ended: list[float] = []
 
     def look(wake: Callable[[], None]) -> Iterator[None]:
@@ -155,10 +155,10 @@ def test_a_leaf_wakes_the_run_from_another_thread() -> None:
 
     clock = Clock()
     engine = Engine(Tree(Node("Look")), {"Look": LeafBinding(look)}.get, clock=clock)
-    outcome = Runner(engine, bus=Bus(clock=clock), rate=1, speed=1.0).run()
+    outcome = Runner(engine, bus=Bus(clock=clock), rate=0.2, speed=1.0).run()
     assert (outcome.status, outcome.ticks) == (SUCCESS, 2)
-    assert ended[1] - ended[0] < 0.3
-    assert 0.04 < outcome.seconds < 0.4
+    assert ended[1] - ended[0] < 1.5
+    assert 0.04 < outcome.seconds < 2.0
 
 
 def test_the_service_does_nothing_without_a_runner() -> None:

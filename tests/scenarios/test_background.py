@@ -166,8 +166,8 @@ def test_its_end_is_noticed_well_before_the_period_is_over() -> None:
 
     outcome = btlang.parse_tree("ponder then go on", keywords=[ponder, go_on]).run(rate=1)
     assert (outcome.status, outcome.ticks) == (SUCCESS, 2)
-    assert at[1] - at[0] < 0.3
-    assert 0.04 < outcome.seconds < 0.5
+    assert at[1] - at[0] < 0.7
+    assert 0.04 < outcome.seconds < 0.9
 
 
 def test_a_pause_cancels_it_and_resuming_starts_it_anew() -> None:

@@ -6,7 +6,6 @@ import asyncio
 import json
 import socket
 import ssl
-import statistics
 import threading
 import time
 from collections import Counter
@@ -101,22 +100,22 @@ def test_passwords_that_are_refused(password: str) -> None:
     assert problem(password, "administrator")
 
 
-def test_an_unknown_user_takes_as_long(tmp_path: Path) -> None:
-    """Medians, since a machine that tests run on is busy."""
+def test_an_unknown_user_takes_as_long() -> None:
+    """Of the processor, and the least of several times, since a machine that tests run on is busy."""
 
     async def seconds(kept: str | None) -> float:
-        began = time.perf_counter()
+        began = time.process_time()
         assert not await verifier.fits("wrong password", kept)
-        return time.perf_counter() - began
+        return time.process_time() - began
 
-    async def medians() -> list[float]:
+    async def least() -> list[float]:
         kept = hashed(PASSWORD)
         pairs = [(await seconds(kept), await seconds(None)) for _ in range(amount(7, 40))]
-        return [statistics.median(each) for each in zip(*pairs, strict=True)]
+        return [min(each) for each in zip(*pairs, strict=True)]
 
     verifier = Verifier()
     with closing(verifier):
-        known, unknown = asyncio.run(medians())
+        known, unknown = asyncio.run(least())
     assert 0.5 < known / unknown < 2.0
 
 

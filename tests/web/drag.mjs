@@ -1,4 +1,5 @@
 // Nodes of a tree are dragged by mouse and by finger; Escape, other kinds of nodes and a finger that scrolls change nothing.
+// Two values are changed at once, and nothing before the tree is that of the text.
 import assert from "node:assert/strict";
 import { logIn, replace, understood, untilWritten, visit, written } from "./browser.mjs";
 
@@ -103,4 +104,38 @@ await visit(base, async (page, context) => {
   await touch("touchEnd");
   await page.waitForSelector("[role=menuitem]");
   await page.keyboard.press("Escape");
+
+  // two values of a node, or none, and one step of undo
+  const moving = "move forward 1 m at 0.2 m/s";
+  const button = (words) => page.getByRole("button", { name: words, exact: true });
+  const values = async (distance, speed) => {
+    await page.locator(".node", { hasText: "move forward" }).click({ button: "right" });
+    await page.getByRole("menuitem", { name: "Change values" }).click();
+    await page.fill("dialog [name=distance]", distance);
+    await page.fill("dialog [name=speed]", speed);
+    await button("OK").click();
+  };
+  await replace(page, moving);
+  await fine();
+  await values("2 m", "0.3 m/s");
+  await untilText("move forward 2 m at 0.3 m/s");
+  await button("Undo").click();
+  await untilText(moving);
+  await fine();
+  await values("2 m", "tea");
+  await page.waitForFunction(() => document.querySelector("dialog .problem").textContent);
+  await still(moving);
+  await page.keyboard.press("Escape");
+
+  // while the server reads what was written, nothing is asked about nodes of the older text
+  let answer;
+  const asked = new Promise((done) => (answer = done));
+  await page.route("**/api/document", (route) => asked.then(() => route.continue()));
+  await replace(page, "wave");
+  await page.locator(".node", { hasText: "move forward" }).click({ button: "right" });
+  await page.getByRole("menuitem", { name: "Add after it" }).click();
+  await page.waitForFunction(() => document.querySelector(".desk").textContent.includes("The text has changed meanwhile"));
+  await still("wave");
+  answer();
+  await fine();
 }, { hasTouch: true });

@@ -15,7 +15,10 @@ wait 60 s
 await visit(base, async (page) => {
   const untilText = (part) => untilWritten(page, part, { isPart: true });
   const fine = () => understood(page);
-  const choose = (words) => page.locator(".node", { hasText: words }).first().click({ button: "right" });
+  const choose = async (words) => {
+    await fine();
+    await page.locator(".node", { hasText: words }).first().click({ button: "right" });
+  };
   const command = (words) => page.getByRole("menuitem", { name: words }).click();
   const button = (words) => page.getByRole("button", { name: words, exact: true });
 

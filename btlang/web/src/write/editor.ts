@@ -218,6 +218,11 @@ export function smallest(before: string, after: string): Change {
   return { start, end: before.length - same, text: after.slice(start, after.length - same) };
 }
 
+/** A text with changes, which are in the order of the text. */
+export function changed(before: string, changes: Change[]): string {
+  return changes.reduceRight((text, { start, end, text: words }) => text.slice(0, start) + words + text.slice(end), before);
+}
+
 /** The editor's own words, where the language of the page has others. */
 function phrases(): Record<string, string> {
   return { Find: t("cm.find"), Replace: t("cm.replace"), next: t("cm.next"), previous: t("cm.previous"), all: t("cm.all"), close: t("cm.close"), replace: t("cm.replace"), "replace all": t("cm.replace_all"), "match case": t("cm.case"), regexp: t("cm.regexp"), "by word": t("cm.word"), Diagnostics: t("cm.problems"), "No diagnostics": t("write.fine") };

@@ -3,7 +3,7 @@ import { openMenu } from "../dom";
 import { t, type Key } from "../texts";
 import type { TreeView } from "../tree/tree_view";
 import { ask } from "./ask";
-import type { Editor } from "./editor";
+import { changed, smallest, type Editor } from "./editor";
 import { choose } from "./palette";
 import type { Reader, SaidNode } from "./understood";
 
@@ -22,7 +22,6 @@ type Place = "before" | "after" | "inside";
 export class TreeEdits {
   private nodes: SaidNode[] = [];
   private said = "";
-  private words = "";
   private held: { node: number; do: "copy" | "move"; words: string } | null = null;
 
   constructor(
@@ -44,7 +43,6 @@ export class TreeEdits {
   set(nodes: SaidNode[], text: string): void {
     this.nodes = nodes;
     this.said = text;
-    this.words = this.editor.text;
   }
 
   /** The commands for a node, for its menu. */
@@ -52,7 +50,7 @@ export class TreeEdits {
     const said = this.nodes[node];
     if (!said || !this.mayEdit() || said.start === null) return [];
     const can = (name: string): boolean => this.can(node, name);
-    const item = (key: Key, run: () => void, wanted = true) => (wanted ? [{ label: t(key), run }] : []);
+    const item = (key: Key, run: () => void, wanted = true) => (wanted ? [{ label: t(key), run: () => this.isSaid() && run() }] : []);
     return [
       ...item("write.add_after", () => this.add(node, "after"), can("insert")),
       ...item("write.add_before", () => this.add(node, "before"), can("insert")),
@@ -82,7 +80,7 @@ export class TreeEdits {
   /** Adds behind the selected node, or at the end. */
   addSelected(): void {
     const node = this.tree.selected ?? 0;
-    if (this.nodes.length) this.add(node, node === 0 && CHAINS.includes(this.nodes[0]!.id) ? "inside" : "after");
+    if (this.nodes.length && this.isSaid()) this.add(node, node === 0 && CHAINS.includes(this.nodes[0]!.id) ? "inside" : "after");
   }
 
   private press(event: KeyboardEvent): void {
@@ -91,6 +89,10 @@ export class TreeEdits {
     if (node === null || !this.mayEdit() || target.closest("input, select, textarea")) return;
     const control = event.ctrlKey || event.metaKey;
     const key = `${control ? "Ctrl+" : ""}${event.altKey ? "Alt+" : ""}${event.shiftKey && event.key.length > 1 ? "Shift+" : ""}${event.key.length === 1 ? event.key.toLowerCase() : event.key}`;
+    const undoes: Record<string, () => void> = {
+      "Ctrl+z": () => (event.shiftKey ? this.editor.redo() : this.editor.undo()),
+      "Ctrl+y": () => this.editor.redo(),
+    };
     const does: Record<string, () => void> = {
       "Delete": () => this.edit({ do: "delete", node }),
       "Insert": () => this.add(node, "after"),
@@ -101,31 +103,30 @@ export class TreeEdits {
       "Ctrl+v": () => this.paste(node, "after"),
       "Alt+ArrowUp": () => this.step(node, -1),
       "Alt+ArrowDown": () => this.step(node, 1),
-      "Ctrl+z": () => (event.shiftKey ? this.editor.redo() : this.editor.undo()),
-      "Ctrl+y": () => this.editor.redo(),
     };
-    const run = does[key];
+    const run = undoes[key] ?? does[key];
     if (!run) return;
     event.preventDefault();
     event.stopPropagation();
-    run();
+    if (key in undoes || this.isSaid()) run();
   }
 
-  /** Does an edit on the server, and its change here; says what is wrong and returns it, "" for nothing. */
-  private async edit(edit: Record<string, unknown>): Promise<string> {
-    const text = this.editor.text;
-    if (text !== this.said) {
-      this.say(t("write.changed_meanwhile")); // the numbers are those of an older text
-      return t("write.changed_meanwhile");
+  /** Does edits on the server, one after the other, and their change here; says what is wrong and returns it, "" for nothing. */
+  private async edit(...edits: Record<string, unknown>[]): Promise<string> {
+    if (!this.isSaid()) return t("write.changed_meanwhile");
+    const before = this.said;
+    let [text, start, end] = [before, 0, 0];
+    for (const edit of edits) {
+      const answer = await this.reader.service("edit", text, { edit });
+      if (!answer.ok) {
+        const problem = answer.messages?.[0] ? [answer.messages[0].message, answer.messages[0].hint].filter(Boolean).join("\n") : (answer.text ?? "");
+        this.say(problem);
+        return problem;
+      }
+      [text, start, end] = [changed(text, answer.changes), answer.start, answer.end];
     }
-    const answer = await this.reader.service("edit", text, { edit });
-    if (!answer.ok) {
-      const problem = answer.messages?.[0] ? [answer.messages[0].message, answer.messages[0].hint].filter(Boolean).join("\n") : (answer.text ?? "");
-      this.say(problem);
-      return problem;
-    }
-    if (this.editor.text !== text) return t("write.changed_meanwhile");
-    this.editor.apply(answer.changes, [answer.start, answer.end]);
+    if (this.editor.text !== before) return t("write.changed_meanwhile");
+    if (text !== before) this.editor.apply([smallest(before, text)], [start, end]);
     this.say("");
     return "";
   }
@@ -163,13 +164,8 @@ export class TreeEdits {
     ask(
       t("write.values"),
       known.map(([name, , value]) => ({ name, label: name.replaceAll("_", " "), value })),
-      async (values) => {
-        for (const [port, , before] of known) {
-          const wrong = values[port] === before ? "" : await this.edit({ do: "value", node, port, words: values[port] });
-          if (wrong) return wrong;
-        }
-        return "";
-      },
+      // each is for the same node: a value changes no number of a node
+      (values) => this.edit(...known.flatMap(([port, , before]) => (values[port] === before ? [] : [{ do: "value", node, port, words: values[port] }]))),
     );
   }
 
@@ -225,7 +221,13 @@ export class TreeEdits {
 
   /** Whether the nodes are those of the text, and not of one before the latest key. */
   private get isCurrent(): boolean {
-    return this.words === this.editor.text;
+    return this.said === this.editor.text;
+  }
+
+  /** The same, and says so if they aren't: their numbers are those of an older text. */
+  private isSaid(): boolean {
+    if (!this.isCurrent) this.say(t("write.changed_meanwhile"));
+    return this.isCurrent;
   }
 
   private isCondition(node: number): boolean {
