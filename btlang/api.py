@@ -26,7 +26,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import load_vocabulary, vocabulary_with
 from btlang.vocabulary.nouns import Features
 from btlang.vocabulary.reading_context import Known
-from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH, STANDARD_BODY
+from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH
 from btlang.vocabulary.values import key_of
 
 TYPE_CHECKING = False
@@ -200,7 +200,7 @@ def world_vocabulary(
     if isinstance(world, Source):
         by_type, features = recent(_names, world.text, find)
     else:
-        by_type, features = cached("world", [DEFAULT_WORLD if world is None else world, STANDARD_BODY], find)
+        by_type, features = cached("world", [DEFAULT_WORLD if world is None else world], find)
     others = [word for word in keywords if not _is_xml(word)]
     vocabulary = load_vocabulary(others, by_type, language, features)
     models = [str(word) for word in keywords if _is_xml(word)]

@@ -5,6 +5,8 @@ from __future__ import annotations
 import gc
 from _thread import allocate_lock  # `threading` takes longer to import
 
+_LOOK_AFTER = 1_000_000  # objects that were made in pauses: garbage in cycles among them has to go, too
+
 
 class _Pause:
     """Stays paused until the last of those that asked for it is done, in whatever thread; then all is as it was."""
@@ -13,6 +15,7 @@ class _Pause:
         self._lock = allocate_lock()
         self._users = 0
         self._was_enabled = False
+        self._made = 0
 
     def __enter__(self) -> None:
         with self._lock:
@@ -24,8 +27,18 @@ class _Pause:
     def __exit__(self, *_error: object) -> None:
         with self._lock:
             self._users -= 1
-            if self._users == 0 and self._was_enabled:
-                gc.enable()
+            if self._users or not self._was_enabled:
+                return
+            self._made += gc.get_count()[0]
+            is_due = self._made > _LOOK_AFTER
+            if is_due:
+                self._made = 0
+            elif not gc.get_freeze_count():
+                gc.freeze()
+                gc.unfreeze()  # makes all objects old ones: else Python looks at once through what was made
+            gc.enable()
+        if is_due:
+            gc.collect()
 
 
 gc_paused = _Pause()

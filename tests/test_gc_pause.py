@@ -49,3 +49,41 @@ def test_what_read_a_text_is_gone_before_the_search_goes_on() -> None:
     gone = weakref.ref(lexer)
     del lexer
     assert gone() is None  # else the first search behind the pause looks through all tokens
+
+
+@pytest.fixture
+def thawed() -> Iterator[None]:
+    """Nothing is frozen, as the tests have it."""
+    gc.unfreeze()
+    yield
+    gc.freeze()
+
+
+@pytest.mark.usefixtures("thawed")
+def test_what_was_made_is_not_looked_through_behind_it() -> None:
+    with gc_paused:
+        made = [[number] for number in range(2_000)]
+    young = {id(each) for generation in (0, 1) for each in gc.get_objects(generation)}
+    assert not young & {id(each) for each in made}
+
+
+@pytest.mark.usefixtures("thawed")
+def test_garbage_that_was_made_in_pauses_goes(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Node:
+        def __init__(self) -> None:
+            self.itself = self
+
+    monkeypatch.setattr("btlang.gc_pause._LOOK_AFTER", 20_000)
+    made = weakref.WeakSet[Node]()
+    for _ in range(10):
+        with gc_paused:
+            made.update(Node() for _ in range(3_000))
+    assert len(made) < 20_000
+
+
+def test_what_somebody_froze_stays_frozen() -> None:
+    gc.freeze()
+    before = gc.get_freeze_count()
+    with gc_paused:
+        pass
+    assert gc.get_freeze_count() == before
