@@ -6,11 +6,12 @@ import os
 import sqlite3
 import sys
 import threading
+import time
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
 
 from btlang.diagnostics.reading import reason_of
-from btlang.task.database import OWNED, PATIENCE, Database, Mode, owned_error, store_error
+from btlang.task.database import OWNED, PATIENCE, Database, Mode, StoreError, owned_error, store_error
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -64,7 +65,16 @@ class Sqlite(Database):
 
     def prepare(self) -> None:
         """In WAL mode nobody who reads waits for those who write."""
-        self._outside("PRAGMA journal_mode = WAL")
+        until = time.monotonic() + PATIENCE
+        while True:
+            try:
+                self._outside("PRAGMA journal_mode = WAL")
+                return
+            except StoreError as error:  # SQLite doesn't wait here for another process that makes the store, too
+                is_busy = getattr(error.__cause__, "sqlite_errorname", "").startswith("SQLITE_BUSY")
+                if not is_busy or time.monotonic() > until:
+                    raise
+            time.sleep(0.01)
 
     def check(self) -> None:
         """Raises StoreError if the file is damaged."""

@@ -5,10 +5,12 @@ from __future__ import annotations
 import os
 import random
 import signal
+import sqlite3
 import subprocess
 import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -134,6 +136,18 @@ def test_processes_make_one_store(place: str) -> None:
     started = [program("opened", place) for _ in range(3)]
     assert sorted(printed for one in started for printed in lines(one)) == ["1", "2", "3"]
     assert [one.returncode for one in started] == [0, 0, 0]
+
+
+def test_a_store_that_another_process_begins_is_waited_for(tmp_path: Path) -> None:
+    """SQLite itself doesn't wait where the mode of a file changes that somebody else writes to."""
+    place = str(tmp_path / "tasks.db")
+    with closing(sqlite3.connect(place, isolation_level=None, check_same_thread=False)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        end = threading.Timer(0.3, other.execute, ["ROLLBACK"])
+        end.start()
+        with open_store(place) as store:
+            assert store.tasks() == []
+        end.join()
 
 
 def test_a_kill_loses_nothing_that_was_accepted(place: str) -> None:
