@@ -52,9 +52,7 @@ def load_world(
     It has to leave room for the body, by default that of the robot that ships. In a `bounded` world nothing may be
     outside the outer walls.
     """
-    given = DEFAULT_WORLD if file is None else file if isinstance(file, Source) else fspath(file)
-    radius = (body or standard_body()).radius
-    return load_data(given, "a world", lambda top: _world(top, radius, bounded), WorldError)
+    return _loaded(file, (body or standard_body()).radius, bounded=bounded)
 
 
 def world_from(values: dict[str, Any], path: str, body: Body | None = None) -> World:
@@ -64,11 +62,20 @@ def world_from(values: dict[str, Any], path: str, body: Body | None = None) -> W
 
 
 def world_names(file: str | PathLike[str] | Source | None = None) -> WorldNames:
-    """Places, objects and people of the world in a file or a text, or of the one that ships. Raises WorldError."""
-    return load_world(file).names
+    """Places, objects and people of the world in a file or a text, or of the one that ships. Raises WorldError.
+
+    Which robot will need room there isn't known yet.
+    """
+    return _loaded(file, None, bounded=False).names
 
 
-def _world(top: Table, radius: float, bounded: bool = False) -> World:
+def _loaded(file: str | PathLike[str] | Source | None, radius: float | None, *, bounded: bool) -> World:
+    given = DEFAULT_WORLD if file is None else file if isinstance(file, Source) else fspath(file)
+    return load_data(given, "a world", lambda top: _world(top, radius, bounded), WorldError)
+
+
+def _world(top: Table, radius: float | None, bounded: bool = False) -> World:
+    """Without a radius there may be any wall beside places, but none around them."""
     problems = Problems()
     begins: tuple[Pose | None, float] = (None, 100.0)
     start, battery = problems.part(lambda: _start(top), begins)
@@ -181,7 +188,7 @@ def _names_given_twice(rows: Rows) -> Iterator[Problem]:
             seen[key] = str(section)
 
 
-def _without_room(world: World, rows: Rows, radius: float) -> Iterator[Problem]:
+def _without_room(world: World, rows: Rows, radius: float | None) -> Iterator[Problem]:
     standing = list(spots(rows, ("start", "places", "dock", "docks")))
     segments = world.segments()
     if len(standing) * len(segments) > _MOST_CHECKS:
@@ -189,9 +196,9 @@ def _without_room(world: World, rows: Rows, radius: float) -> Iterator[Problem]:
         yield Problem(message, "places")
         return
     for what, path, spot in standing:
-        if not has_room(world, (spot.x, spot.y), radius, segments):
-            message = f"{what} at ({spot.x:g}, {spot.y:g}) is inside a wall or a box; leave {radius:g} m to every wall"
-            yield Problem(message, *path, "x")
+        if not has_room(world, (spot.x, spot.y), radius or 0.0, segments):
+            room = f"; leave {radius:g} m to every wall" if radius else ""
+            yield Problem(f"{what} at ({spot.x:g}, {spot.y:g}) is inside a wall or a box{room}", *path, "x")
 
 
 def has_room(world: World, point: Point, radius: float, segments: Iterable[Segment]) -> bool:

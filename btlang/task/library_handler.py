@@ -104,8 +104,7 @@ class LibraryHandler:
         if kind is Kind.ROBOT:
             read_body(source, self._overs)
             return
-        for body in (None, self._body):  # missions are read with room for the robot that ships
-            read_world(source, body)
+        read_world(source, self._body)
 
 
 def kept_text(store: Store, name: str, kind: Kind) -> Source:

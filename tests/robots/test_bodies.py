@@ -17,6 +17,7 @@ from btlang.robots.needs import lacking
 from btlang.robots.registry import runs_on
 from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.world import World
+from btlang.text.source import Source
 from btlang.vocabulary.shipped import BODIES, shipped
 
 EMPTY = World(start=Pose(0.0, 0.0))
@@ -50,6 +51,24 @@ def test_a_robot_of_a_file_runs_a_mission() -> None:
     slow = run("go to the lab", robot="small").seconds
     assert slow > 1.1 * fast
     assert run("pick up the cup then wave at Alice then look around", robot=f"{BODIES}/small.toml").succeeded
+
+
+def test_a_world_needs_room_for_the_robot_that_is_chosen() -> None:
+    """The standard robot has a radius of 0.2 m, the small one of 0.15 m."""
+    start = "start = { x = 1, y = 1 }\n"
+    tight = Source(
+        f'{start}walls = [[[2.17, 0], [2.17, 3]]]\nplaces = [{{ name = "desk", x = 2, y = 1 }}]', "tight", roots=()
+    )
+    mission = btlang.parse_tree("go to the desk", world=tight)
+    mission.check("small")
+    assert mission.run(speed="max", robot="small").succeeded
+    with pytest.raises(MissionError, match=r"the place \"desk\" .* leave 0.2 m to every wall"):
+        mission.check("simulated")
+    with pytest.raises(MissionError, match="leave 0.2 m to every wall"):
+        mission.run(speed="max")
+    full = Source(f"{start}boxes = [{{ x = 1, y = 1, width = 5, height = 5 }}]", "full", roots=())
+    with pytest.raises(MissionError, match=r"the start at \(1, 1\) is inside a wall or a box\."):
+        btlang.parse_tree("wave", world=full)
 
 
 def test_what_the_body_lacks_is_said_before_the_run() -> None:
