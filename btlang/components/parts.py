@@ -11,8 +11,8 @@ from btlang.components.servos import servo_angle
 from btlang.devices.device_set import DeviceSet, Reads, reader
 from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import Charge, Grip, GripTarget, JointTarget, Play, Scan, Shown
-from btlang.robots.body import Body
-from btlang.robots.geometry import Pose
+from btlang.robots.body import Body, Sensor
+from btlang.robots.geometry import CENTRE, Pose
 from btlang.robots.hands import Hands
 from btlang.robots.joints import clipped, joint_of
 from btlang.robots.obstacles import Obstacles
@@ -65,28 +65,27 @@ def device_parts(
     return Parts(
         base,
         DevicePower(devices.first("battery"), readers),
-        lambda pose: _scan(lidar, readers),
+        lambda pose: _scan(lidar, readers, body.sensor("scanner")),
         joints,
         DeviceHands(body, readers, Hands(obstacles, world.names.objects, body)),
         DeviceVoice(body, readers, devices.first("speaker"), displays, joints),
     )
 
 
-def _scan(lidar: str, readers: Mapping[str, Reads]) -> Array:
+def _scan(lidar: str, readers: Mapping[str, Reads], scanner: Sensor | None) -> Array:
     import numpy as np  # most missions need none
+
+    from btlang.robots.scan import around
 
     reading = reader(readers, lidar, "lidar").read(lidar)
     assert isinstance(reading, Scan)
-    if (reading.start, reading.step, len(reading.ranges)) == (0.0, 1.0, 360):
-        return np.asarray(reading.ranges, dtype=np.float64)
-    scan: Array = np.full(360, np.inf)
-    beams = np.round(reading.start + reading.step * np.arange(len(reading.ranges))).astype(int) % 360
-    np.minimum.at(scan, beams, np.asarray(reading.ranges, dtype=np.float64))
-    return scan
+    ranges = np.asarray(reading.ranges, dtype=np.float64)
+    angles = np.radians(reading.start + reading.step * np.arange(len(ranges)))
+    return around(ranges, angles, CENTRE if scanner is None else scanner.pose)
 
 
 class DevicePower:
-    """See btlang.robots.parts.PowerPart: what a battery tells."""
+    """See btlang.robots.parts.PowerPart: what a battery reports."""
 
     def __init__(self, name: str, devices: Mapping[str, Reads]) -> None:
         self._name, self._devices = name, devices
@@ -148,7 +147,7 @@ def joints_over(body: Body, devices: Mapping[str, Reads]) -> JointsPart:
 
 
 class DeviceJoints:
-    """See btlang.robots.parts.JointsPart: a servo for each joint, of the same name. They are told anew at each step."""
+    """See btlang.robots.parts.JointsPart: a servo for each joint, of the same name. Each step commands them again."""
 
     def __init__(self, body: Body, devices: Mapping[str, Reads]) -> None:
         self._body, self._devices = body, devices
@@ -185,7 +184,7 @@ class DeviceJoints:
                 self._devices[name].write(name, JointTarget())
 
     def step(self, dt: float) -> None:
-        """Tells them again; what has arrived holds its place by itself."""
+        """Commands them again; a joint that has arrived holds its place by itself."""
         for name, target in tuple(self._targets.items()):
             self._devices[name].write(name, JointTarget(target, joint_of(self._body, name).speed))
 
@@ -194,10 +193,10 @@ class DeviceJoints:
 
 
 class Gripping:
-    """See btlang.robots.capabilities.Operation: a hand that closes or opens. `tell` gets whether something is in it."""
+    """See btlang.robots.capabilities.Operation: a hand closes or opens. `report` gets whether something is in it."""
 
-    def __init__(self, name: str, device: Reads, closes: bool, tell: Callable[[bool], object]) -> None:
-        self._name, self._device, self._closes, self._tell = name, device, closes, tell
+    def __init__(self, name: str, device: Reads, closes: bool, report: Callable[[bool], object]) -> None:
+        self._name, self._device, self._closes, self._report = name, device, closes, report
         self.done = False
         self.failure: str | None = None
         self._passed = 0.0
@@ -221,7 +220,7 @@ class Gripping:
             return
         holds = isinstance(reading, Grip) and bool(reading.holds)
         if holds == self._closes or self._passed >= _GRIP_AFTER:
-            self._tell(holds)
+            self._report(holds)
             self._end("nothing is in the hand" if self._closes and not holds else None)
 
     def _end(self, failure: str | None) -> None:
@@ -262,7 +261,7 @@ class DeviceHands:
         return self.held.pop(hand, None)
 
     def held_for(self, hand: Hand, now: float) -> float:
-        """0 while it holds something, inf where the hand tells that it is gone."""
+        """0 while it holds something, inf if the hand reports that it is gone."""
         return inf if self._is_empty(hand) else 0.0
 
     def _is_empty(self, hand: Hand) -> bool:
@@ -286,11 +285,11 @@ class DeviceHands:
         for gripping in self._grippings.values():
             gripping.step(dt)
 
-    def _begin(self, hand: Hand, closes: bool, tell: Callable[[bool], object]) -> Gripping:
+    def _begin(self, hand: Hand, closes: bool, report: Callable[[bool], object]) -> Gripping:
         name = f"{hand} hand"
         if self._body.hand(hand) is None:
             raise RobotError(f"the robot has no {name}")
-        gripping = self._grippings[hand] = Gripping(name, reader(self._devices, name, name), closes, tell)
+        gripping = self._grippings[hand] = Gripping(name, reader(self._devices, name, name), closes, report)
         return gripping
 
 
@@ -311,7 +310,7 @@ class DeviceVoice(Voice):
         self._play(None)
 
     def step(self, dt: float) -> None:
-        """The speaker is told again, as its loop needs it."""
+        """Commands the speaker again, as its loop needs it."""
         super().step(dt)
         self._play_on()
 

@@ -34,6 +34,7 @@ from btlang.devices.kinds import (
 from btlang.devices.loop import SILENCE
 from btlang.devices.value_checks import check_command
 from btlang.robots.body import Body
+from btlang.robots.geometry import CENTRE
 from btlang.robots.robot import RobotError
 
 TYPE_CHECKING = False
@@ -65,7 +66,7 @@ class SimulatedDevice:
         self._is_perfect = not {"noise", "delay", "silent", "frozen"} & set(device.options)
         self._past: deque[tuple[float, Reading]] = deque()
         self._command: Command | None = None
-        self._told = -inf
+        self._command_time = -inf
         self._begun = 0.0
         self._at_dock = False
         self.is_pressed = False
@@ -99,17 +100,17 @@ class SimulatedDevice:
             raise DeviceSilent(f"the {self._device.name} is silent: {problem}") from None
 
     def write(self, name: str, command: Command) -> None:
-        """Tells it a command. Raises DeviceError for one that it doesn't take."""
+        """Commands the device. Raises DeviceError for a command that it doesn't take."""
         check_command(name, self._device.kind, command)
-        self._command, self._told = command, self._robot.time
+        self._command, self._command_time = command, self._robot.time
         act = _WRITE.get(self._device.kind)
         if act is not None:
             act(self, command)
 
     def step(self) -> None:
-        """What moves and is not told so again comes to rest."""
+        """Brings the device to rest if it moves and its command isn't repeated."""
         rest = self._kind.rest
-        if rest is not None and self._command is not None and self._robot.time - self._told > SILENCE:
+        if rest is not None and self._command is not None and self._robot.time - self._command_time > SILENCE:
             self._command = None
             _WRITE[self._device.kind](self, rest)
 
@@ -146,6 +147,15 @@ class SimulatedDevice:
         beams = range(round(angle - cone / 2), round(angle + cone / 2) + 1)
         nearest = min(float(ranges[beam % 360]) for beam in beams) - self._robot.radius  # it sits on the rim
         return Distance(nearest if nearest <= float(self._option("range", 4.0)) else inf)
+
+    def _scan(self) -> Scan:
+        from btlang.robots.scan import DEGREES, around  # brings numpy
+
+        scanner = self._robot.body.sensor("scanner")
+        ranges: Any = self._robot.scan()
+        if scanner is not None and scanner.pose != CENTRE:
+            ranges = around(ranges, DEGREES, scanner.pose.inverse)
+        return Scan(ranges)
 
     def _wheels(self) -> Wheels:
         linear, angular = self._robot.velocity
@@ -223,7 +233,7 @@ class SimulatedDevice:
     def _playing(self) -> Playing:
         command = self._command
         length = len(command.samples) / 2 / command.rate if isinstance(command, Play) else 0.0
-        return Playing(max(0.0, length - (self._robot.time - self._told)))
+        return Playing(max(0.0, length - (self._robot.time - self._command_time)))
 
     def _pressed(self) -> Pressed:
         return Pressed(self._robot.bumped if self._option("bumper", False) else self.is_pressed)
@@ -250,7 +260,7 @@ _OPTIONS = {
 }  # fmt: skip
 _READ: dict[str, Callable[[SimulatedDevice], Reading]] = {
     "range": SimulatedDevice._distance,
-    "lidar": lambda device: Scan(device._robot.scan()),
+    "lidar": SimulatedDevice._scan,
     "drive": SimulatedDevice._wheels,
     "imu": SimulatedDevice._motion,
     "battery": SimulatedDevice._charge,

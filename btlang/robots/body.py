@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from math import cbrt, pi, sqrt
 
 from btlang.record import Record
+from btlang.robots.geometry import Pose
 from btlang.robots.gesture import BEARINGS, Gesture, Step, angle_of
 from btlang.speech.engine import Settings
 from btlang.speech.recogniser import RecogniserSettings
@@ -109,7 +110,8 @@ class HandPart(Record):
 
 
 class Sensor(Record):
-    """`kind` is "scanner", "bumper" or "camera"; `frame` is its frame in ROS 2. It is at the centre of the robot.
+    """`kind` is "scanner", "bumper" or "camera"; `frame` is its frame in ROS 2, `ahead` and `left` metres from the
+    robot's centre.
 
     It sees as far as its `range`, `view` degrees wide, in the direction `angle` degrees left of ahead and of where its
     `joint` has turned. It recognises people and objects up to `recognizes` metres away.
@@ -122,6 +124,13 @@ class Sensor(Record):
     angle: float = 0.0
     joint: str = ""
     recognizes: float = 0.0
+    ahead: float = 0.0
+    left: float = 0.0
+
+    @property
+    def pose(self) -> Pose:
+        """Where it is, as seen from the centre of the robot, which faces along x."""
+        return Pose(self.ahead, self.left, self.angle)
 
 
 class Battery(Record):
@@ -192,7 +201,7 @@ class Ears(Record):
 class Device(Record):
     """A device of a robot: `kind` and `driver` are names of btlang.devices, `options` are those of its driver.
 
-    `scale` and `offset` make what its driver tells true: value * scale + offset; for a command the other way round.
+    `scale` and `offset` correct what its driver reads: value * scale + offset; for a command the other way round.
     It looks `angle` degrees left of ahead.
     """
 

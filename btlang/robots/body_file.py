@@ -228,7 +228,8 @@ def _sensor(table: Table) -> Sensor:
     reach, view = table.number("range", low=_LEAST), table.number("view", 360.0, low=1.0, high=360.0)
     angle, joint = table.number("angle", 0.0, low=-360.0, high=360.0), table.text("joint") if table.has("joint") else ""
     recognizes = table.number("recognizes", reach if kind == "camera" else 0.0, low=0.0, high=reach)
-    return table.finish(Sensor(kind, frame, reach, view, angle, joint, recognizes))
+    ahead, left = table.number("ahead", 0.0), table.number("left", 0.0)
+    return table.finish(Sensor(kind, frame, reach, view, angle, joint, recognizes, ahead, left))
 
 
 def _device(table: Table) -> Device:

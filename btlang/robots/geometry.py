@@ -37,10 +37,19 @@ class Pose(Record):
         c, s = cos(radians(self.heading)), sin(radians(self.heading))
         return self.x + forward * c - left * s, self.y + forward * s + left * c
 
+    @property
+    def inverse(self) -> Pose:
+        """The pose of the origin, as seen from here."""
+        c, s = cos(radians(self.heading)), sin(radians(self.heading))
+        return Pose(-self.x * c - self.y * s, self.x * s - self.y * c, -self.heading)
+
     def progress_of(self, other: Pose) -> float:
         """How many metres `other` lies ahead of this pose (negative: behind)."""
         heading = radians(self.heading)
         return (other.x - self.x) * cos(heading) + (other.y - self.y) * sin(heading)
+
+
+CENTRE = Pose(0.0, 0.0)
 
 
 def segment_distance(point: Point, segment: Segment) -> float:

@@ -10,7 +10,8 @@ from btlang.robots.obstacles import Obstacles
 
 Array = npt.NDArray[np.float64]
 
-_ANGLES = np.radians(np.arange(360.0))
+DEGREES = np.radians(np.arange(360.0))
+"""The directions of a scan, in radians."""
 
 
 class Scanner:
@@ -43,7 +44,7 @@ def scan(segments: Array, discs: Array, pose: Pose, reach: float) -> Array:
 
     A row of `segments` is x, y of one end and of the other, a row of `discs` is x, y and radius.
     """
-    angles = _ANGLES + np.radians(pose.heading)
+    angles = DEGREES + np.radians(pose.heading)
     beams = np.array((np.cos(angles), np.sin(angles)))
     ranges = np.full(360, np.inf)
     if len(segments):
@@ -53,6 +54,22 @@ def scan(segments: Array, discs: Array, pose: Pose, reach: float) -> Array:
     ranges[ranges > reach] = np.inf
     ranges.flags.writeable = False  # shared by all who read it between two steps
     return ranges
+
+
+def around(ranges: Array, angles: Array, at: Pose) -> Array:
+    """360 distances from a robot's centre, index = degrees left of its heading; inf where nothing was measured.
+
+    `ranges` are metres that a scanner measured, inf or NaN for none, at `angles` in radians left of its own front.
+    `at` is its pose as seen from the centre; with the inverse of that, a scan around the centre is one of the scanner.
+    """
+    seen = np.isfinite(ranges)
+    ranges, angles = ranges[seen], angles[seen] + np.radians(at.heading)
+    if at.x or at.y:
+        x, y = at.x + ranges * np.cos(angles), at.y + ranges * np.sin(angles)
+        ranges, angles = np.hypot(x, y), np.arctan2(y, x)
+    found = np.full(360, np.inf)
+    np.minimum.at(found, np.rint(np.degrees(angles)).astype(int) % 360, ranges)
+    return found
 
 
 def _to_segments(segments: Array, pose: Pose, beams: Array) -> Array:

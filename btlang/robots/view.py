@@ -25,10 +25,11 @@ class View:
         return point if point is not None and self._has(point, pose) else None
 
     def _has(self, point: Point, pose: Pose) -> bool:
-        distance = pose.distance_to(point)
         for sensor in self._sensors:
-            if distance <= sensor.recognizes and self._covers(sensor, pose.bearing_to(point)):
-                return not self._obstacles.wall_between((pose.x, pose.y), point)
+            eye = Pose(*pose.ahead(sensor.ahead, sensor.left), pose.heading)
+            if eye.distance_to(point) <= sensor.recognizes and self._covers(sensor, eye.bearing_to(point)):
+                if not self._obstacles.wall_between((eye.x, eye.y), point):
+                    return True
         return False
 
     def _covers(self, sensor: Sensor, bearing: float) -> bool:

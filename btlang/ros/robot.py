@@ -62,8 +62,8 @@ _OPTIONAL = {
     FOLLOW: "btlang_interfaces/srv/Follow",
     **dict.fromkeys(_COSTMAPS, "nav2_msgs/srv/ClearEntireCostmap"),
 }
-_TOLD_TO_STOP = "the robot was stopped"
-_STOPPING = 5.0  # seconds for which a robot that was stopped is told zero velocity
+_STOPPED = "the robot was stopped"
+_STOPPING = 5.0  # seconds for which a robot that was stopped gets zero velocity
 _ANSWERED = 1.0  # seconds that its own stop gets to answer before a mission begins
 _HEARTBEAT = 3.5  # seconds in which DDS learns for sure what has arrived
 _LAST_WORDS = 2.0  # seconds that servers get to answer at the end
@@ -111,7 +111,7 @@ class RosRobot:
         self._services = Services(node, self._executor)
         self._services.add(_STOP, Trigger)
         self._services.add(_LOCALIZE, Empty)
-        self._senses = RosSensors(subscriptions, self._base, self._emit)
+        self._senses = RosSensors(subscriptions, self._base, self._emit, body.sensor("scanner"))
         make_docking = partial(make_docking_clients, node, self._executor, self._base.where, now)
         self.power = RosPower(node, subscriptions, self._services, self._emit, make_docking)
         self._hands = RosHands(node, subscriptions, self._services, self._places, self._base.where, self._emit, body)
@@ -143,7 +143,7 @@ class RosRobot:
         return [each for each in (self._navigation, self.power.docking) if each is not None]
 
     def step(self, dt: float) -> None:
-        """`dt` seconds have passed: reads what has come, and tells the wanted velocity again."""
+        """`dt` seconds have passed: reads what has come, and publishes the wanted velocity again."""
         self.time += dt
         self.subscriptions.read()
         self._joints.step()
@@ -171,7 +171,7 @@ class RosRobot:
         self._gestures.step(dt)
         self._doors.step()
         self._ears.step(self.time)
-        self._services.step()  # last: what was answered is newer than what topics told before
+        self._services.step()  # last: answers are newer than what topics reported before
         self._senses.step()
         if arrived is not None and arrived.failure is None:
             self._emit("arrive", name=arrived.name)
@@ -232,15 +232,15 @@ class RosRobot:
     def _rest(self) -> None:
         self._base.halt()
         for servers in self._servers:
-            servers.stop(_TOLD_TO_STOP)
-        self._services.stop(_TOLD_TO_STOP)
+            servers.stop(_STOPPED)
+        self._services.stop(_STOPPED)
         self._gestures.stop()
         self._joints.freeze()
         self._voice.silence()
 
     @property
     def moving(self) -> bool:
-        """True while the base still rolls or a joint moves; False where nothing tells of it."""
+        """True while the base still rolls or a joint moves; False if nothing reports it."""
         try:
             return self._joints.moving or self._base.velocity != (0.0, 0.0)
         except RobotError:
@@ -255,8 +255,8 @@ class RosRobot:
         if motion is None:
             return Standstill(None, "", tuple(pending), early)
         linear, angular = motion
-        told = f"at {abs(linear):.2g} m/s" if linear else f"at {abs(angular):.0f} degrees a second" if angular else ""
-        return Standstill(bool(told) or self._joints.moving, told, tuple(pending), early)
+        speed = f"at {abs(linear):.2g} m/s" if linear else f"at {abs(angular):.0f} degrees a second" if angular else ""
+        return Standstill(bool(speed) or self._joints.moving, speed, tuple(pending), early)
 
     # Base
     @property
@@ -270,7 +270,7 @@ class RosRobot:
         return self._base.velocity
 
     def velocity_type(self) -> str:
-        """The type of message in which those who listen to the velocity are told it."""
+        """The type of message that those who listen to the velocity take."""
         return self._base.adapt()
 
     def drive(self, linear: float, angular: float) -> None:
@@ -306,7 +306,7 @@ class RosRobot:
 
     @property
     def stuck(self) -> bool:
-        """True when it has been told to move for a second and does not."""
+        """True when it has been commanded to move for a second and does not."""
         return self._base.stuck
 
     def located(self, name: str) -> tuple[float, float, float | None]:
@@ -344,7 +344,7 @@ class RosRobot:
             self._base.halt()
         operation = self._navigation.start(known, goal)
         if self._latch.refuses:
-            operation.end(_TOLD_TO_STOP)  # `stop` came in between from another thread
+            operation.end(_STOPPED)  # `stop` came in between from another thread
         return operation
 
     @property
@@ -409,15 +409,15 @@ class RosRobot:
 
     # What is around it, and who
     def sees(self, name: str) -> bool:
-        """Whether it is in view. Raises RobotError for an unknown name, and where nothing tells of it."""
+        """Whether it is in view. Raises RobotError for an unknown name, and if nothing reports it."""
         return self._perception.sees(name, self.pose)
 
     def seen(self, kind: str) -> list[str]:
-        """The objects or people in view, nearest first. Raises RobotError where nothing tells of them."""
+        """The objects or people in view, nearest first. Raises RobotError if nothing reports them."""
         return self._perception.seen(kind, self.pose)
 
     def take_picture(self) -> Operation:
-        """An event names what is in view. Raises RobotError where nothing tells of it."""
+        """An event names what is in view. Raises RobotError if nothing reports it."""
         self._emit("picture", name=", ".join((*self.seen("person"), *self.seen("object"))))
         return CompletedOperation()
 
@@ -466,7 +466,7 @@ class RosRobot:
         return self._doors.move_door(name, is_open)
 
     def is_open(self, door: str) -> bool:
-        """Whether a door is open. Raises RobotError where nothing tells of it."""
+        """Whether a door is open. Raises RobotError if nothing reports it."""
         return self._doors.is_open(door)
 
     def switch(self, name: str, on: bool | None) -> Operation:
@@ -475,7 +475,7 @@ class RosRobot:
         return self._doors.switch(name, on)
 
     def is_on(self, name: str) -> bool:
-        """Whether an object is switched on. Raises RobotError where nothing tells of it."""
+        """Whether an object is switched on. Raises RobotError if nothing reports it."""
         return self._doors.is_on(name)
 
     def awaited(self) -> list[str]:
@@ -485,7 +485,7 @@ class RosRobot:
     # Power
     @property
     def battery(self) -> float:
-        """Percent left. Raises RobotError where nothing tells of it."""
+        """Percent left. Raises RobotError if nothing reports it."""
         return self.power.battery
 
     @property
@@ -495,12 +495,12 @@ class RosRobot:
 
     @property
     def docked(self) -> bool:
-        """True while connected to the dock. Raises RobotError where nothing tells of it."""
+        """True while connected to the dock. Raises RobotError if nothing reports it."""
         return self.power.docked
 
     @property
     def charging(self) -> bool:
-        """True while the battery is being charged. Raises RobotError where nothing tells of it."""
+        """True while the battery is being charged. Raises RobotError if nothing reports it."""
         return self.power.charging
 
     @property
@@ -520,7 +520,7 @@ class RosRobot:
 
     # Arms, hands, head
     def joint(self, name: str) -> float:
-        """Degrees. Raises RobotError for an unknown joint, and where nothing tells of it."""
+        """Degrees. Raises RobotError for an unknown joint, and if nothing reports it."""
         return self._joints.angle(name)
 
     def move_joints(self, targets: Mapping[str, float]) -> None:
@@ -571,7 +571,7 @@ class RosRobot:
         return self._hands.hand_over(hand, person)
 
     def holding(self, hand: Hand) -> str | None:
-        """The name of what the hand holds. Raises RobotError where nothing tells of it."""
+        """The name of what the hand holds. Raises RobotError if nothing reports it."""
         return self._hands.holding(hand)
 
     # Ears and voice
@@ -650,7 +650,7 @@ class RosRobot:
 
     def _check_stop(self) -> None:
         if self._latch.refuses:
-            raise RobotError(_TOLD_TO_STOP)
+            raise RobotError(_STOPPED)
 
     def _emit(self, event: str, **data: Any) -> None:
         if self.on_event is not None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import inf, radians
 from typing import Any
 
 import numpy as np
@@ -11,9 +10,12 @@ import numpy.typing as npt
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import String
 
-from btlang.robots.geometry import Pose
+from btlang.robots.body import Sensor
+from btlang.robots.geometry import CENTRE, Pose
 from btlang.robots.robot import SensorSilent
+from btlang.robots.scan import around
 from btlang.ros.base import RosBase
+from btlang.ros.poses import BASE
 from btlang.ros.scans import echoes
 from btlang.ros.subscription_cache import SubscriptionCache
 
@@ -23,14 +25,18 @@ _FREE_AGAIN = 0.03  # metres from where it bumped
 
 
 class RosSensors:
-    """`bumps` counts contacts; `emit` is told of them, of a base that does not move as it is told to, and once of a
-    scanner that somebody asks and that is silent.
+    """`bumps` counts contacts; `emit` reports them, a base that does not move as commanded, and once a scanner that is
+    silent when somebody asks it.
     """
 
-    def __init__(self, subscriptions: SubscriptionCache, base: RosBase, emit: Callable[..., object]) -> None:
+    def __init__(
+        self, subscriptions: SubscriptionCache, base: RosBase, emit: Callable[..., object], scanner: Sensor | None
+    ) -> None:
         self._subscriptions, self._base, self._emit = subscriptions, base, emit
+        self._scanner = scanner or Sensor("scanner", BASE)
         self._contact: Pose | None = None
-        self._stuck_told = self._silence_told = False
+        self._unknown_frame = ""
+        self._stuck_reported = self._silence_reported = False
         self.bumps = 0
         subscriptions.listen(SCAN, LaserScan, "laser scan")
         subscriptions.listen(BUMP, String, "bumps", qos="events")
@@ -40,12 +46,12 @@ class RosSensors:
         try:
             scan = self._subscriptions.get(SCAN, _SILENT)
         except SensorSilent as silent:
-            if not self._silence_told:
-                self._silence_told = True
+            if not self._silence_reported:
+                self._silence_reported = True
                 self._emit("warning", text=str(silent))
             raise
-        self._silence_told = False
-        return _degrees(scan)
+        self._silence_reported = False
+        return self._around(scan)
 
     @property
     def bumped(self) -> bool:
@@ -53,7 +59,7 @@ class RosSensors:
         return self._contact is not None
 
     def step(self) -> None:
-        """Tells of contacts."""
+        """Reports contacts."""
         for message in self._subscriptions.events(BUMP):
             self.bumps += 1
             self._contact = self._base.where()
@@ -61,16 +67,15 @@ class RosSensors:
         now = self._base.where()
         if self._contact is not None and now is not None and self._contact.distance_to((now.x, now.y)) > _FREE_AGAIN:
             self._contact = None
-        if self._base.stuck and not self._stuck_told:
+        if self._base.stuck and not self._stuck_reported:
             self._emit("stuck")
-        self._stuck_told = self._base.stuck
+        self._stuck_reported = self._base.stuck
 
-
-def _degrees(scan: Any) -> npt.NDArray[np.float64]:
-    """360 distances, index = degrees left of the heading; inf where no beam came back."""
-    ranges = echoes(scan)
-    angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
-    seen = np.isfinite(ranges)
-    found = np.full(360, inf)
-    np.minimum.at(found, np.rint(angles[seen] / radians(1.0)).astype(int) % 360, ranges[seen])
-    return found
+    def _around(self, scan: Any) -> npt.NDArray[np.float64]:
+        ranges, frame = echoes(scan), scan.header.frame_id.rpartition("/")[2]
+        if frame not in ("", BASE, self._scanner.frame, self._unknown_frame):
+            self._unknown_frame = frame
+            wanted = f"the laser scan is in the frame '{frame}', but the robot file has '{self._scanner.frame}'"
+            self._emit("warning", text=f"{wanted}: what it shows may be elsewhere")
+        angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
+        return around(ranges, angles, CENTRE if frame == BASE else self._scanner.pose)

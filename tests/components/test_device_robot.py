@@ -93,6 +93,19 @@ def test_a_battery_that_is_silent_is_not_known(tmp_path: Path) -> None:
     assert [event.tag for event in events if event.tag in ("print", "warning")] == ["warning"]
 
 
+def test_a_lidar_is_where_the_robot_file_has_the_scanner(tmp_path: Path) -> None:
+    path = Path(robot_file(tmp_path, device("eye", "lidar")))
+    text = path.read_text(encoding="utf-8")
+    scanner = 'kind = "scanner"\nframe = "base_link"\n'
+    path.write_text(text.replace(scanner, f"{scanner}ahead = 0.15\nangle = 180\n"), encoding="utf-8")
+    world = tmp_path / "wall.toml"
+    world.write_text("start = { x = 1, y = 1 }\nwalls = [[[1.6, 0], [1.6, 2]]]\n", encoding="utf-8")
+    mission = tmp_path / "look.txt"
+    mission.write_text("check that the distance ahead is above 39 cm and the distance ahead is below 41 cm", "utf-8")
+    outcome, _ = run(mission, connector(str(path), "devices", simulate=[ALL]), str(world))
+    assert outcome.succeeded, outcome.why()
+
+
 @pytest.mark.parametrize("sensor", ["range", "button"])
 def test_the_gate_stops_before_a_wall(tmp_path: Path, sensor: str) -> None:
     """The bumper that is always silent counts as one that is pressed."""

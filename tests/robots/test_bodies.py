@@ -64,7 +64,7 @@ def test_a_world_needs_room_for_the_robot_that_is_chosen() -> None:
     assert mission.run(speed="max", robot="small").succeeded
     with pytest.raises(MissionError, match=r"the place \"desk\" .* leave 0.2 m to every wall"):
         mission.check("simulated")
-    with pytest.raises(MissionError, match="leave 0.2 m to every wall"):
+    with pytest.raises(MissionError, match=r"leave 0\.2 m to every wall"):
         mission.run(speed="max")
     full = Source(f"{start}boxes = [{{ x = 1, y = 1, width = 5, height = 5 }}]", "full", roots=())
     with pytest.raises(MissionError, match=r"the start at \(1, 1\) is inside a wall or a box\."):

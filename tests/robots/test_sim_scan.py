@@ -1,17 +1,21 @@
 """The scanner against exact geometry."""
 
-from math import cos, inf, radians, sqrt
+from math import cos, inf, nan, radians, sin, sqrt
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from btlang.robots.body import Sensor
+from btlang.robots.body_file import standard_body
 from btlang.robots.geometry import Pose
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.robot import RobotError
-from btlang.robots.scan import Scanner
+from btlang.robots.scan import Scanner, around
 from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.view import View
 from btlang.robots.world import Fault, Person, World
 
 SQUARE = World(start=Pose(2.0, 2.0), walls=(((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0), (0.0, 0.0)),))
@@ -38,6 +42,37 @@ def test_beams_count_from_the_heading_counter_clockwise(x, y, quarter):
     walls = [4.0 - x, 4.0 - y, x, y]  # east, north, west, south
     for beam in range(4):
         assert ranges[90 * beam] == pytest.approx(walls[(beam + quarter) % 4])
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    st.builds(Pose, st.floats(-0.3, 0.3), st.floats(-0.3, 0.3), st.floats(-180, 180)),
+    st.dictionaries(st.integers(0, 359), st.floats(1.0, 7.0)),
+)
+def test_what_a_mounted_scanner_measures_is_around_the_robot(at, echoes):
+    points = [(distance * cos(radians(beam)), distance * sin(radians(beam))) for beam, distance in echoes.items()]
+    ranges = np.array([inf, nan, *(at.distance_to(point) for point in points)])
+    angles = np.array([0.0, 1.0, *(radians(at.bearing_to(point)) for point in points)])
+    wanted = np.full(360, inf)
+    wanted[list(echoes)] = list(echoes.values())
+    assert around(ranges, angles, at) == pytest.approx(wanted)
+
+
+@given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(-180, 180))
+def test_an_inverse_pose_sees_the_origin(x, y, heading):
+    pose = Pose(x, y, heading)
+    back = pose.inverse
+    assert pose.ahead(back.x, back.y) == pytest.approx((0.0, 0.0), abs=1e-9)
+    assert back.inverse.ahead(0.0) == pytest.approx((x, y), abs=1e-9)
+
+
+def test_a_camera_sees_from_where_it_is():
+    """Behind the corner that hides Alice from the centre of the robot."""
+    world = World(start=Pose(0.0, 0.0), walls=(((0.5, -2.0), (0.5, 0.2)),), people=(Person("Alice", 2.0, -0.5, 0.25),))
+    body = standard_body()
+    eyes = [body.replace(sensors=(Sensor("camera", "eye", 6.0, recognizes=6.0, ahead=at),)) for at in (0.0, 0.6)]
+    seen = [View(Obstacles(world), each, lambda joint: 0.0).point("Alice", Pose(0.0, 0.0)) for each in eyes]
+    assert seen == [None, (2.0, -0.5)]
 
 
 def test_discs_and_what_stands_behind():

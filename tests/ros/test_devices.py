@@ -133,6 +133,13 @@ def test_topics_that_say_nothing(tmp_path: Path, domain: int, client: Client, mo
         devices.close()
 
 
+def test_a_device_that_falls_silent_is_reported(tmp_path: Path, domain: int) -> None:
+    robot = robot_file(tmp_path, '[[device]]\nname = "eye"\nkind = "camera"\ndriver = "camera"\nport = "/dev/none"\n')
+    command = Command(tmp_path, domain, "ros-devices", "--robot", robot)
+    command.wait_for("the eye is silent: ")
+    assert command.end() == 130
+
+
 @pytest.mark.parametrize(
     ("options", "reason"),
     [

@@ -9,6 +9,7 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import JointState, LaserScan
 
 from btlang.cli import main
+from btlang.vocabulary.shipped import BODIES
 from tests.ros.client import Client
 
 SMALL = ["--robot", "small", "--over", "ros", "--sim-time"]
@@ -42,6 +43,31 @@ def test_a_mission_runs_on_it(start_sim, capfd: pytest.CaptureFixture[str]) -> N
     start_sim("--robot", "small", "--speed", "5")  # at 20 a pause of 50 ms on a busy machine is a second of standing
     assert main(["run", "-c", "look left then raise the arm then move forward 30 cm", *SMALL]) == 0
     assert "The mission succeeded" in capfd.readouterr().out
+
+
+def test_a_scanner_is_where_the_robot_file_has_it(
+    start_sim, tmp_path: Path, capfd: pytest.CaptureFixture[str], client: Client
+) -> None:
+    """Turned to the left and off the centre, with a wall ahead: its first beam points away from that."""
+    small = Path(BODIES, "small.toml").read_text(encoding="utf-8")
+    frame = 'frame = "laser"\n'
+    mounted, elsewhere = tmp_path / "mounted.toml", tmp_path / "elsewhere.toml"
+    mounted.write_text(small.replace(frame, f"{frame}ahead = 0.1\nleft = -0.05\nangle = 90\n"), encoding="utf-8")
+    elsewhere.write_text(small.replace(frame, 'frame = "lidar"\n'), encoding="utf-8")
+    world = tmp_path / "wall.toml"
+    world.write_text("start = { x = 1, y = 1 }\nwalls = [[[1.5, 0], [1.5, 2]]]\n", encoding="utf-8")
+    scans = client.hear(LaserScan, "/scan", qos_profile_sensor_data)
+    start_sim("--robot", str(mounted), "--world", str(world), "--speed", "5")
+    ranges = scans.wait().ranges
+    assert ranges[0] > 4.9
+    assert ranges[270] == pytest.approx(0.4, abs=0.01)
+    ahead = "check that the distance ahead is above 33 cm, then check that the distance ahead is below 37 cm"
+    run = ["run", "--over", "ros", "--sim-time", "-c", ahead]
+    assert main([*run, "--robot", str(mounted)]) == 0
+    output = capfd.readouterr()
+    assert "laser" not in output.out + output.err
+    assert main([*run, "--robot", str(elsewhere)]) == 1
+    assert "the laser scan is in the frame 'laser', but the robot file has 'lidar'" in capfd.readouterr().out
 
 
 def test_what_it_lacks_is_said(start_sim, capfd: pytest.CaptureFixture[str]) -> None:

@@ -69,7 +69,7 @@ def _show_devices(options: argparse.Namespace, body: Body, world: World, came: E
     came.on_arrival = controls.wake
     twin = SimulatedRobot(world, None, body)
     try:
-        devices = DeviceSet(body, twin, _tell)
+        devices = DeviceSet(body, twin, _report)
     except DeviceError as problem:
         raise unusable_robot(problem) from None
     with closing(devices):
@@ -91,6 +91,6 @@ def _show_devices(options: argparse.Namespace, body: Body, world: World, came: E
     return 128 + came.numbers[0]
 
 
-def _tell(kind: str, data: Mapping[str, Any]) -> None:
+def _report(kind: str, data: Mapping[str, Any]) -> None:
     """A device has fallen silent, or is back."""
-    show(f"{data['name']}: {data['why'] or 'works'}")
+    show(str(data["text"]))

@@ -11,8 +11,11 @@ from sensor_msgs.msg import BatteryState, LaserScan
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
+from btlang.robots.geometry import CENTRE
 from btlang.robots.robot import RobotError
+from btlang.robots.scan import DEGREES, around
 from btlang.robots.simulated import SimulatedRobot
+from btlang.ros.poses import BASE
 from btlang.ros.simulator.call_queue import CallQueue
 from btlang.ros.simulator.publishing import COMMANDS, Every, Latched, Moment
 
@@ -42,7 +45,7 @@ class Sensors:
             node.create_service(Trigger, "undock", undock)
 
     def publish(self, now: Moment) -> None:
-        """Tells what the robot senses."""
+        """Publishes what the robot senses."""
         if self._docked is not None:
             self._docked.set(self._robot.docked)
         if self._robot.body.battery is not None and self._battery_due.is_due(now.seconds):
@@ -58,6 +61,8 @@ class Sensors:
             ranges = self._robot.scan()
         except RobotError:
             return
+        if sensor.frame != BASE and sensor.pose != CENTRE:
+            ranges = around(ranges, DEGREES, sensor.pose.inverse)
         step = radians(1)
         scan = LaserScan(angle_min=0.0, angle_max=359 * step, angle_increment=step, scan_time=1 / _SCANS)
         scan.range_min, scan.range_max, scan.ranges = 0.0, sensor.range, array("f", ranges)
