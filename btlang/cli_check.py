@@ -48,9 +48,9 @@ class _Check:
             return
         from btlang.projects.files import named_files
 
-        with self._told():
+        with self._reporting():
             for path in named_files(self._options.file):
-                with self._told(), hinting(path, "check"):
+                with self._reporting(), hinting(path, "check"):
                     self._add(read_source(path, self._options.include_root))
 
     def _add(self, source: Source) -> None:
@@ -68,7 +68,7 @@ class _Check:
             done += (both := mended_together(self._trees, self._problems_together))
             self._trees = [source for source, _ in both]
         for source, count in done:
-            with self._told():
+            with self._reporting():
                 self._put(source, count)
 
     def _put(self, source: Source, count: int) -> None:
@@ -86,7 +86,7 @@ class _Check:
         """Reports what is wrong now."""
         report, robot = self._options.report, self._options.robot
         for source in self._alone:
-            with self._told():
+            with self._reporting():
                 if is_test_file(source.name):
                     from btlang.testing.test_file import check_tests  # most files are missions
 
@@ -94,16 +94,16 @@ class _Check:
                 else:
                     mission_of(self._options, source).check(robot)
         if self._trees:
-            with self._told():
+            with self._reporting():
                 problems = self._problems_together(self._trees)
                 report.add(problems)
                 self.failed |= any(problem.is_error for problem in problems)
         for source in self._trees if robot and not self.failed else ():
-            with self._told():
+            with self._reporting():
                 parsed_mission(source, self._options).check(robot)
 
     @contextmanager
-    def _told(self) -> Iterator[None]:
+    def _reporting(self) -> Iterator[None]:
         """Errors go to the report, and the rest is checked all the same."""
         try:
             yield

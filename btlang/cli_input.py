@@ -75,5 +75,5 @@ def hinting(subject: str, verb: str) -> Iterator[None]:
     except MissionError as error:
         if os.path.exists(subject) or not reads_as_mission(subject):
             raise
-        told = ("help", f"To give a mission as text: btc {verb} -c {quoted(subject)}")
-        raise MissionError([p.replace(arguments=(*p.arguments, told)) for p in error.diagnostics]) from None
+        advice = ("help", f"To give a mission as text: btc {verb} -c {quoted(subject)}")
+        raise MissionError([p.replace(arguments=(*p.arguments, advice)) for p in error.diagnostics]) from None

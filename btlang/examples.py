@@ -64,12 +64,12 @@ def listing(width: int = 80) -> list[str]:
     """Each mission with what it does and its world, as lines to read."""
     lines = []
     for example in all_examples():
-        told = [example.about.removesuffix(":"), *([f"World: {example.world}"] if example.world else [])]
-        told += (
+        texts = [example.about.removesuffix(":"), *([f"World: {example.world}"] if example.world else [])]
+        texts += (
             [f"A folder, with its robot and {len(example.parts)} more files"] if example.file.endswith(_README) else []
         )
         lines.append(example.name)
-        for text in told:
+        for text in texts:
             lines += textwrap.wrap(text, width, initial_indent="    ", subsequent_indent="    ")
     return [*lines, "", "To read one:    btc examples NAME", "To copy them:   btc examples --copy FOLDER [NAME ...]"]
 

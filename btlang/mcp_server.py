@@ -95,8 +95,8 @@ class Tools:
         """
         mission = self._mission(text)
         lines: list[str] = []
-        told = Lines(mission.label, mission.is_action, lines.append)
-        outcome, stopped = simulated(mission, told, seconds, _PATIENCE, ticks)
+        sink = Lines(mission.label, mission.is_action, lines.append)
+        outcome, stopped = simulated(mission, sink, seconds, _PATIENCE, ticks)
         if outcome is None:
             return {"ok": False, "stopped": "a command never returns", "lines": lines[:_MOST_LINES], "messages": []}
         return {

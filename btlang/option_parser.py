@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class _Help(argparse.HelpFormatter):
-    """Asks for the width of the terminal only to print: argparse makes one for each option that it is told of."""
+    """Asks for the width of the terminal only to print: argparse makes one for each option that is added."""
 
     def __init__(self, prog: str) -> None:
         super().__init__(prog, width=WIDEST)

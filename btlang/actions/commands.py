@@ -17,7 +17,7 @@ from btlang.robots.robot import RobotError
 
 
 class Obeying(Conversing, Presenting, Driving, Protocol):
-    """It does what it is told."""
+    """A robot that obeys spoken commands."""
 
 
 def do_what_somebody_says(robot: Obeying) -> Steps:

@@ -15,7 +15,7 @@ from btlang.robots.geometry import wrap
 from btlang.robots.progress import PATIENCE, Approach, Progress
 
 Steps = Generator[None, None, None]
-Tell = Callable[[float], object]
+Report = Callable[[float], object]
 
 _CLOSE_ENOUGH = 0.004
 _ANGLE_CLOSE_ENOUGH = 0.25
@@ -28,7 +28,7 @@ def move_forward(
     distance: float,
     speed: float | None = None,
     manner: str | None = None,
-    progress: Tell = unheard,
+    progress: Report = unheard,
 ) -> Steps:
     """Drives straight ahead by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
     yield from drive_straight(robot, distance, _speed(robot, speed, manner), progress)
@@ -39,7 +39,7 @@ def move_backward(
     distance: float,
     speed: float | None = None,
     manner: str | None = None,
-    progress: Tell = unheard,
+    progress: Report = unheard,
 ) -> Steps:
     """Drives straight back by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
     yield from drive_straight(robot, -distance, _speed(robot, speed, manner), progress)
@@ -49,12 +49,12 @@ def _speed(robot: Driving, speed: float | None, manner: str | None) -> float:
     return share_of(robot, manner) * (speed or robot.normal_speed)
 
 
-def turn_left(robot: Driving, angle: float, progress: Tell = unheard) -> Steps:
+def turn_left(robot: Driving, angle: float, progress: Report = unheard) -> Steps:
     """Turns on the spot by `angle` degrees counter-clockwise, to the degree."""
     yield from turn(robot, angle, progress)
 
 
-def turn_right(robot: Driving, angle: float, progress: Tell = unheard) -> Steps:
+def turn_right(robot: Driving, angle: float, progress: Report = unheard) -> Steps:
     """Turns on the spot by `angle` degrees clockwise, to the degree."""
     yield from turn(robot, -angle, progress)
 
@@ -91,7 +91,7 @@ def face_object(robot: Driving, object: str) -> Steps:
     yield from turn(robot, robot.pose.bearing_to(robot.locate(object)))
 
 
-def drive_straight(robot: Driving, distance: float, speed: float | None = None, progress: Tell = unheard) -> Steps:
+def drive_straight(robot: Driving, distance: float, speed: float | None = None, progress: Report = unheard) -> Steps:
     """Drives `distance` metres along the heading (negative: backwards), keeps the course, and brakes."""
     start, watch = robot.pose, BaseWatch(robot)
     bounds = Progress(distance, _CLOSE_ENOUGH, False, lambda: robot.time)
@@ -115,7 +115,7 @@ def drive_straight(robot: Driving, distance: float, speed: float | None = None, 
         robot.drive(0.0, 0.0)
 
 
-def turn(robot: Driving, angle: float, progress: Tell = unheard) -> Steps:
+def turn(robot: Driving, angle: float, progress: Report = unheard) -> Steps:
     """Turns on the spot by `angle` degrees (left positive; more than a whole turn is fine) and brakes."""
     heading, turned, watch = robot.pose.heading, 0.0, BaseWatch(robot)
     turning = robot.body.turning

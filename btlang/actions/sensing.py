@@ -87,7 +87,7 @@ def bumped(robot: Sensors) -> bool:
 
 
 def stuck(robot: Base) -> bool:
-    """Whether the robot is told to move and does not."""
+    """Whether the robot is commanded to move and does not."""
     return robot.stuck
 
 

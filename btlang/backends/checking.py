@@ -37,7 +37,7 @@ def tree_problems(
     """
     bind, services = bind or cache(partial(bound, vocabulary)), services or {"robot": None}
     found = faults(tree, bind, services)
-    found.sort(key=_place)  # so that an entry is told where it is missed first
+    found.sort(key=_place)  # so that a missing entry is reported at its first use
     entries = drafts(tree, vocabulary) if any(isinstance(error, UnknownNode) for error in found) else {}
     problems = []
 
@@ -45,7 +45,7 @@ def tree_problems(
         return not faults(Tree(node), bind, services)
 
     for error in found:
-        problems.append(_told(error, tree, vocabulary, entries, fits))
+        problems.append(_diagnosed(error, tree, vocabulary, entries, fits))
         entries.pop(error.node.id, None)  # once is enough
     return in_order(problems)
 
@@ -66,7 +66,7 @@ def misnamed(tree: Tree, vocabulary: Lexicon) -> Iterator[Diagnostic]:
             yield diagnostic("BT132", node.span or NOWHERE, id=node.id, reason=reason)
 
 
-def _told(
+def _diagnosed(
     error: EngineError,
     tree: Tree,
     vocabulary: Lexicon,
@@ -98,10 +98,10 @@ def _told(
     return _helped(diagnostic("BT130", span, fix=fix, id=node.id), _near(nearest(node.id.lower(), ids)), advice)
 
 
-def _helped(told: Diagnostic, *advice: str) -> Diagnostic:
+def _helped(problem: Diagnostic, *advice: str) -> Diagnostic:
     """With advice of several lines."""
     lines = "\n".join(line for line in advice if line)
-    helped: Diagnostic = told.replace(arguments=(*told.arguments, ("help", lines)))
+    helped: Diagnostic = problem.replace(arguments=(*problem.arguments, ("help", lines)))
     return helped
 
 

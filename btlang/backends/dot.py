@@ -70,8 +70,8 @@ def _kind(node: Node, vocabulary: Lexicon, kinds: dict[str, str]) -> str:
         return "subtree"
     known = CATALOGUE.get(node.id)
     if node.children:
-        told = kinds.get(node.id, "")
-        decorates = told == "decorator" if known is None and told else len(node.children) == 1
+        declared = kinds.get(node.id, "")
+        decorates = declared == "decorator" if known is None and declared else len(node.children) == 1
         return "decorator" if (known.most == 1 if known is not None else decorates) else "control"
     entry = vocabulary.entry(node.id)
     asks = entry.sort == "condition" if entry is not None else kinds.get(node.id) == "condition"

@@ -1,4 +1,4 @@
-"""Trees as JSON. The form is told by `tree.schema.json` beside this module; docs/targets.md tells it to users.
+"""Trees as JSON. `tree.schema.json` beside this module defines the form; docs/targets.md describes it for users.
 
 The nodes of a tree are a list, in which a node names its children by their numbers: programs that read JSON do not
 have to nest as deep as a tree does.
@@ -30,7 +30,7 @@ _UNFIT_WRITTEN = re.compile(r"(?<!\\)(?:\\\\)*\\u0000|[\ud800-\udfff]")
 
 
 def to_json(tree: Tree, vocabulary: Lexicon) -> str:
-    """One document, one line a node. `read_json` gives an equal tree; spans are told, and not read back.
+    """One document, one line a node. `read_json` gives an equal tree; spans are written, but not read back.
 
     Raises MissionError (BT134) for a text with NUL or a lone surrogate, which `read_json` would refuse.
     """
@@ -84,8 +84,8 @@ def _items(root: Node, vocabulary: Lexicon) -> list[dict[str, Any]]:
 def _model(model: NodeModel) -> dict[str, Any]:
     ports = []
     for port in model.ports:
-        told = {key: getattr(port, key) for key in PORT_KEYS}
-        ports.append({key: value for key, value in told.items() if value or key == "name"})
+        fields = {key: getattr(port, key) for key in PORT_KEYS}
+        ports.append({key: value for key, value in fields.items() if value or key == "name"})
         if port.default == "":
             ports[-1]["default"] = ""
     return {"kind": model.kind, "id": model.id, "ports": ports, **({"text": model.text} if model.text else {})}

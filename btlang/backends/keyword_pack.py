@@ -68,10 +68,10 @@ def leaves_of(models: Iterable[NodeModel], nodes: Iterable[Node], vocabulary: Le
         if not node.children:
             uses.setdefault(node.id, []).append(node)
     described = {model.id: model for model in models}
-    told = {id: described.get(id) or NodeModel("", id) for id in (*described, *uses)}
+    by_id = {id: described.get(id) or NodeModel("", id) for id in (*described, *uses)}
     return [
         Leaf(model, tuple(uses.get(id, ())))
-        for id, model in told.items()
+        for id, model in by_id.items()
         if model.kind in _LEAVES and is_unknown(id, vocabulary)
     ]
 

@@ -183,8 +183,8 @@ def _spoken(leaf: Leaf) -> tuple[tuple[list[PortModel], ...], tuple[str, ...]]:
 
 
 def _help(model: NodeModel) -> str:
-    told = [model.text, *(f"{port.name}: {port.text}" for port in model.ports if port.text)]
-    return "; ".join(" ".join(text.split()).rstrip(".;") for text in told if text.strip())
+    texts = [model.text, *(f"{port.name}: {port.text}" for port in model.ports if port.text)]
+    return "; ".join(" ".join(text.split()).rstrip(".;") for text in texts if text.strip())
 
 
 def _is_free(entry: Entry, vocabulary: Lexicon, typed: Mapping[str, ValueType], taken: TrieNode) -> bool:

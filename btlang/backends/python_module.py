@@ -37,8 +37,8 @@ def to_python(
 ) -> str:
     """The text of a module with a name `mission`, a Mission with the keyword files of its leaves.
 
-    Words that are Python objects (`btlang.action`) cannot be told; the leaf is then unknown there. Nor can the places
-    in the text of the mission: failures name the leaf, but not its line.
+    Words that are Python objects (`btlang.action`) can't be written: such a leaf is unknown there. The places in the
+    text of the mission are lost, too: failures name the leaf, but not its line.
     """
     lines = [_HEAD]
     if facts:

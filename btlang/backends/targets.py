@@ -68,9 +68,9 @@ def target_of(path: str) -> str:
 
 
 def compiled(tree: Tree, vocabulary: Lexicon, name: str, given: Mapping[str, Any] = {}, **options: Any) -> str | bytes:
-    """The tree as a target; of the options those count that are not None, of what is `given` what the target uses.
+    """The tree as a target, with the options that are not None and what the target uses of what is `given`.
 
-    Raises ValueError for a name or an option that is not known, MissionError where the tree cannot be told so.
+    Raises ValueError for an unknown name or option, MissionError if the target can't express the tree.
     """
     target = TARGETS.get(name)
     if target is None:

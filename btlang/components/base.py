@@ -22,8 +22,8 @@ class DeviceBase:
     """See btlang.robots.parts.BasePart. `drive` and `brake` may be called from any thread.
 
     `wheels`, `imu` and `bumpers` are names of devices. The heading is that of the inertial unit where there is one.
-    Without news of the wheels it tells them to stand, and the pose is not known. `locate` says where it really is, for
-    what knows that better than the wheels; `advance` lets simulated devices live.
+    Without news of the wheels it commands them to stand, and the pose is not known. `locate` says where it really is,
+    if anything knows that better than the wheels; `advance` lets simulated devices live.
     """
 
     grips = (1.0, 1.0)
@@ -82,7 +82,7 @@ class DeviceBase:
 
     @property
     def stuck(self) -> bool:
-        """True when it was told to move for a second and does not."""
+        """True when it was commanded to move for a second and does not."""
         return self._idle >= _STUCK_AFTER
 
     @property
@@ -98,7 +98,7 @@ class DeviceBase:
             self._idle = 0.0
 
     def brake(self) -> None:
-        """The wheels are told to stand at once."""
+        """Commands the wheels to stand at once."""
         self.wanted = self._speeds = (0.0, 0.0)
         self._idle = 0.0
         self._write(WheelSpeeds())
@@ -108,7 +108,7 @@ class DeviceBase:
         self._pose, self._contact = pose, None
 
     def step(self, dt: float) -> None:
-        """Tells the wheels their speeds for the next `dt` seconds, and looks how far they have rolled."""
+        """Commands the wheels for the next `dt` seconds, and looks how far they have rolled."""
         self._command(dt)
         self._advance(dt)
         try:
@@ -165,7 +165,7 @@ class DeviceBase:
         self._velocity = (0.0, 0.0) if still else (speed, spin)
 
     def _turn(self, by_wheels: float) -> float:
-        """Degrees since the last step, by the inertial unit where it tells a heading."""
+        """Degrees since the last step, by the inertial unit if it measures a heading."""
         if not self._imu:
             return by_wheels
         try:

@@ -103,7 +103,7 @@ class Component:
     body: Any = None
     """What the robot file says of the body: see btlang.robots.body.Body."""
     _devices: Mapping[str, Any] = {}
-    _tell: Callable[[str, Mapping[str, Any]], object] = staticmethod(lambda kind, data: None)
+    _report_event: Callable[[str, Mapping[str, Any]], object] = staticmethod(lambda kind, data: None)
 
     def configure(self) -> None:
         """Gets ready, at rest: parameters and devices are there."""
@@ -132,12 +132,12 @@ class Component:
         return reading
 
     def write(self, device: str, command: Command) -> None:
-        """Tells a device that it needs a command; one that moves comes to rest unless it is told again in 0.2 s."""
+        """Commands a device that it needs; one that moves comes to rest unless it is commanded again in 0.2 s."""
         self._device(device).write(device, command)
 
-    def tell(self, kind: str, **data: Any) -> None:
-        """Reports an event, which logs and recordings of the mission have."""
-        self._tell(kind, data)
+    def report(self, kind: str, **data: Any) -> None:
+        """Reports an event to the logs and recordings of the mission."""
+        self._report_event(kind, data)
 
     @classmethod
     def parameters(cls) -> dict[str, Parameter]:

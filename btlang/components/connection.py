@@ -58,14 +58,14 @@ class ComponentConnection:
         else:
             simulated = isinstance(inner, Simulation)
             mine = body.replace(devices=tuple(map(twin, body.devices))) if simulated else body
-            self.devices = DeviceSet(mine, inner.robot, self._tell)
+            self.devices = DeviceSet(mine, inner.robot, self._post)
             self.devices.start()
         has_nodes = any(part.node is not None for part in body.components)
         self._nodes: Any = node_function()(inner.robot, body) if has_nodes else None
         kinds = {name: device.kind for name, device in self.devices.devices.items()}
         self._gates = {name: Gate(reads, kinds[name], self.robot) for name, reads in self.devices.readers.items()}
-        self.manager = Manager(body.components, self._host, self._tell, self._in_use)
-        self._hearing = Hearing(body, self.robot, self.devices, self._tell) if body.ears and body.ears.engine else None
+        self.manager = Manager(body.components, self._host, self._post, self._in_use)
+        self._hearing = Hearing(body, self.robot, self.devices, self._post) if body.ears and body.ears.engine else None
         self.robot.on_step = self._step
         self.manager.start()
         self.manager.wait(_UP)
@@ -128,8 +128,8 @@ class ComponentConnection:
         if part.node is not None:
             return self._node_host(part, changed)
         if part.runs == "here":
-            return InsideHost(part, self._body, self._gates, changed, self._told)
-        return ProcessHost(part, self._body.file, self._gates, changed, self._told)
+            return InsideHost(part, self._body, self._gates, changed, self._post_from_component)
+        return ProcessHost(part, self._body.file, self._gates, changed, self._post_from_component)
 
     def _node_host(self, part: ComponentPart, changed: Callable[[], object]) -> Host:
         if self._nodes is None:
@@ -140,12 +140,12 @@ class ComponentConnection:
     def _in_use(self, name: str) -> bool:
         return name in self._used and not self.bus.closed
 
-    def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
+    def _post(self, kind: str, data: Mapping[str, Any]) -> None:
         """From any thread; who watches the mission hears of it from the thread that ticks."""
         self._changes.append((kind, data))
 
-    def _told(self, kind: str, data: Mapping[str, Any]) -> None:
-        """What a component says of itself: whatever it is, it is no event of the robot's own."""
+    def _post_from_component(self, kind: str, data: Mapping[str, Any]) -> None:
+        """What a component reports; it never counts as an event of the robot itself."""
         self._said.append((kind, data))
 
     def _step(self, seconds: float) -> None:

@@ -60,7 +60,7 @@ class DeviceSimulation(Simulation):
 
     def _parts(self, world: World, obstacles: Obstacles, body: Body) -> Parts:
         sees = body if body.range else body.replace(sensors=(*body.sensors, _EYES))
-        plain = tuple(joint.replace(acceleration=0.0, jerk=0.0) for joint in body.joints)  # they go where they are told
+        plain = tuple(joint.replace(acceleration=0.0, jerk=0.0) for joint in body.joints)  # they go where commanded
         self._twin = SimulatedRobot(world, None, sees.replace(joints=plain), None, obstacles)
         self.devices = DeviceSet(body, self._twin, self._report)
         drive = self.devices.first("drive")
@@ -78,7 +78,7 @@ class DeviceSimulation(Simulation):
 
 
 class DevicePace(Pace):
-    """Real time. While it waits for the next tick, however slowly a mission ticks, the devices are read and told."""
+    """Real time. While it waits for the next tick, however slowly a mission ticks, it reads and commands devices."""
 
     def __init__(self, controls: Controls, step: Callable[[float], object]) -> None:
         super().__init__(1.0, controls)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Gate:
-    """See btlang.devices.device_set.Reads. A device that moves and isn't told again comes to rest by itself."""
+    """See btlang.devices.device_set.Reads. A device that moves and isn't commanded again comes to rest by itself."""
 
     def __init__(self, devices: Reads, kind: str, robot: Any) -> None:
         self._devices, self._rest, self._robot = devices, KINDS[kind].rest, robot

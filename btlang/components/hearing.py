@@ -31,7 +31,7 @@ _PATIENCE = 8.0  # seconds in which "Did you say ...?" has to be answered
 class Hearing:
     """The ears of a robot, from its first microphone. `step` is for the thread of the robot.
 
-    `tell` gets an event when they fail: see btlang.run.events.PartChanged. `clock` counts seconds for any thread.
+    `report` gets an event when they fail: see btlang.run.events.PartChanged. `clock` counts seconds for any thread.
 
     Raises RecogniserError where the body names a recogniser that can't be used. A body without a microphone hears
     nothing.
@@ -42,11 +42,11 @@ class Hearing:
         body: Body,
         robot: Any,
         devices: DeviceSet,
-        tell: Callable[[str, Mapping[str, Any]], object],
+        report: Callable[[str, Mapping[str, Any]], object],
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         assert body.ears is not None
-        self._engine, self._tell, self._clock = body.ears.engine, tell, clock
+        self._engine, self._report_event, self._clock = body.ears.engine, report, clock
         self._robot, self._ears, self._push = robot, robot.ears, body.ears.settings.push
         self._attention = Attention(body.ears.wake, self._push)
         self._listener: Listener | None = None
@@ -69,7 +69,7 @@ class Hearing:
         self._look_at_button()
 
     def talk(self, held: bool) -> None:
-        """As `push`, for a button elsewhere: it has to be told again within 2 s while somebody holds it."""
+        """As `push`, for a button elsewhere: it has to be called again within 2 s while somebody holds it."""
         self._held_until = self._clock() + _HELD if held else -math.inf
         self._look_at_button()
 
@@ -111,7 +111,7 @@ class Hearing:
             self._ears.problem = problem
             text = f"the ears don't work: {problem}" if problem else "the ears work"
             state = "silent" if problem else "works"
-            self._tell("part", {"kind": "ears", "name": self._engine, "state": state, "text": text})
+            self._report_event("part", {"kind": "ears", "name": self._engine, "state": state, "text": text})
 
     def _listen_to_others(self, listener: Listener, now: float) -> None:
         """It does not hear itself."""

@@ -30,10 +30,10 @@ class InsideHost:
         body: Body,
         devices: Mapping[str, Any],
         changed: Callable[[], object],
-        tell: Callable[[str, Mapping[str, Any]], object],
+        report: Callable[[str, Mapping[str, Any]], object],
     ) -> None:
         self._part, self._body, self._devices = part, body, devices
-        self._changed, self._tell = changed, tell
+        self._changed, self._report = changed, report
         self._component = Component()
         self._passed = 0.0
         self.state = UNCONFIGURED
@@ -44,7 +44,7 @@ class InsideHost:
         part = self._part
         component = self._component = load_class(part.place, self._body.folder)()
         component.name, component.body = part.name, self._body
-        component._devices, component._tell = self._devices, self._tell
+        component._devices, component._report_event = self._devices, self._report
         component.set_parameters(part.parameters)
         return describe(component)
 

@@ -42,9 +42,9 @@ class ComponentStatus(Record):
 
 
 class Manager:
-    """The components of one robot, by name. Each is led by a thread of its own; all methods are for any thread.
+    """The components of one robot, by name. Each has its own thread; all methods are for any thread.
 
-    `make` makes the host of a part. `tell` gets an event of each change: see PartChanged.
+    `make` makes the host of a part. `report` gets an event of each change: see PartChanged.
     `in_use` says whether a running mission uses the component of a name: then it is not replaced.
     """
 
@@ -52,10 +52,10 @@ class Manager:
         self,
         parts: Iterable[ComponentPart],
         make: Callable[[ComponentPart, Callable[[], object]], Host],
-        tell: Callable[[str, Mapping[str, Any]], object] = lambda kind, data: None,
+        report: Callable[[str, Mapping[str, Any]], object] = lambda kind, data: None,
         in_use: Callable[[str], bool] = lambda name: False,
     ) -> None:
-        self._make, self._tell, self._in_use = make, tell, in_use
+        self._make, self._report, self._in_use = make, report, in_use
         self.changed = threading.Condition()
         """Notified whenever the state of one of them changes."""
         self._closing = False
@@ -133,13 +133,13 @@ class Manager:
             keeper.replace(keeper.next or keeper.part)
             self.changed.notify_all()
 
-    def tell(self, keeper: Keeper) -> None:
-        """A state has changed; called with the lock."""
+    def report(self, keeper: Keeper) -> None:
+        """Reports a changed state; called with the lock."""
         self.changed.notify_all()
         name, state = keeper.part.name, keeper.state
         why = keeper.why if keeper.has_failed else ""
         text = f"the {name} {why}" if why else f"the {name} is active" if state == ACTIVE else ""
-        self._tell("part", {"kind": "component", "name": name, "state": state, "text": text})
+        self._report("part", {"kind": "component", "name": name, "state": state, "text": text})
 
     def make(self, part: ComponentPart) -> Host:
         """A host, not started."""
@@ -365,4 +365,4 @@ class Keeper:
     def _set(self, state: str, why: str) -> None:
         if (state, why) != (self.state, self.why):
             self.state, self.why = state, why
-            self._manager.tell(self)
+            self._manager.report(self)

@@ -31,7 +31,7 @@ def levels(needs: Mapping[str, Collection[str]]) -> list[list[str]]:
     left, found = dict(needs), list[list[str]]()
     while left:
         ready = [name for name, wanted in left.items() if not any(each in left for each in wanted if each != name)]
-        group = ready or list(left)  # a circle: whoever asks has been told
+        group = ready or list(left)  # a circle, which was reported before
         found.append(group)
         for name in group:
             del left[name]

@@ -49,10 +49,10 @@ class ProcessHost:
         file: str,
         devices: Mapping[str, Any],
         changed: Callable[[], object],
-        tell: Callable[[str, Mapping[str, Any]], object],
+        report: Callable[[str, Mapping[str, Any]], object],
     ) -> None:
         self._part, self._file, self._devices = part, file, devices
-        self._changed, self._tell = changed, tell
+        self._changed, self._report = changed, report
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection | None = None
         self._sending, self._numbering = threading.Lock(), threading.Lock()
@@ -241,7 +241,7 @@ class ProcessHost:
                     connection.send_bytes(data)
             except BlockingIOError:
                 self._hangs = True
-                self._lose("doesn't take what it is told")
+                self._lose("doesn't read its messages")
             except (OSError, ValueError):
                 pass  # it is gone, which the reader notices too
 
@@ -275,10 +275,10 @@ class ProcessHost:
         elif "write" in message:
             device = self._devices.get(message["write"])
             if device is not None and self.state == ACTIVE:
-                with suppress(DeviceError):  # it is told again as long as that counts
+                with suppress(DeviceError):  # it is repeated as long as it counts
                     device.write(message["write"], message["command"])
         elif "tell" in message:
-            self._tell(str(message["tell"]), dict(message["data"]))
+            self._report(str(message["tell"]), dict(message["data"]))
 
     def _asked(self, message: dict[str, Any]) -> None:
         number = message["call"]
@@ -331,7 +331,7 @@ class ProcessHost:
 
 
 def _begin(words: Sequence[str], pass_fds: Sequence[int] = ()) -> subprocess.Popen[bytes]:
-    # -B: a version that is written in the second after another one isn't told apart by a compiled file
+    # -B: a compiled file can't distinguish two versions that were written within a second
     command = [sys.executable, "-B", "-m", "btlang.components.worker", *words]
     return subprocess.Popen(
         command, pass_fds=pass_fds, start_new_session=True, stdin=subprocess.DEVNULL, stdout=_ERRORS

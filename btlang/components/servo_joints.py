@@ -31,15 +31,15 @@ _LATE = 3 * PERIOD
 class ServoJoints:
     """See btlang.robots.parts.JointsPart: a servo for each joint, of the same name.
 
-    A thread writes to real servos while anything moves. Should it hang, the loop of their devices brings them to rest.
-    Simulated ones are told in `step`.
+    A thread writes to real servos while anything moves. If it hangs, the loop of their devices brings them to rest.
+    `step` commands simulated ones.
     """
 
     def __init__(self, body: Body, devices: Mapping[str, Reads]) -> None:
         self._body, self._devices = body, devices
         self._smooth = SmoothJoints(body)
         self._is_real = any(isinstance(devices.get(joint.name), DeviceLoop) for joint in body.joints)
-        self._told: frozenset[str] = frozenset()
+        self._commanded: frozenset[str] = frozenset()
         self._lets_go = False
         self._thread: threading.Thread | None = None
 
@@ -47,7 +47,7 @@ class ServoJoints:
     def moving(self) -> bool:
         """True while any joint is on its way, as far as that is known."""
         try:
-            return self._smooth.moving or not self._have_reached(self._told)
+            return self._smooth.moving or not self._have_reached(self._commanded)
         except DeviceError:
             return False
 
@@ -76,7 +76,7 @@ class ServoJoints:
     def idle(self, targets: Mapping[str, float], least: float) -> bool:
         """See SmoothJoints; not where a servo is silent."""
         try:
-            if not (self._told.issuperset(targets) and self._have_reached(targets)):
+            if not (self._commanded.issuperset(targets) and self._have_reached(targets)):
                 self._begin(targets)
         except RobotError:
             return False
@@ -91,7 +91,7 @@ class ServoJoints:
 
     def at_target(self, names: tuple[str, ...]) -> bool:
         """True when none of them is on its way. Raises DeviceSilent."""
-        return self._smooth.at_target(names) and self._have_reached(name for name in names if name in self._told)
+        return self._smooth.at_target(names) and self._have_reached(name for name in names if name in self._commanded)
 
     def freeze(self, names: tuple[str, ...] | None = None) -> None:
         """They come to rest, and stay there; None: all of them, which takes no lock."""
@@ -99,11 +99,11 @@ class ServoJoints:
         self._lets_go = self._lets_go or names is None
 
     def step(self, dt: float) -> None:
-        """Tells them again; what has arrived holds its place by itself."""
+        """Commands them again; a joint that has arrived holds its place by itself."""
         if self._smooth.timeline.rests():
             self._write()
             return
-        for name in self._told:
+        for name in self._commanded:
             if (silent := self._devices[name].silent(name)) is not None:
                 self._smooth.timeline.halt(f"the {name} is silent: {silent}")
         if self._is_real:
@@ -122,7 +122,7 @@ class ServoJoints:
         at = [self._measured(name) if name in wanted else self._smooth.angle(name) for name in self._smooth.angles]
         self._smooth.timeline.put(np.array(at))
         self._lets_go = False
-        self._told |= wanted
+        self._commanded |= wanted
 
     def _measured(self, name: str) -> float:
         try:
@@ -147,11 +147,11 @@ class ServoJoints:
 
     def _write(self) -> None:
         at, let_go = self._smooth.angles, self._lets_go and self._smooth.timeline.rests()
-        for name in self._told:
+        for name in self._commanded:
             target = JointTarget() if let_go else JointTarget(at[name], joint_of(self._body, name).speed)
             self._devices[name].write(name, target)
         if let_go:
-            self._told, self._lets_go = frozenset(), False
+            self._commanded, self._lets_go = frozenset(), False
 
     def _have_reached(self, names: Iterable[str]) -> bool:
         """Raises DeviceSilent where one of them is."""

@@ -1,7 +1,7 @@
 """The process of a component: `python -m btlang.components.worker FD`, which speaks with its robot over a socket.
 
-Whatever is said may be lost: the robot asks again for what it knows nothing of, and each request is done once. What
-answers it is one thread, so that a hook that hangs is told from a process that does. It ends with its robot; with
+Any message may be lost: the robot asks again for what it knows nothing of, and each request is done once. One thread
+answers, so that a hook that hangs can be distinguished from a process that does. The process ends with its robot; with
 `--shared PATH` several robots may come to a socket, and it ends when none is left.
 """
 
@@ -81,14 +81,14 @@ class Worker:
         self.questions.halt()
 
     def send(self, message: dict[str, Any]) -> None:
-        """Tells the robot, if it is still there. Raises TypeError for values that can't be told."""
+        """Sends a message to the robot, if it is still there. Raises TypeError for values that can't be sent."""
         data = packed(message)
         if not self._gone:
             with self._sending, suppress(OSError):  # the robot is gone, which `run` notices too
                 self._connection.send_bytes(data)
 
     def ended(self, number: int, outcome: dict[str, Any]) -> None:
-        """A request is done; it is told until the robot says that it knows."""
+        """A request is done; its outcome is sent until the robot says that it knows."""
         try:
             packed(outcome)
         except TypeError as problem:
@@ -99,7 +99,7 @@ class Worker:
         self.report()
 
     def report(self) -> None:
-        """Tells what is known, again and again, so that no answer is lost for good."""
+        """Sends what is known, again and again, so that no answer is lost for good."""
         known = [*self._calls, *self._begun]
         self.send({"state": self.state, "known": known, "ended": dict(self._ended), "problem": self._life.problem})
 
@@ -176,7 +176,7 @@ class Life:
             self.component = load_class(message["place"], message["folder"])()
             self.component.name = message["name"]
             self.component.body = load_body(message["file"]) if message["file"] else None
-            self.component._tell = self._tell
+            self.component._report_event = self._report_event
             devices = {} if self._shared else dict.fromkeys(message["devices"], RemoteDevice(worker))
             self.component._devices = devices
             self.component.set_parameters(message["parameters"])
@@ -231,7 +231,7 @@ class Life:
         except Exception as another:
             self.problem = f"failed in its error hook: {described(another)}"
 
-    def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
+    def _report_event(self, kind: str, data: Mapping[str, Any]) -> None:
         for worker in tuple(self.workers):
             worker.send({"tell": kind, "data": dict(data)})
 

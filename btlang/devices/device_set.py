@@ -39,11 +39,11 @@ def reader(devices: Mapping[str, Reads], name: str, part: str) -> Reads:
 class DeviceSet:
     """The devices of a body: those of one driver and port share a loop. `robot` is where simulated ones act.
 
-    `tell` gets an event when a device falls silent or is back: see btlang.run.events.PartChanged.
+    `report` gets an event when a device falls silent or is back: see btlang.run.events.PartChanged.
     """
 
-    def __init__(self, body: Body, robot: Any, tell: Callable[[str, Mapping[str, Any]], object]) -> None:
-        self._tell = tell
+    def __init__(self, body: Body, robot: Any, report: Callable[[str, Mapping[str, Any]], object]) -> None:
+        self._report = report
         self.devices: Mapping[str, Device] = {device.name: device for device in body.devices}
         self._reads: dict[str, Reads] = {}
         self.loops: list[DeviceLoop] = []
@@ -77,7 +77,7 @@ class DeviceSet:
             loop.close()
 
     def step(self) -> None:
-        """The world of the simulated ones has moved on, in the thread of the robot: what isn't told again stops."""
+        """The world of the simulated ones has moved on, in the thread of the robot: those not commanded again stop."""
         for device in self._simulated:
             device.step()
 
@@ -103,4 +103,4 @@ class DeviceSet:
     def _changed(self, name: str, reason: str | None) -> None:
         state = "works" if reason is None else "silent"
         text = f"the {name} works" if reason is None else f"the {name} is silent: {reason}"
-        self._tell("part", {"kind": "device", "name": name, "state": state, "text": text})
+        self._report("part", {"kind": "device", "name": name, "state": state, "text": text})

@@ -17,7 +17,7 @@ class DeviceError(RobotError):
 
 
 class DeviceSilent(DeviceError, SensorSilent):
-    """A device tells nothing, or nothing that can be true: what it measures is not known."""
+    """A device reports nothing, or nothing that can be true, so its reading is unknown."""
 
 
 class Driver(Protocol):
@@ -31,12 +31,12 @@ class Driver(Protocol):
         """Finds the devices. Raises DeviceError where that can't be done now; it is tried again later."""
 
     def exchange(self, commands: Mapping[str, Command]) -> Mapping[str, Reading | DeviceError]:
-        """One cycle: tells all devices their commands, by name, and returns what they tell since the last one.
+        """One cycle: sends all devices their commands and returns their new readings, both by name.
 
-        A device that told nothing new is left out; one that tells what can't be used has an error in place of its
-        reading. A device that measures nothing, such as a light, answers with an empty `Reading()`. It waits for the
-        port only, at most a tenth of a second. Raises DeviceError when the port is lost: then it is closed and opened
-        again.
+        A device without a new reading since the last cycle is left out; if its reading can't be used, an error takes
+        the reading's place. A device that measures nothing, such as a light, answers with an empty `Reading()`. The
+        method waits only for the port, at most a tenth of a second. Raises DeviceError when the port is lost: then the
+        port is closed and opened again.
         """
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""The kinds of devices: what each tells and what it is told, in metres, degrees, seconds and percent.
+"""The kinds of devices: their readings and their commands, in metres, degrees, seconds and percent.
 
 A driver fills these records, and whoever uses a device knows nothing else of it. Angles are counter-clockwise positive.
 """
@@ -11,11 +11,11 @@ from btlang.record import Record
 
 
 class Reading(Record):
-    """What a device tells. None stands for what it doesn't measure."""
+    """A reading of a device. None stands for a quantity that it doesn't measure."""
 
 
 class Command(Record):
-    """What a device is told; made without arguments it is what brings the device to rest."""
+    """A command to a device; made without arguments, it brings the device to rest."""
 
 
 class Distance(Reading):
@@ -165,10 +165,10 @@ class Shown(Command):
 
 
 class Kind(Record):
-    """A kind of device: what it tells and what it is told, None where it doesn't.
+    """A kind of device: its readings and its commands, None where it has none.
 
-    `moves`: it is brought to rest as soon as either side is silent. Of its fields, by their names in readings and
-    commands, a calibration scales the `scaled` ones, and shifts the `shifted` ones too.
+    `moves`: it is brought to rest as soon as either side is silent. A calibration scales the fields named in `scaled`,
+    and both scales and shifts those in `shifted`, in readings and in commands.
     """
 
     name: str

@@ -1,6 +1,6 @@
 """Reads and writes the devices of a port in a thread apart from the tick, at the rate of their driver.
 
-It is a watchdog too: a command that is not told again for a moment is replaced by that which brings the device to rest,
+It is a watchdog too: a command that isn't repeated for a moment is replaced by one that brings the device to rest,
 and a reading is only given while it is new. Readings and commands are in true units; the driver's are scaled here.
 """
 
@@ -20,7 +20,7 @@ SILENCE = 0.2
 """Seconds after which a command no longer counts, and after which a device that moves is silent."""
 _RETRY = 0.25  # seconds until a lost port is opened again
 _JOIN = 2.0
-_NOT_YET, _NOTHING_NEW, _CLOSED = "it has not answered yet", "it tells nothing new", "its loop is closed"
+_NOT_YET, _NOTHING_NEW, _CLOSED = "it has not answered yet", "it reports nothing new", "its loop is closed"
 
 
 class DeviceLoop:
@@ -71,9 +71,9 @@ class DeviceLoop:
         self._followers[name] = [*self._followers.get(name, ()), take]
 
     def write(self, name: str, command: Command) -> None:
-        """Tells a device a command, which counts for `silence` seconds; whoever drives tells it again.
+        """Commands a device; the command counts for `silence` seconds, so whoever drives repeats it.
 
-        Raises DeviceError for one that it doesn't take, or that has what isn't a finite number in it.
+        Raises DeviceError for one that the device doesn't take, or with a field that isn't a finite number.
         """
         check_command(name, self.devices[name].kind, command)
         self._commands[name] = command, time.monotonic()
@@ -83,7 +83,7 @@ class DeviceLoop:
         self._commands.clear()
 
     def silent(self, name: str) -> str | None:
-        """Why a device is silent, None where it tells what it should."""
+        """Why a device is silent, None if it isn't."""
         found, wrong = self._readings.get(name), self._wrong[name]
         if wrong is None and (found is None or time.monotonic() - found[1] > self._silence):
             return _NOTHING_NEW  # its driver hangs
@@ -109,11 +109,11 @@ class DeviceLoop:
         counted, since, took = 0, due, 0.0
         while not self._stopped.is_set():
             began = time.monotonic()
-            told = self._driver.exchange(self._due_commands(began + period + took))
+            readings = self._driver.exchange(self._due_commands(began + period + took))
             now = time.monotonic()
             took = now - began
-            for name, reading in told.items():
-                self._tell(name, reading, now)
+            for name, reading in readings.items():
+                self._take_reading(name, reading, now)
             for name in self.devices:
                 found = self._readings.get(name)
                 if found is not None and self._wrong[name] is None and now - found[1] > self._silence:
@@ -126,22 +126,22 @@ class DeviceLoop:
                 self._stopped.wait(due - now)
 
     def _due_commands(self, until: float) -> dict[str, Command]:
-        """Those that count until then, when the devices are told the next ones. What moves rests while it's silent."""
+        """Commands that count until then, when the next ones are sent. A device that moves rests while it's silent."""
         found: dict[str, Command] = {}
         for name, device in self.devices.items():
             kind = KINDS[device.kind]
             if kind.command is None:
                 continue
-            command, told = self._commands.get(name, (None, 0.0))
+            command, commanded = self._commands.get(name, (None, 0.0))
             heard = self._readings.get(name, (None, 0.0))[1]
-            late = kind.moves and until - min(told, heard) > self._silence
+            late = kind.moves and until - min(commanded, heard) > self._silence
             if command is not None and not late:
                 found[name] = _inverse(command, device)
             elif kind.rest is not None:
                 found[name] = kind.rest
         return found
 
-    def _tell(self, name: str, reading: Reading | DeviceError, now: float) -> None:
+    def _take_reading(self, name: str, reading: Reading | DeviceError, now: float) -> None:
         wrong = str(reading) if isinstance(reading, DeviceError) else _untrue(reading, self.devices[name])
         if wrong or isinstance(reading, DeviceError):
             self._readings.pop(name, None)

@@ -35,7 +35,7 @@ def check_command(name: str, kind: str, command: Command) -> None:
     if wanted is None or not isinstance(command, wanted):
         raise DeviceError(f"the {name} doesn't take a {type(command).__name__}")
     if wrong := wrong_field(command):
-        raise DeviceError(f"the {name} can't be told a {wrong[0]} that is {wrong[1]}")
+        raise DeviceError(f"the {name} doesn't take a {wrong[0]} that is {wrong[1]}")
 
 
 def wrong_content(reading: Reading) -> str:

@@ -1,7 +1,7 @@
 """Diagnostics as data, and as a document in JSON.
 
 The document is an array with an object for each diagnostic, in the order of `in_order`, on one line. Its keys are
-those of `as_data`; docs/messages.md tells the same to users. Keys may be added, none gets another meaning.
+those of `as_data`; docs/messages.md describes them for users. Keys may be added, none gets another meaning.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ def as_data(problem: Diagnostic) -> dict[str, Any]:
     - `notes`: objects with a `message` and its place.
     """
     kind = problem.kind
-    told = {"code": problem.code, "severity": kind.severity, "message": problem.message, "hint": problem.hint}
+    summary = {"code": problem.code, "severity": kind.severity, "message": problem.message, "hint": problem.hint}
     fix = None if problem.fix is None else _change(*problem.fix)
     readings = [_change(*reading) for reading in problem.readings]
     notes = [{"message": text, **_place(span)} for span, text in problem.notes]
     return {
-        **told,
+        **summary,
         **_place(problem.span),
         "words": problem.span.text,
         "fix": fix,

@@ -23,6 +23,6 @@ def _command(problem: Diagnostic) -> str:
                   "endColumn": data["end_column"], "title": data["code"]}  # fmt: skip
     if data["line"] != data["end_line"]:  # GitHub takes columns of a single line only
         del properties["col"], properties["endColumn"]
-    told = ",".join(f"{name}={str(value).translate(_IN_PROPERTIES)}" for name, value in properties.items())
+    parameters = ",".join(f"{name}={str(value).translate(_IN_PROPERTIES)}" for name, value in properties.items())
     message = "\n".join(line for line in (problem.message, problem.hint) if line)
-    return f"::{data['severity']} {told}::{message.translate(_IN_DATA)}"
+    return f"::{data['severity']} {parameters}::{message.translate(_IN_DATA)}"

@@ -120,8 +120,8 @@ def _decoded(source: Source, read: Callable[[], bytes]) -> Source:
 
 def unwritable(path: str, reason: str | OSError) -> Diagnostic:
     """BT009: a file cannot be written."""
-    told = reason if isinstance(reason, str) else reason_of(reason)
-    return diagnostic("BT009", Span(Source("", path), 0, 0), file=path, reason=told)
+    text = reason if isinstance(reason, str) else reason_of(reason)
+    return diagnostic("BT009", Span(Source("", path), 0, 0), file=path, reason=text)
 
 
 def reason_of(error: OSError) -> str:

@@ -33,7 +33,7 @@ class Report:
         problems = list(problems)
         self._held += problems
         if problems and not self.is_for_programs:
-            from btlang.diagnostics.render import render  # most missions have nothing to tell of
+            from btlang.diagnostics.render import render  # most missions have no diagnostics
 
             colour = has_colour(sys.stderr)
             equal: dict[object, list[Diagnostic]] = {}
@@ -50,7 +50,7 @@ class Report:
         return bool(self._held)
 
     def close(self) -> None:
-        """Prints the document, `[]` where there was nothing to tell; or, below the text, where more is explained."""
+        """Prints the document, `[]` if there was nothing to report; or, below the text, where more is explained."""
         if self._held and not self.is_for_programs:
             from btlang.diagnostics.explain import pointer
 

@@ -52,9 +52,9 @@ class KeyReader:
         if kind is not None and port in kind.ports:
             return kind.ports[port].direction
         model = self._models.get(id) or nav2_models([id]).get(id)
-        told = next((each.direction for each in model.ports if each.name == port), "") if model is not None else ""
-        if told:
-            return told
+        declared = next((each.direction for each in model.ports if each.name == port), "") if model is not None else ""
+        if declared:
+            return declared
         return "output" if any(port in entry.outputs for entry in self._vocabulary.entries.get(id, ())) else "input"
 
 

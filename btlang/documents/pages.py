@@ -126,7 +126,7 @@ class PageWriter:
             model = self._project.models.get(id) or nav2_models([id]).get(id)
             sorts = [model.kind if model else "", kind.kind if kind else "", entry.sort.title() if entry else ""]
             texts = [model.text if model else "", entry.help if entry else ""]
-            sort, about = (next(filter(None, told), "") for told in (sorts, texts))
+            sort, about = (next(filter(None, candidates), "") for candidates in (sorts, texts))
             yield code(id), sort, str(len(found[id])), escaped(about)
 
     def _models(self, file: str) -> Iterator[str]:

@@ -70,7 +70,7 @@ class DocumentedProject(Record):
 def read_documents(
     paths: Sequence[str], vocabulary: Lexicon, compiled: Callable[[Source], Mission]
 ) -> DocumentedProject:
-    """Reads files, and in folders those that are trees in XML or missions; both are told by what they hold.
+    """Reads files, and in folders those that are trees in XML or missions; both are recognized by their content.
 
     Raises MissionError for a file that is named, or begins as a tree, and can't be read, and where nothing is found.
     """

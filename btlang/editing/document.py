@@ -29,7 +29,7 @@ class _Read:
     """A text that was read: its mission, None for one that doesn't compile, and what is wrong with it."""
 
     def __init__(self, source: Source, words: Words) -> None:
-        self.of, self.source, self.sort = _told_apart(source, words), source, frontend_of(source)
+        self.key, self.source, self.sort = _cache_key(source, words), source, frontend_of(source)
         self.origins: Origins = {}
         self.mission: Mission | None = None
         self.problems: Sequence[Diagnostic] = ()
@@ -40,7 +40,7 @@ class _Read:
         else:
             self.problems = (*self.mission.warnings, *_misnamed(self.mission))
 
-    def told(self) -> dict[str, Any]:
+    def summary(self) -> dict[str, Any]:
         ok = self.mission is not None
         return {"ok": ok, "sort": self.sort, "messages": messages(self.problems, self.source)}
 
@@ -53,7 +53,7 @@ def text_messages(source: Source, words: Words) -> dict[str, Any]:
     """`ok`, `sort` and `messages` of a document. That of the same text is faster if it is the next one."""
     with gc_paused:
         _kept[:] = [_Read(source, words)]
-        return _kept[0].told()
+        return _kept[0].summary()
 
 
 def document(source: Source, words: Words) -> dict[str, Any]:
@@ -71,16 +71,16 @@ def document(source: Source, words: Words) -> dict[str, Any]:
     """
     with gc_paused:
         kept = _kept.pop() if _kept else None
-        read = kept if kept is not None and kept.of == _told_apart(source, words) else _Read(source, words)
+        read = kept if kept is not None and kept.key == _cache_key(source, words) else _Read(source, words)
         mission = read.mission
         if mission is None:
-            return read.told()
+            return read.summary()
         nodes = _nodes(mission, read.source)
         kinds = [] if mission.syntax is None else _kinds(nodes, mission, mission.syntax, read.origins)
-        return {**read.told(), "nodes": nodes, "kinds": kinds, "outline": outline(mission, read.source)}
+        return {**read.summary(), "nodes": nodes, "kinds": kinds, "outline": outline(mission, read.source)}
 
 
-def _told_apart(source: Source, words: Words) -> tuple[object, ...]:
+def _cache_key(source: Source, words: Words) -> tuple[object, ...]:
     """What decides how a text is read, but for the files that it names."""
     world = words.world.text if isinstance(words.world, Source) else words.world
     return source.text, source.name, tuple(words.keywords), world, words.language

@@ -1,7 +1,7 @@
 """Breakpoints and replacements of nodes, as Groot2 sets them (Monitor::Hook of BehaviorTree.CPP).
 
-One difference: BehaviorTree.CPP blocks the tick, while the robot goes on as it was told. Here a breakpoint pauses the
-run: the robot comes to rest, and the commands that the pause interrupted start over when it goes on.
+One difference: BehaviorTree.CPP blocks the tick, while the robot goes on with its last command. Here a breakpoint
+pauses the run: the robot comes to rest, and the commands that the pause interrupted start over when it goes on.
 """
 
 from __future__ import annotations

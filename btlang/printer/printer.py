@@ -190,7 +190,7 @@ class Printer:
         return value_of(text, self.vocabulary.types[kind], self.vocabulary)
 
     def plain_value(self, text: str, kind: str) -> str:
-        """As `value` where no slot tells the type: a text is in quotes, as a bare word may be a name or a number."""
+        """As `value` if no slot gives the type: a text is in quotes, as a bare word may be a name or a number."""
         value = self.value(text, kind)
         if kind != "text" or value != text or value.startswith("{"):
             return value

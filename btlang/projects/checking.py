@@ -99,14 +99,14 @@ class _Check:
         own = {name: fold(root, _children, lambda node, inner: self._stand_in(node, inner, replaced))
                for name, root in self._project.trees.items()}  # fmt: skip
         for problem in tree_problems(self._whole(own), self._vocabulary, self._bind):
-            told = dict(problem.arguments)
-            if (problem.code == "BT126" and told["name"] in described) or self._is_older(
-                problem.span, told.get("id", "")
+            arguments = dict(problem.arguments)
+            if (problem.code == "BT126" and arguments["name"] in described) or self._is_older(
+                problem.span, arguments.get("id", "")
             ):
                 continue
             node = replaced.get(_place(problem.span))
-            if node is not None and problem.code == "BT132" and told["id"] == SEQUENCE:
-                reason = told["reason"].replace(SEQUENCE, node.id, 1)
+            if node is not None and problem.code == "BT132" and arguments["id"] == SEQUENCE:
+                reason = arguments["reason"].replace(SEQUENCE, node.id, 1)
                 problem = problem.replace(arguments=(("id", node.id), ("reason", reason)))
             yield problem
         if self._vocabulary.entries:

@@ -54,7 +54,7 @@ def begins_as_tree(source: Source) -> bool:
 
 
 def _may_have_trees(path: str) -> bool:
-    """Whether a file begins as a tree; what can't be read is told later."""
+    """Whether a file begins as a tree; what can't be read is reported later."""
     try:
         return begins_as_tree(read_source(path))
     except MissionError:

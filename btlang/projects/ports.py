@@ -25,16 +25,16 @@ def port_problems(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
         near = nearest(name.lower(), [port for port in ports if port not in given])
         fix = respelling(attribute_name(node, name), near)
         missing = [port for port in missing if fix is None or port != fix[1]]
-        told = f"Similar: {', '.join(near)}" if near else f"It has {', '.join(ports) or 'none'}."
-        yield diagnostic("BT232", attribute_name(node, name), (), fix, port=name, id=node.id, help=told)
+        help = f"Similar: {', '.join(near)}" if near else f"It has {', '.join(ports) or 'none'}."
+        yield diagnostic("BT232", attribute_name(node, name), (), fix, port=name, id=node.id, help=help)
     for name in missing:
         yield diagnostic("BT234", place_of(node), id=node.id, port=name)
     for name, text in node.ports:
         port = ports.get(name)
         if port is None or not text.strip() or "{" in text or port.direction == "output":
             continue
-        if told := wanted(text.strip(), port.type):
-            yield diagnostic("BT233", attribute_value(node, name), text=text, port=name, id=node.id, wanted=told)
+        if expected := wanted(text.strip(), port.type):
+            yield diagnostic("BT233", attribute_value(node, name), text=text, port=name, id=node.id, wanted=expected)
 
 
 def _must_be_given(direction: str, default: str | None, text: str | None) -> bool:

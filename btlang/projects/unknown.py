@@ -33,5 +33,5 @@ def unknown_nodes(
         # a tag with an end tag can't be changed alone
         fix = None if first.children and place.text == node_id else respelling(place, near)
         times = {1: "once", 2: "twice"}.get(len(found), f"{len(found)} times")
-        told = f"Similar: {', '.join(near or words_near)}" if near or words_near else ""
-        yield diagnostic("BT231", place, (), fix, id=node_id, times=times, help=told)
+        help = f"Similar: {', '.join(near or words_near)}" if near or words_near else ""
+        yield diagnostic("BT231", place, (), fix, id=node_id, times=times, help=help)

@@ -143,7 +143,7 @@ def _write_log(path: str, recording: Recording, mission: Mission, nodes: Recorde
 
 
 def _why(options: argparse.Namespace) -> int:
-    """Tells what happened in a recorded run."""
+    """Prints what happened in a recorded run."""
     with opened(options.file, options.keywords if options.as_mission else None) as (recording, mission, nodes):
         story = Story(mission, nodes, recording.about).take(recording.events(nodes))
         show("\n".join(story.lines()))

@@ -36,7 +36,7 @@ def first_difference(
     pair = first_pair(one, other)
     if pair is None:
         return ""
-    before, now = (told(step, node, label) for step in pair)
+    before, now = (describe_step(step, node, label) for step in pair)
     return f"before: {before}\nnow:    {now}"
 
 
@@ -48,7 +48,7 @@ def first_pair(one: Iterable[Event], other: Iterable[Event]) -> Pair | None:
     return None
 
 
-def told(step: Step | None, node: Callable[[int], Node], label: Callable[[Node], str]) -> str:
+def describe_step(step: Step | None, node: Callable[[int], Node], label: Callable[[Node], str]) -> str:
     """A step in words."""
     if step is None:
         return "nothing more"

@@ -59,7 +59,7 @@ def add_replay_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--tree-picture", type=picture(".svg", ".png"), metavar="FILE", help="draw the tree with its final statuses"
     )
-    parser.add_argument("--why", action="store_true", help="tell what happened at the end, as btc why does")
+    parser.add_argument("--why", action="store_true", help="explain at the end what happened, as btc why does")
     parser.add_argument("--to", metavar="FILE", help="write it for Groot2: a file that ends with .btlog")
     parser.add_argument("--as-mission", action="store_true", help="run the mission again; report where it differs")
     parser.add_argument(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 
-from btlang.recording.compare import ended_differently, first_pair, run_differences, told
+from btlang.recording.compare import describe_step, ended_differently, first_pair, run_differences
 from btlang.recording.diff import mission_differences
 from btlang.recording.film import Film
 from btlang.recording.open import opened
@@ -37,7 +37,7 @@ def side_by_side(one: str, other: str) -> dict[str, Any]:
         first = pair and [
             {
                 "t": None if step is None else step[0], "node": -1 if step is None else step[1],
-                "words": told(step, nodes.node, mission.label),
+                "words": describe_step(step, nodes.node, mission.label),
             }
             for step, (_, mission, nodes) in zip(pair, sides, strict=True)
         ]  # fmt: skip

@@ -1,4 +1,4 @@
-"""Tells a recorded run in words: what was done, what failed and what had been tried, and who stopped it."""
+"""Describes a recorded run in words: what was done, what failed and what had been tried, and who stopped it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ENDINGS = {FAILURE: "failed", IDLE: "was halted", SKIPPED: "was skipped"}
 
 
 class Story:
-    """Follows the events of a run; `lines` tells it."""
+    """Follows the events of a run; `lines` describes it."""
 
     def __init__(self, mission: Mission, nodes: RecordedNodes, about: Mapping[str, str]) -> None:
         self._mission, self._nodes, self._about = mission, nodes, about

@@ -29,7 +29,7 @@ _OPERANDS = frozenset(("command", "condition", "unknown", "define"))
 class Preview(Record):
     """A text as the user may see it.
 
-    `unfinished` tells that what is wrong may only be that more is to come, `midword` that this is the rest of a word.
+    `unfinished` means that maybe only more words are missing, `midword` that maybe only the rest of a word is.
     `tree` is that of the part that can be read where not all can, None where there is none;
     `marks` are characters of the text with "connective", "name" or "error".
     """

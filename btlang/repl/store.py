@@ -50,7 +50,7 @@ class Store:
         try:
             self._own.parent.mkdir(parents=True, exist_ok=True)
             self.history.touch()
-            self._folder.chmod(0o700)  # what people tell their robots is theirs
+            self._folder.chmod(0o700)  # what people type to their robots is private
             self.history.chmod(0o600)
             self._held = _lock(self._own)
             self.save([], "")

@@ -33,7 +33,7 @@ class Base:
         self._rolled = self._turned = 0.0
         self.grips = (1.0, 1.0)
         self.most = inf
-        """Metres a second that it doesn't pass, whatever it is told."""
+        """Metres a second that it doesn't exceed, whatever the command."""
         self._obstacles = obstacles
         self.wanted = (0.0, 0.0)
         self._speeds = (0.0, 0.0)
@@ -58,7 +58,7 @@ class Base:
 
     @property
     def stuck(self) -> bool:
-        """True when it was told to move for a second and does not."""
+        """True when it was commanded to move for a second and does not."""
         return self._idle >= _STUCK_AFTER
 
     @property

@@ -30,7 +30,7 @@ class Choices:
         how: str,
         names: Sequence[str],
         parts: Mapping[str, str],
-        tell: OnEvent | None,
+        on_event: OnEvent | None,
         distance: Callable[[str], float],
         size: Callable[[str], float],
     ) -> str:
@@ -46,8 +46,8 @@ class Choices:
             data = {"type": kind, "how": how, "name": self._any(names), "seed": self.seed}
         else:
             raise RobotError(f"it can choose the nearest or a random {kind}, not by '{how}'")
-        if tell is not None:
-            tell("choose", data)
+        if on_event is not None:
+            on_event("choose", data)
         return str(data["name"])
 
     def _any(self, names: Sequence[str]) -> str:

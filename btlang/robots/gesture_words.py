@@ -89,7 +89,7 @@ def keyword_text(body: Body) -> str:
 
 
 def _clash(body: Body, path: str, error: MissionError) -> DataFileError:
-    """The first phrase that can't be told from another word, where its gesture says it."""
+    """The first phrase that can't be distinguished from another word, at its place in its gesture."""
     values = dict(error.diagnostics[0].arguments)
     one, other = values.get("first", ""), values.get("second", "")
     if values.get("first_file") != shown_name(path):

@@ -83,7 +83,7 @@ class Knowledge:
         parts: Mapping[str, str],
         where: Callable[[], Pose],
         choices: Choices,
-        tell: OnEvent | None,
+        on_event: OnEvent | None,
     ) -> str:
         """One of the names of a type. Raises RobotError where there is none with these parts."""
         listed = not parts and how not in PICKY
@@ -93,7 +93,7 @@ class Knowledge:
             names = [name for name in self.sight.seen(kind, pose) if name in names] or names
         things = self.obstacles.things
         return choices.choose(
-            kind, how, names, parts, tell,
+            kind, how, names, parts, on_event,
             lambda name: pose.distance_to(self.locate(name, pose)), lambda name: getattr(things[name], "size", 0.0),
         )  # fmt: skip
 

@@ -31,14 +31,14 @@ _DOORS = ("entrance", "door")
 
 
 class People:
-    """The people of a world. `tell(kind, name, text)` hears who comes ("come"), begins to walk ("walk") and leaves
+    """The people of a world. `report(kind, name, text)` gets who comes ("come"), begins to walk ("walk") and leaves
     ("leave"), and what somebody says ("speak"). The same seed gives the same people.
     """
 
     def __init__(
-        self, world: World, obstacles: Obstacles, radius: float, tell: Callable[[str, str, str], object]
+        self, world: World, obstacles: Obstacles, radius: float, report: Callable[[str, str, str], object]
     ) -> None:
-        self._world, self._obstacles, self._radius, self._tell = world, obstacles, radius, tell
+        self._world, self._obstacles, self._radius, self._report = world, obstacles, radius, report
         self._ways: Walkways | None = None
         self._people = {person.name: person for person in world.people}
         self._places = [(place.x, place.y) for place in world.places]
@@ -165,7 +165,7 @@ class People:
     def say(self, name: str, text: str) -> None:
         """Somebody says it now. Raises RobotError."""
         self._known_person(name)
-        self._tell("speak", name, text)
+        self._report("speak", name, text)
 
     def _distance(self, name: str, point: Point) -> float:
         at = self._obstacles.point(name)
@@ -180,11 +180,11 @@ class People:
         while self._speeches and self._speeches[-1][0] <= now:
             _, name, text = self._speeches.pop()
             if self._obstacles.point(name) is not None:
-                self._tell("speak", name, text)
+                self._report("speak", name, text)
         due = [each for each in self._answers if each[0] <= now]
         self._answers = [each for each in self._answers if each[0] > now]
         for _, name, text in due:
-            self._tell("speak", name, text)
+            self._report("speak", name, text)
 
     def _arrive(self, now: float, robot: Other) -> None:
         """Those whose time it is come, as soon as there is room, and those who have left are gone."""
@@ -199,7 +199,7 @@ class People:
                 walker.leave()
             elif walker.present and walker.has_left:
                 walker.present, walker.gone = False, True
-                self._tell("leave", name, "")
+                self._report("leave", name, "")
                 if walker.person.visits is not None:
                     self._visits.pop(name, None)
                     self._been[name] = int((now + self._world.clock) // DAY)
@@ -232,13 +232,13 @@ class People:
         name = walker.person.name
         near = hypot(robot.x - walker.x, robot.y - walker.y) < _ASKS_WITHIN
         if near and self._random.random() < PERIOD / _ASKS_EVERY and self._understands(name, (robot.x, robot.y)):
-            self._tell("speak", name, self._random.choice(walker.person.asks))
+            self._report("speak", name, self._random.choice(walker.person.asks))
 
     def _enter(self, walker: Walker) -> None:
         if not walker.present:
             walker.present, walker.gone = True, False
             if walker.person.comes_later or walker.person.name not in self._world.names.people:
-                self._tell("come", walker.person.name, "")
+                self._report("come", walker.person.name, "")
 
     def _look(self, now: float, robot: Other) -> None:
         if self._ways is None:
@@ -263,7 +263,7 @@ class People:
         """The walker of a person: who has only stood so far can walk from now on. Raises RobotError."""
         person = self._known_person(name)
         if name not in self._walkers:
-            self._tell("walk", name, "")
+            self._report("walk", name, "")
             point = self._obstacles.point(name)
             walker = self._walkers[name] = Walker(person, self._places)
             walker.present = True

@@ -1,4 +1,4 @@
-"""How fast it is safe to drive: who walks and zones limit the base, whatever it is told."""
+"""How fast it is safe to drive: walking people and zones limit the base, whatever the command."""
 
 from __future__ import annotations
 

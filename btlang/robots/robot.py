@@ -9,7 +9,7 @@ __all__ = ["CompletedOperation", "Hand", "OnEvent", "Operation", "Robot", "Robot
 
 
 class RobotError(ActionFailed):
-    """Why the robot cannot do what it was told, in plain English: a leaf that lets it pass FAILS with it."""
+    """Why the robot can't do a command, in plain English: a leaf that lets it pass FAILS with it."""
 
 
 class SensorSilent(RobotError, Unknown):

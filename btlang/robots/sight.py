@@ -15,8 +15,8 @@ _FRESH = 2.0  # seconds for which somebody seen counts as still there
 class Sight:
     """What is in view, and what the robot knows of the places of people and objects.
 
-    `find` gives where something of a name is that the robot at a pose has in view, None for what it hasn't; `tell`
-    hears the name of what is seen first.
+    `find` gives the point of a name if the robot at a pose has it in view, else None; `report` gets the name of what
+    is seen for the first time.
     """
 
     def __init__(
@@ -24,9 +24,9 @@ class Sight:
         world: World,
         obstacles: Obstacles,
         find: Callable[[str, Pose], Point | None],
-        tell: Callable[[str], object],
+        report: Callable[[str], object],
     ) -> None:
-        self._obstacles, self._find, self._tell = obstacles, find, tell
+        self._obstacles, self._find, self._report = obstacles, find, report
         self._kinds = {name: kind for kind in ("object", "person") for name in world.names.of(kind)}
         self.watched = {thing.name: None for thing in (*world.objects, *world.people) if not thing.known}
         """The names of what the robot knows only from where it has seen it, in the order in which that began."""
@@ -110,5 +110,5 @@ class Sight:
             self._last[name] = point, self._now
             if name not in self._met:
                 self._met.add(name)
-                self._tell(name)
+                self._report(name)
         return point

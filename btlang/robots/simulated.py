@@ -79,7 +79,7 @@ class SimulatedRobot:
         self._choices = Choices()
         self._latch = Latch()
         self._last_said = ""
-        self._bumps_told, self._stuck_told = 0, False
+        self._bumps_reported, self._stuck_reported = 0, False
         self._began = self._base.pose
         self._begin_faults()
 
@@ -112,7 +112,7 @@ class SimulatedRobot:
         self._hands.step(dt)
         self._drop()
         self._use_power(dt, self._base.travelled - travelled)
-        self._tell_contacts()
+        self._report_contacts()
         if arrived is not None and arrived.failure is None:
             self._emit("arrive", name=arrived.name)
 
@@ -215,7 +215,7 @@ class SimulatedRobot:
 
     @property
     def stuck(self) -> bool:
-        """True when it has been told to move for a second and does not."""
+        """True when it has been commanded to move for a second and does not."""
         return self._base.stuck
 
     @property
@@ -589,13 +589,13 @@ class SimulatedRobot:
                 name = self._hands.drop(hand, self._base.pose)
                 self._emit("drop", hand=hand, name=name)
 
-    def _tell_contacts(self) -> None:
-        if self._base.bumps > self._bumps_told:
-            self._bumps_told = self._base.bumps
+    def _report_contacts(self) -> None:
+        if self._base.bumps > self._bumps_reported:
+            self._bumps_reported = self._base.bumps
             self._emit("bump", into=self._base.bumped_into)
-        if self._base.stuck and not self._stuck_told:
+        if self._base.stuck and not self._stuck_reported:
             self._emit("stuck")
-        self._stuck_told = self._base.stuck
+        self._stuck_reported = self._base.stuck
 
     def _emit(self, event: str, **data: Any) -> None:
         if self._idling is not None and event in ("hear", "ask"):

@@ -111,7 +111,7 @@ def _points(world: World, rows: Rows) -> Iterator[tuple[str, Path, Point]]:
     for what, path, row in spots(rows):
         yield what, (*path, "x"), (row.x, row.y)
         for at, stop in enumerate(row.walks if isinstance(row, Person) else ()):
-            if (stop.x, stop.y) not in places:  # of a place that is told already
+            if (stop.x, stop.y) not in places:  # of a place that is reported already
                 yield f'a stop of "{row.name}"', (*path, "walks", at), (stop.x, stop.y)
 
 

@@ -44,7 +44,7 @@ def check_zones(world: World, tree: Tree, vocabulary: Lexicon) -> None:
 
 
 def _goals(node: Node, places: dict[str, Point], vocabulary: Lexicon) -> Iterator[Point]:
-    """The places and the point that a leaf is told to go to."""
+    """The places and the point that are the goals of a leaf."""
     slots = {slot.name: slot.type for entry in vocabulary.entries.get(node.id, ()) for slot in entry.slots}
     for name, value in node.ports:
         if slots.get(name) == "place" and value.lower() in places:

@@ -63,5 +63,5 @@ def optional_interface(name: str) -> Any:
 
 def unusable(reason: str, advice: str = "") -> MissionError:
     """What to raise where ROS 2 is not there, or is there and does not start (BT100)."""
-    told = reason.strip().rstrip(".")
-    return MissionError([diagnostic("BT100", Span(Source("", "ROS 2"), 0, 0), reason=told, advice=advice)])
+    why = reason.strip().rstrip(".")
+    return MissionError([diagnostic("BT100", Span(Source("", "ROS 2"), 0, 0), reason=why, advice=advice)])

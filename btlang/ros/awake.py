@@ -16,7 +16,7 @@ _ASLEEP = 1.5  # seconds in which no thread looks
 
 
 def _real() -> float:
-    """Seconds of real time; those of a suspended computer count where the system tells of them."""
+    """Seconds of real time; those of a suspended computer count if the system reports them."""
     return time.clock_gettime(time.CLOCK_BOOTTIME) if hasattr(time, "CLOCK_BOOTTIME") else time.monotonic()
 
 

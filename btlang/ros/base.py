@@ -37,12 +37,12 @@ _ACKNOWLEDGED = Duration(seconds=0.5)
 
 
 class RosBase:
-    """Wanted velocity is told once between two steps while it is not zero, since robots brake when they hear no more
-    of it. None is told that is not finite, or faster than `fastest`: metres and degrees a second.
+    """Publishes the wanted velocity once between two steps while it is not zero, since robots brake without it. It
+    never publishes one that is not finite, or faster than `fastest`: metres and degrees a second.
 
-    The pose is the latest one of the localization, moved on by the odometry since; where nothing localizes the robot,
-    the odometry alone. `halt` may be called from any thread. Nothing is told before somebody listens, who decides
-    whether it is a Twist or a TwistStamped: a node can use a topic with one type.
+    The pose is the latest one of the localization, moved on by the odometry since; if nothing localizes the robot, the
+    odometry alone. `halt` may be called from any thread. Nothing is published before somebody listens: the type of the
+    listener, Twist or TwistStamped, decides, since a node can use a topic with one type.
     """
 
     def __init__(
@@ -58,9 +58,9 @@ class RosBase:
         self._latch = latch or Latch()
         self._lock = RLock()  # a signal handler may halt while this thread drives
         self.most = inf
-        """Metres a second that it doesn't pass, whatever it is told."""
+        """Metres a second that it doesn't pass, whatever is commanded."""
         self._wanted = (0.0, 0.0)
-        self._told = False  # since the latest step
+        self._published = False  # since the latest step
         self._idle = self._passed = 0.0
         self._under_way = False
         self._seen: tuple[Any, Pose] | None = None  # the odometry that was looked at last
@@ -73,7 +73,7 @@ class RosBase:
         subscriptions.listen(LOCATED, PoseWithCovarianceStamped, "pose", qos="state", also=self._located)
 
     def adapt(self) -> str:
-        """The type that those who listen take; from now on velocities are told in it."""
+        """The type that those who listen take; from now on velocities are published in it."""
         types = {end.topic_type for end in self._node.get_subscriptions_info_by_topic(VELOCITY)} & {TWIST, STAMPED}
         with self._lock:
             if types and (self._publisher is None or self._type not in types):
@@ -86,8 +86,8 @@ class RosBase:
     def drive(self, linear: float, angular: float) -> None:
         """Metres and degrees a second, at most as fast as it can. Raises RobotError for what is no velocity.
 
-        Nothing but zero while the latch refuses commands. It looks within the lock, so that what a stop tells comes
-        after all that was let through before it.
+        Only zero while the latch refuses commands. It checks the latch within the lock, so that the zero of a stop
+        comes after all that was let through before it.
         """
         with self._lock:
             wanted = _at_most(linear, self._fastest[0]), _at_most(angular, self._fastest[1])
@@ -95,11 +95,11 @@ class RosBase:
                 return
             if wanted == (0.0, 0.0):
                 self._idle, self._under_way, self._seen = 0.0, False, None
-            elif self._told and wanted == self._wanted:
+            elif self._published and wanted == self._wanted:
                 return
             self._wanted = wanted
             try:
-                self._tell()
+                self._publish()
             except RobotError:
                 self.halt()
                 raise
@@ -115,27 +115,27 @@ class RosBase:
             self._publisher.wait_for_all_acked(_ACKNOWLEDGED)
 
     def step(self, dt: float) -> None:
-        """Tells the wanted velocity again, unless that was done since the last step; `dt` seconds have passed."""
+        """Publishes the wanted velocity again, unless that was done since the last step; `dt` seconds have passed."""
         with self._lock:
             if self._wanted != (0.0, 0.0):
                 self._watch(min(dt, _STEP))
-                if not self._told:
-                    self._tell()
-            self._told = False
+                if not self._published:
+                    self._publish()
+            self._published = False
 
     @property
     def backward(self) -> bool:
-        """Whether it has been told to move backward."""
+        """Whether it has been commanded to move backward."""
         return self._wanted[0] < 0.0
 
     @property
     def driving(self) -> bool:
-        """Whether it has been told to move."""
+        """Whether it has been commanded to move."""
         return self._wanted != (0.0, 0.0)
 
     @property
     def stuck(self) -> bool:
-        """True when it has been told to move for a second (to set off: for three) and does not."""
+        """True when it has been commanded to move for a second (to set off: for three) and does not."""
         return self._idle >= (_STUCK_AFTER if self._under_way else _BEGINS)
 
     @property
@@ -169,7 +169,7 @@ class RosBase:
         except RobotError:
             return None
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         if self._publisher is None:
             self.adapt()
         stamp, (linear, angular) = self._node.get_clock().now().to_msg(), self._wanted
@@ -177,15 +177,15 @@ class RosBase:
         message = velocity(_TYPES[self._type], linear, radians(angular), stamp, self._fastest[0])
         if self._publisher is not None:
             self._publisher.publish(message)
-            self._told = True
+            self._published = True
 
     def _watch(self, dt: float) -> None:
-        """Counts the time in which it does not move as it is told to, by its pose. A command has to arrive first."""
+        """Counts the time in which it does not move as commanded, by its pose. A command has to arrive first."""
         try:
             message = self._subscriptions.get(ODOMETRY, _FRESH)
         except RobotError:
             self._seen = None
-            return  # what asks for the pose is told
+            return  # whoever asks for the pose gets the error
         if self._publisher is None or not self._publisher.get_subscription_count():
             return
         before, self._passed = self._seen, self._passed + dt

@@ -72,12 +72,12 @@ class Clients:
         """That of the goals, once there is an action."""
         self._publishers: list[Any] = []
         self._types: dict[tuple[str, str], Any] = {}
-        self._made: dict[Key, tuple[Any, Missing]] = {}  # each with what tells why it is of no use yet
+        self._made: dict[Key, tuple[Any, Missing]] = {}  # each with a function for why it's of no use yet
         self._used: dict[Key, None] = {}  # since the mission began
 
     @property
     def problems(self) -> list[str]:
-        """What went wrong in requests, which nobody could be told of at once."""
+        """Errors in requests that could not be reported at once."""
         return self.executor.problems
 
     def post(self, work: Callable[[], object]) -> None:

@@ -1,4 +1,4 @@
-"""The last line before the wire: what a robot is told is finite and within limits, or it is not told."""
+"""The last line before the wire: a command is finite and within limits, or it is not sent."""
 
 from __future__ import annotations
 

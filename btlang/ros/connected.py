@@ -1,4 +1,4 @@
-"""Whether a node has found its peers: the ROS graph tells of them a moment before they can be talked to."""
+"""Whether a node has found its peers: the ROS graph shows them a moment before messages reach them."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from btlang.ros.subscription_cache import SubscriptionCache
 
 
 class RosDoors:
-    """`emit` is told what happens. All raise RobotError for unknown names, and where nothing tells what is asked."""
+    """`emit` reports what happens. All raise RobotError for unknown names, and if nothing reports what is asked."""
 
     def __init__(
         self,
@@ -84,7 +84,7 @@ class RosDoors:
             self._places.swing(name, state)
 
     def _moved(self, door: str, is_open: bool, message: str) -> None:
-        self._note(door, self._doors[door], is_open)  # before the topic tells so
+        self._note(door, self._doors[door], is_open)  # before the topic reports it
         self._emit("door", name=door, open=is_open)
 
     def _switched(self, name: str, on: bool, message: str) -> None:

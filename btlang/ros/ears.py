@@ -23,9 +23,9 @@ WORDLESS = "..."
 
 class RosEars:
     """`ears` are what was heard, from the topic or typed. The topic of questions says which one is open, and to whom;
-    that of what is listened for has a phrase on each line.
+    the topic of the phrases that it listens for has one on each line.
 
-    `emit` is told of both. Without btlang's interfaces it hears only what is typed.
+    `emit` gets an event for what is heard and for questions. Without btlang's interfaces it hears only what is typed.
     """
 
     def __init__(self, node: Node, subscriptions: SubscriptionCache, emit: Callable[..., object]) -> None:

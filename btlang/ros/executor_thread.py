@@ -15,7 +15,7 @@ from btlang.engine.leaves.leaf import described
 
 
 class ExecutorThread:
-    """Done one after the other. `problems` are what they raised, which nobody could be told of at once."""
+    """Runs callables one after the other. `problems` are raised errors that could not be reported at once."""
 
     def __init__(self, node: Node) -> None:
         self.problems: list[str] = []

@@ -1,4 +1,4 @@
-"""Types of message fields as rclpy's classes tell them, and values read by the path of a field."""
+"""Types of message fields as rclpy's classes declare them, and values read by the path of a field."""
 
 from __future__ import annotations
 

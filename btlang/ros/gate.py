@@ -1,4 +1,4 @@
-"""The gate for messages: one whose numbers cannot be true counts as silence, for a reason that people are told."""
+"""The gate for messages: one whose numbers cannot be true counts as silence, for a reason that is reported."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ class HeldGoal:
         self._handle = handle
         self._end = end
 
-    def tell(self, feedback: Any) -> None:
+    def publish_feedback(self, feedback: Any) -> None:
         """Publishes feedback."""
         self._handle.publish_feedback(feedback)
 

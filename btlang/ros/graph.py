@@ -36,7 +36,7 @@ def absent(node: Any, kind: str, name: str, wanted: Any) -> str:
         if wanted in types:
             return ""
     elif not others and node.count_services(name if kind == "service" else f"{name}/_action/send_goal"):
-        return ""  # the types alone do not tell: those of clients are among them
+        return ""  # the types alone do not show it: those of clients are among them
     if others:
         sort = kind if kind in ("service", "action") else "topic"
         return f"the {sort} {name} is of the type {others[0]}, not {wanted}"

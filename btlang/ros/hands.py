@@ -1,4 +1,4 @@
-"""The hands of a ROS 2 robot: services close and open them and hand over, topics tell what they hold."""
+"""The hands of a ROS 2 robot: services close and open them and hand over, topics report what they hold."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _HANDS: tuple[Hand, Hand] = ("left", "right")
 
 
 class RosHands:
-    """`where` is where the robot is, None where nobody knows; `emit` is told what happens."""
+    """`where` is where the robot is, None where nobody knows; `emit` reports what happens."""
 
     def __init__(
         self,
@@ -73,7 +73,7 @@ class RosHands:
         return self._opening[hand]
 
     def holding(self, hand: Hand) -> str | None:
-        """The name of what it holds, None for no such hand. Raises RobotError where nothing tells of it."""
+        """The name of what it holds, None for no such hand. Raises RobotError if nothing reports it."""
         if hand not in self._hands:
             return None
         if hand not in self._holding:

@@ -68,7 +68,7 @@ class RosJoints:
         """Sets off towards the targets, clipped to the limits. Raises RobotError as `angle` does."""
         goals = clipped(self._body, targets)
         times = (abs(goal - self.angle(name)) / joint_of(self._body, name).speed for name, goal in goals.items())
-        self._tell(goals, max(times, default=0.0))
+        self._publish(goals, max(times, default=0.0))
         self._targets.update(goals)
         self._nearest.update(dict.fromkeys(goals, (float("inf"), AWAKE.now())))
 
@@ -84,7 +84,7 @@ class RosJoints:
         """Those of them (without names: of all) that are on their way stay where they are."""
         under_way = [name for name in (names or tuple(self._targets)) if self._targets.pop(name, None) is not None]
         try:
-            self._tell({name: self.angle(name) for name in under_way}, 0.0)
+            self._publish({name: self.angle(name) for name in under_way}, 0.0)
         except RobotError:
             return  # nobody knows where they are
 
@@ -100,7 +100,7 @@ class RosJoints:
             raise RobotError(f"the {name} doesn't move: it is {shown(joint, left)} from where it should be")
         return False
 
-    def _tell(self, targets: Mapping[str, float], seconds: float) -> None:
+    def _publish(self, targets: Mapping[str, float], seconds: float) -> None:
         if not targets:
             return
         angles = {on_wire(name): target * joint_of(self._body, name).si for name, target in targets.items()}

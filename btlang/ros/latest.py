@@ -53,8 +53,8 @@ class NodeClock:
 class Latest:
     """What came last. `store` is for the thread of the callbacks, all else for any one.
 
-    `named` is what it is called, such as "/scan"; `absence` tells why nothing may have come, "" for no known reason.
-    What `refuses` finds a reason against counts as silence (see `btlang.ros.gate`).
+    `named` is what it is called, such as "/scan"; `absence` says why nothing may have come, "" for no known reason.
+    A message that `refuses` gives a reason for counts as silence (see `btlang.ros.gate`).
     """
 
     def __init__(

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _MARK = b"btc\x01"
 _CLIENT, _GOAL = 6, 6  # bytes of a goal id, after the mark
 _ASSERTED = 0.25  # seconds within which a client asserts that it lives: a few of them may get lost
-_SILENCE = 0.7  # seconds without a word after which DDS tells of it
+_SILENCE = 0.7  # seconds without a word after which DDS reports it
 _ROUND = 0.1  # seconds
 _SILENT, _FIRST = 3, 15  # rounds in which a word may still come, and those in which the first one should
 _ASKED = 11  # rounds before the end of these in which it is asked for an answer: most are heard before
@@ -103,7 +103,7 @@ class _Client:
             self._ask()
         found = self._node.get_publishers_info_by_topic(self._topic) if self._rounds <= 0 else []
         if self._rounds > 0 or (found and self._answered and not self._heard):
-            return  # DDS says nothing of the life of one that answers: then its discovery tells of its end
+            return  # DDS doesn't report the life of one that answers: then discovery reports its end
         # where it was never heard: it died as soon as it had sent its goal, or has no lease and something passed it on
         lost = tuple(self.goals.values()) if self._heard or self._answered or found else ()
         if self._question is not None:
@@ -111,8 +111,8 @@ class _Client:
         self._node.destroy_timer(self._timer)
         self._node.destroy_subscription(self._subscription)
         self._gone()
-        for tell in lost:
-            tell()
+        for notify in lost:
+            notify()
 
     def _ask(self) -> None:
         """Whether its node answers, as any does that is spun, where liveliness has not come though it should have."""

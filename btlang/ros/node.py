@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
 _LAST_DOMAIN = 232
-_TASKS_OF_AN_ANSWER = 3  # that begin one another: the goal ends, its future is told, the result is sent
+_TASKS_OF_AN_ANSWER = 3  # one starts the next: the goal ends, its future is done, the result is sent
 _DELIVERY = 0.2  # seconds
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -69,7 +69,7 @@ class SpunNode:
     def settle(self, seconds: float) -> None:
         """Waits until what was asked of the thread before now is done and its answers are out.
 
-        For so many real seconds at most, and the moment that DDS needs: nobody is told when a client has its answer.
+        For so many real seconds at most, and the moment that DDS needs: nothing reports when a client has its answer.
         """
         until = time.monotonic() + seconds
         for _ in range(_TASKS_OF_AN_ANSWER):
@@ -112,7 +112,7 @@ class SpunNode:
             AWAKE.unwatch()
 
     def _spin(self) -> None:
-        """A callback that raises is told in the log, and the others go on."""
+        """A callback that raises is logged, and the others go on."""
         while self.context.ok():
             try:
                 self._executor.spin()

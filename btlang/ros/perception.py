@@ -24,7 +24,7 @@ KINDS = ("person", "object")
 
 
 class RosPerception:
-    """Hands on to `places` what is in view. Raises SensorSilent where nothing tells what is asked for."""
+    """Hands on to `places` what is in view. Raises SensorSilent if nothing reports what is asked for."""
 
     def __init__(self, node: Node, subscriptions: SubscriptionCache, places: Places) -> None:
         self._node, self._subscriptions, self._places = node, subscriptions, places
@@ -58,7 +58,7 @@ class RosPerception:
 
     def _check(self) -> None:
         if not self._listens:
-            raise SensorSilent("nothing tells what is in view: btlang's interfaces aren't compiled")
+            raise SensorSilent("nothing reports what is in view: btlang's interfaces aren't compiled")
         self._subscriptions.get(SIGHTINGS, _SILENT)
 
 

@@ -26,13 +26,13 @@ _DOCK = "dock"
 class Places(Knowledge):
     """Metres on the map, which is that of the world file. Objects move when the robot carries them.
 
-    `notice` says what is in view: who walks, and what isn't known, is where it was seen. `tell` hears the name of what
-    is seen first.
+    `notice` says what is in view: people who walk and unknown things are where they were seen. `report` gets each name
+    when it is first seen.
     """
 
-    def __init__(self, world: World, body: Body, tell: Callable[[str], object] = lambda name: None) -> None:
+    def __init__(self, world: World, body: Body, report: Callable[[str], object] = lambda name: None) -> None:
         obstacles = Obstacles(world)
-        super().__init__(world, obstacles, Sight(world, obstacles, lambda name, pose: self._in_view.get(name), tell))
+        super().__init__(world, obstacles, Sight(world, obstacles, lambda name, pose: self._in_view.get(name), report))
         self._body = body
         self._in_view: dict[str, Point] = {}
         self._planner: Planner | None = None

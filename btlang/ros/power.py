@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 
 BATTERY, DOCKED, DOCK, UNDOCK = "battery_state", "docked", "dock", "undock"
 STATUS = "battery status"
-"""The key of what the battery tells besides its percentage, which a robot may leave out."""
+"""The key of what the battery reports besides its percentage; a robot may leave it out."""
 _SILENT = 30.0  # seconds without word of the battery
-_SETTLED = 5.0  # seconds after which the battery tells of a dock that was entered or left
+_SETTLED = 5.0  # seconds after which the battery reports a dock that was entered or left
 _AT_CHARGER = {
     BatteryState.POWER_SUPPLY_STATUS_CHARGING: True,
     BatteryState.POWER_SUPPLY_STATUS_FULL: True,
@@ -35,7 +35,7 @@ _AT_CHARGER = {
 
 
 class RosPower:
-    """`emit` is told what happens. All raise RobotError where nothing tells what is asked for.
+    """`emit` reports what happens. All raise RobotError if nothing reports what is asked for.
 
     `make_docking` makes the clients of the docking server; it raises ImportError where nav2_msgs has none.
     """
@@ -122,14 +122,14 @@ class RosPower:
             self._connected(self._docks)
 
     def _hear_battery(self) -> None:
-        """What it tells of the dock, where no topic does."""
+        """What the battery reports about the dock, if no topic does."""
         if not self._subscriptions.has(DOCKED) and AWAKE.now() - self._since > _SETTLED:
             with suppress(RobotError):
                 status = self._subscriptions.get(STATUS, _SILENT).power_supply_status
                 self._docked = _AT_CHARGER.get(status, self._docked)
 
     def _connected(self, docked: bool) -> None:
-        self._docked, self._since = docked, AWAKE.now()  # before the topic tells so
+        self._docked, self._since = docked, AWAKE.now()  # before the topic reports it
         self._emit("dock" if docked else "undock")
 
 

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 class Interface(Record):
-    """What the robot has to offer: `kind` is "publisher" or "listener" of a topic, "service", "action" or "node".
+    """An interface of the robot: `kind` is "publisher" or "listener" of a topic, "service", "action" or "node".
 
-    A name without a slash before it is in the namespace of the robot. `type` is as ROS 2 tools write it. What `flows`
-    tells who listens how it is, at once or again and again, so that silence is a fault.
+    A name without a slash before it is in the namespace of the robot. `type` is as ROS 2 tools write it. One that
+    `flows` reports its state to listeners, at once or again and again, so that silence is a fault.
     """
 
     kind: str

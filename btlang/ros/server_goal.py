@@ -70,7 +70,7 @@ class ServerGoal:
         self.withdrawn = Event()
         """Set when the server has given it up, or says that it will not."""
         self.pending = ""
-        """Why the server may still drive the robot, though it was told not to; "" where it does not."""
+        """Why the server may still drive the robot although its goal is withdrawn; "" where it does not."""
         self._client, self._goal, self._goal_id, self._spin = client, goal, goal_id, spin
         self._task = task
         self._server = f"{task.sort} server on {server}"
@@ -118,8 +118,8 @@ class ServerGoal:
         elif self.heard and self._task.regular and self._waited(_ANSWER):
             self.end(f"no feedback from the {self._server} for {_ANSWER:g} s")
         elif self._stands(seconds := _STANDS if self.heard or not self._task.regular else _MUTE):
-            told = "" if seconds == _STANDS else f", and the {self._server} sends no feedback"
-            self.end(f"the robot has not moved for {seconds:g} s{self._task.way}{told}")
+            mute = "" if seconds == _STANDS else f", and the {self._server} sends no feedback"
+            self.end(f"the robot has not moved for {seconds:g} s{self._task.way}{mute}")
 
     def _waited(self, limit: float) -> bool:
         return AWAKE.now() - self._since > limit
@@ -150,12 +150,12 @@ class ServerGoal:
             self.end(None, withdraw=False)
             return
         task, gave_up = self._task, f"reported error {code}" if reached else "gave up"
-        told = task.reasons.get(code, f"the {task.sort} server {gave_up}{task.way}")
+        reason = task.reasons.get(code, f"the {task.sort} server {gave_up}{task.way}")
         if answer.status == GoalStatus.STATUS_CANCELED:
-            told = f"somebody cancelled {task.noun}"
+            reason = f"somebody cancelled {task.noun}"
         retries = getattr(answer.result, "num_retries", 0)
         again = f" ({retries} {'retry' if retries == 1 else 'retries'})" if retries else ""
-        self.end((getattr(answer.result, "error_msg", "") or told) + again, withdraw=False)
+        self.end((getattr(answer.result, "error_msg", "") or reason) + again, withdraw=False)
 
     # In the thread that spins
     def _send(self) -> None:
@@ -164,9 +164,9 @@ class ServerGoal:
 
     def _hear(self, message: Any) -> None:
         self.heard, self._since = True, AWAKE.now()
-        told = getattr(message.feedback, "current_pose", None)
-        if told is not None and not pose_fault(told.pose):
-            self._reported = pose_of(told.pose)
+        current = getattr(message.feedback, "current_pose", None)
+        if current is not None and not pose_fault(current.pose):
+            self._reported = pose_of(current.pose)
 
     def _answered(self, answer: Any) -> None:
         handle = answer.result()

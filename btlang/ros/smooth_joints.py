@@ -39,7 +39,7 @@ _STAMPED = 1.0  # seconds that a stamp may be old; another one is from another c
 
 
 class Sent(Record):
-    """What all joints do from a second of the node's clock on, and how some were told so."""
+    """The movement of all joints from a second of the node's clock on, and the command for some of them."""
 
     begins: float
     way: State
@@ -100,7 +100,7 @@ class RosSmoothJoints:
         self._states = JointStates(subscriptions, body)
         self._smooth = SmoothJoints(body)
         self._origin = self._stepped = self._now()  # of the clock, when the timeline began and at the latest step
-        self._told: tuple[int, ...] = ()
+        self._commanded: tuple[int, ...] = ()
         self._sent: Sent | None = None
         self._way = self._smooth.timeline.plan[1]  # what was sent, or needs not be
         self._braked: tuple[float, Piece] | None = None  # by `freeze`, of which the timeline doesn't know yet
@@ -114,7 +114,7 @@ class RosSmoothJoints:
         """True while any joint is on its way, as far as that is known."""
         sent = self._sent
         with suppress(RobotError):
-            return sent is not None and (self._now() < sent.ends or not self._have_arrived(self._told))
+            return sent is not None and (self._now() < sent.ends or not self._have_arrived(self._commanded))
         return False
 
     def angle(self, name: str) -> float:
@@ -148,7 +148,7 @@ class RosSmoothJoints:
         sent, joints = self._sent, [self._names.index(joint_of(self._body, name).name) for name in names]
         if sent is None or not self._smooth.timeline.rests(joints):
             return sent is None
-        if self._have_arrived([joint for joint in joints if joint in self._told]):
+        if self._have_arrived([joint for joint in joints if joint in self._commanded]):
             return True
         for joint in joints:
             left = abs(self._measured(joint) - sent.way.position[-1][joint])
@@ -217,8 +217,8 @@ class RosSmoothJoints:
         rests = not self.moving
         if rests:
             self._seed()
-        told = {self._names.index(name) for name in names}
-        self._told = tuple(sorted(told if told and rests else told.union(self._told)))
+        moved = {self._names.index(name) for name in names}
+        self._commanded = tuple(sorted(moved if moved and rests else moved.union(self._commanded)))
         self._near = self._now()
 
     def _seed(self) -> None:
@@ -253,7 +253,7 @@ class RosSmoothJoints:
         try:
             said = seconds_of(self._states.message.header.stamp)
             planned = sent.at(said if 0.0 <= now - said < _STAMPED else now).position
-            off = {joint: abs(self.angle(self._names[joint]) - planned[joint]) for joint in self._told}
+            off = {joint: abs(self.angle(self._names[joint]) - planned[joint]) for joint in self._commanded}
             far = max(off, key=lambda joint: off[joint] / self._off[joint])
             if off[far] <= self._off[far]:
                 self._near = now
@@ -286,7 +286,7 @@ class RosSmoothJoints:
         self._publish(self._origin + begins + PERIOD, way.rows(slice(1, None)))  # the first one is what was before
 
     def _publish(self, begins: float, way: State) -> None:
-        if not self._told:
+        if not self._commanded:
             return
         last = len(way.position) - 1
         rows = sorted({*range(0, last, _EACH), last})
@@ -300,12 +300,12 @@ class RosSmoothJoints:
             self._renew()  # another thread has stopped them meanwhile
 
     def _on_wire(self, values: Array) -> list[list[float]]:
-        told = list(self._told)
-        made: list[list[float]] = (values[:, told] * self._si[told]).tolist()
+        joints = list(self._commanded)
+        made: list[list[float]] = (values[:, joints] * self._si[joints]).tolist()
         return made
 
     def _reach(self) -> dict[str, Reach]:
-        joints = [self._body.joints[index] for index in self._told]
+        joints = [self._body.joints[index] for index in self._commanded]
         return {
             on_wire(joint.name): Reach(joint.low * joint.si, joint.high * joint.si, joint.speed * joint.si)
             for joint in joints

@@ -27,7 +27,7 @@ _LATEST = 5.0  # how many times as long as expected it may speak
 
 class RosSpeech:
     """Times are those of the mission; words have those of the engine, from the moment at which the topic says that it
-    speaks. Where nothing tells of its speaking, it takes as long as the engine says.
+    speaks. If nothing reports its speaking, it takes as long as the engine says.
     """
 
     def __init__(self, node: Node, subscriptions: SubscriptionCache, synthesizer: Synthesizer) -> None:
@@ -41,7 +41,7 @@ class RosSpeech:
         self._age = self._since = self._began = 0.0
         self._usual = 0.0  # seconds that it took to begin the last time, which is what is expected
         self._waiting = ""  # what it is to say when `_age` is 0
-        self._asked = self._heard = self._told = False
+        self._asked = self._heard = self._reported = False
         self._node, self._clock = node, node.get_clock()
         self._stepped = self._set_in = self._now()  # of the node's clock: the latest step, and when speech began
         self._timer: Any = None
@@ -57,7 +57,7 @@ class RosSpeech:
         return self._synthesizer.language
 
     def speak_in(self, language: str = "") -> None:
-        """See btlang.robots.voice.Synthesizer. A latched topic tells it, once another than its own was asked for."""
+        """See btlang.robots.voice.Synthesizer. A latched topic publishes it when it changes."""
         before = self.language
         self._synthesizer.speak_in(language)
         if self.language != before:
@@ -138,15 +138,15 @@ class RosSpeech:
         if self._waiting and self._age > -1e-9:
             self._begin()
         for message in self._subscriptions.events(SPEAKING):
-            if self._heard and self._told and not message.data:
+            if self._heard and self._reported and not message.data:
                 self._asked = False
-            self._told = bool(message.data)
-            if self._told and self._asked and not self._heard and not self._waiting:
+            self._reported = bool(message.data)
+            if self._reported and self._asked and not self._heard and not self._waiting:
                 since = min(max(0.0, self._stepped - self._set_in), dt)
                 self._heard, self._began = True, max(0.0, self._age - since)
                 self._usual = min(self._began, _BEGINS)
         if self._asked and not self._waiting and AWAKE.now() - self._since > _BEGINS:
-            self._asked = self._told if self._subscriptions.has(SPEAKING) else self._age < self._seconds
+            self._asked = self._reported if self._subscriptions.has(SPEAKING) else self._age < self._seconds
 
     @property
     def _seconds(self) -> float:

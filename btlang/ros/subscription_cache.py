@@ -18,7 +18,7 @@ _KEPT = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _MOST = 1000  # messages of one topic that wait for a tick; older ones are forgotten
 _NONSENSE = 2.0  # seconds in which only what is refused has come, however slow the topic is
 QOS = {"sensor": qos_profile_sensor_data, "events": QoSProfile(depth=100), "state": _KEPT}
-"""How a topic is listened to: a sensor's messages may be lost, each event counts, a state is told to who comes late."""
+"""How a topic is listened to: a sensor's messages may be lost, each event counts, late listeners get a state too."""
 
 
 class SubscriptionCache:

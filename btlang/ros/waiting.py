@@ -1,4 +1,4 @@
-"""Waiting for what other threads and processes do, which tell nobody when they have done it."""
+"""Waiting for other threads and processes that notify nobody when they are done."""
 
 from __future__ import annotations
 

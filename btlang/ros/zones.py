@@ -23,13 +23,13 @@ PLAN, SPEED_LIMIT = "plan", "speed_limit"
 _STEP = 0.1  # metres between two points of a plan that are looked at
 _SAME_GOAL = 1.0  # metres from the goal at which a plan to it ends
 _NEW_PLAN = 1.0  # seconds of the mission in which the robot plans anew when a zone was closed or opened
-_REPEAT = 1.0  # seconds after which a limit is told again
+_REPEAT = 1.0  # seconds after which a limit is published again
 _LONGEST = 100_000  # points of a plan
 _NO_LIMIT = False, 0.0  # in the message of Nav2: whether it is a percentage, and how much
 
 
 class RosZones:
-    """`zones` are those of the world, which a mission may close and open; topics tell the robot which are closed.
+    """A mission may close and open `zones`, those of the world; topics report to the robot which are closed.
 
     A topic limits its speed to that of the slow zone it is in, or to `pace` if that is slower.
     """
@@ -79,7 +79,7 @@ class RosZones:
         """`dt` seconds have passed; returns why the robot must not follow its plan, "" where it may."""
         self._time += dt
         self._announce()
-        self._tell_limit(pose)
+        self._update_limit(pose)
         if not self._closed:
             return ""
         for message in self._subscriptions.events(PLAN):
@@ -110,7 +110,7 @@ class RosZones:
         for name, publisher in self._closed.items():
             publisher.publish(Bool(data=self.zones.is_closed(name)))
 
-    def _tell_limit(self, pose: Pose | None) -> None:
+    def _update_limit(self, pose: Pose | None) -> None:
         if self._limits is None or pose is None:
             return
         allowed = self.limit(pose)

@@ -209,7 +209,7 @@ def live_view(
         shown = keys() if keys else None
         return LiveView(mission, controls, output, sys.stdin, tree_stays, type_ahead, shown, world_input)
     except EngineError:
-        return None  # the run itself tells what is wrong
+        return None  # the run itself reports what is wrong
 
 
 @contextmanager
@@ -218,7 +218,7 @@ def _opened(log: str | None) -> Iterator[TextIO | None]:
         yield None
         return
     file = open(log, "w", encoding="utf-8", errors="backslashreplace")  # noqa: SIM115  # its lines are flushed, and
-    try:  # who wrote them knows what was lost, so that closing it tells nothing new
+    try:  # who wrote them knows what was lost: an error on closing adds nothing
         yield file
     finally:
         with suppress(OSError):

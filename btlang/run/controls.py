@@ -34,7 +34,7 @@ class Controls:
         self.paused = False
         """Whether the run stands still, or will before its next tick."""
         self.stopped = False
-        """Whether the run has been told to end."""
+        """Whether the run was asked to end."""
         self.emergency = False
         """Whether that was an emergency stop."""
         self.suspends = False
@@ -78,7 +78,7 @@ class Controls:
 
         The robot takes no command until the next run begins, and the tree is not ticked again.
         """
-        self.emergency = self.stopped = True  # first, so that no tick begins once the robot has been told
+        self.emergency = self.stopped = True  # first, so that no tick begins once the robot is disabled
         try:
             if self.robot is not None:
                 disable(self.robot)

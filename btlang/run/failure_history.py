@@ -125,22 +125,22 @@ class FailureHistory:
         failed = self._failed.get(index)
         kind = self._kind(index)
         if not failed:
-            told = together((tried, Attempts((Attempt(index, reason, t, t, t),))))
+            attempts = together((tried, Attempts((Attempt(index, reason, t, t, t),))))
         elif kind is not None and kind.again == ON_FAILURE:
-            told = tried
+            attempts = tried
         else:
             needs_all = kind is not None and (kind.goes_on == ON_FAILURE or kind.at_once)
-            told = together(failed.values()) if needs_all else next(reversed(failed.values()))
+            attempts = together(failed.values()) if needs_all else next(reversed(failed.values()))
         now = self._stopped if t == self._stopped_at else []
         halted = tuple(leaf for leaf in now if leaf[0] > index)  # what is below comes later
-        if halted and told.kept:
-            *others, latest = told.kept
-            told = told.replace(kept=(*others, latest.replace(stopped=latest.stopped + halted)))
+        if halted and attempts.kept:
+            *others, latest = attempts.kept
+            attempts = attempts.replace(kept=(*others, latest.replace(stopped=latest.stopped + halted)))
         self._stopped.clear()
-        self._failed.setdefault(above, {})[index] = told
+        self._failed.setdefault(above, {})[index] = attempts
         parent = self._kind(above)
         if index != above + 1 or parent is None or not parent.asks_first:
-            self._add(above, told)
+            self._add(above, attempts)
         if above < 0:
             self.ended = t
 

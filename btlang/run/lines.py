@@ -34,7 +34,7 @@ _WORDS = {IDLE: "halted", RUNNING: "start", FAILURE: "failed", SKIPPED: "skipped
 class Lines:
     """A sink that writes a line at the start and at the end of each action, and what the robot says or bumps into.
 
-    Of a leaf that takes too long for a tick it tells the first time only.
+    A leaf that takes too long for a tick is reported the first time only.
     `label` gives the words for a node, `is_action` whether it is an action; `write` gets lines without an end.
     """
 

@@ -20,7 +20,7 @@ def are_many(overruns: int, ticks: int) -> bool:
 
 
 class Overruns:
-    """Ticks an engine that was made with a stopwatch, and tells of each tick that took too long.
+    """Ticks an engine that was made with a stopwatch, and reports each tick that took too long.
 
     `period` is in seconds of real time. `count` is the number of such ticks, `worst` the slowest leaf in one of
     them and its seconds.
@@ -41,10 +41,10 @@ class Overruns:
         status = self._engine.tick()
         seconds = perf_counter() - began
         if seconds > self._period:
-            self._tell(seconds)
+            self._report(seconds)
         return status
 
-    def _tell(self, seconds: float) -> None:
+    def _report(self, seconds: float) -> None:
         self.count += 1
         slowest = self._stopwatch.slowest()
         if slowest is None or slowest[1] <= max(_TO_BLAME * self._period, _NOISE):

@@ -134,10 +134,9 @@ def traced_engine(
 class Runner:
     """Ticks an engine `rate` times a second of the mission until the tree completes.
 
-    `speed` is seconds of the mission per second of real time; math.inf waits only for leaves that work beside the tick,
-    in real time. `pace` makes what waits
-    between two ticks, and says how much time has passed. The next tick comes sooner where a node has told the clock
-    that it is due before the period is over (Clock.due), and at once where the service `wake` of the engine is called.
+    `speed` is seconds of the mission per second of real time; math.inf waits only for background leaves, in real
+    time. `pace` makes what waits between two ticks and returns how much time has passed. The next tick comes sooner if
+    a node is due before the period is over (Clock.due), and at once if the service `wake` of the engine is called.
     Where the engine has a stopwatch, ticks that take longer than their period are events (Overrun).
 
     A pause suspends the tree (see Engine.suspend) and brakes the robot. Then the time of the mission stands still, and

@@ -1,4 +1,4 @@
-"""Reads what no event tells while a run goes on: values of the blackboard, and scans at a chosen rate."""
+"""Reads what no event reports during a run: values of the blackboard, and scans at a chosen rate."""
 
 from __future__ import annotations
 

@@ -137,7 +137,7 @@ class State:
             self._sweep += 1
 
     def _begin_anew(self, index: int) -> None:
-        """Children tell their changes before their parents, so the first news from below a node begins its new run."""
+        """Children report changes before their parents do, so the first change below a node begins its new run."""
         over, top, parents = self._over, -1, self.shape.parents
         node = index
         while node >= 0 and self._seen[node] != self._sweep:

@@ -57,19 +57,19 @@ class TextQuery(Record):
     takes: tuple[str, ...] = ()
 
 
-def _of_mission(tell: Callable[[Mission], dict[str, Any]]) -> Callable[..., dict[str, Any]]:
-    """What is told of a mission, with what is wrong with it."""
+def _of_mission(report: Callable[[Mission], dict[str, Any]]) -> Callable[..., dict[str, Any]]:
+    """Makes a query that reports something about a mission, with its messages."""
 
     def do(source: Source, words: Words) -> dict[str, Any]:
         mission = words.mission(source)
-        return {"messages": messages(mission.warnings, source), **tell(mission)}
+        return {"messages": messages(mission.warnings, source), **report(mission)}
 
     return do
 
 
 def _english(source: Source, words: Words) -> dict[str, Any]:
-    told = _of_mission(lambda mission: {"text": mission.to("english")})
-    return {"sort": frontend_of(source), **told(source, words)}
+    query = _of_mission(lambda mission: {"text": mission.to("english")})
+    return {"sort": frontend_of(source), **query(source, words)}
 
 
 def _format(source: Source, words: Words) -> dict[str, Any]:

@@ -93,8 +93,8 @@ class Clients:
         return answer.as_json()
 
     def _subscribe(self, visitor: Visitor, data: dict[str, Any]) -> dict[str, Any]:
-        """{"robots": [...], "topics": [...], "rate": N, "after": {...}}: by default all that all robots tell, at their
-        rate, and only what is to come.
+        """{"robots": [...], "topics": [...], "rate": N, "after": {...}}: by default all that all robots publish, at
+        their rate, and only what comes from now on.
         """
         robots, rate, after = data.get("robots"), data.get("rate", 0), data.get("after", {})
         topics = data.get("topics", list(TOPICS))

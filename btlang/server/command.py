@@ -38,12 +38,12 @@ def server_folder() -> str:
 
 
 def control_path() -> str:
-    """The Unix socket over which `btc user` tells a server that is up."""
+    """The Unix socket over which `btc user` notifies a running server."""
     return os.path.join(socket_folder(), "server.control")
 
 
-def tell_changes() -> None:
-    """Lets a server that is up look again who may come in; does nothing where there is none."""
+def notify_changes() -> None:
+    """Makes a running server check again who may come in; does nothing if there is none."""
     with suppress(OSError), socket.socket(socket.AF_UNIX) as connection:
         connection.settimeout(2.0)
         connection.connect(control_path())

@@ -84,10 +84,10 @@ def _kept(path: str) -> Key | None:
 
 
 class Dialer:
-    """Keeps one connection to a server. `tell` is told what becomes of it."""
+    """Keeps one connection to a server. `report` gets each change of its state, as a line."""
 
-    def __init__(self, settings: Settings, key: Key, tell: Callable[[str], object]) -> None:
-        self._settings, self._key, self._tell = settings, key, tell
+    def __init__(self, settings: Settings, key: Key, report: Callable[[str], object]) -> None:
+        self._settings, self._key, self._report = settings, key, report
         self._sockets = LocalSockets(settings.robot)
         self._instance = secrets.token_hex(8)
         self._connection: ClientConnection | None = None
@@ -98,14 +98,14 @@ class Dialer:
 
     async def dial(self) -> None:
         """Until it is cancelled. Raises RefusedError if the server doesn't want it."""
-        wait, told = _FIRST, ""
+        wait, problem = _FIRST, ""
         while True:
             try:
                 await self._talk()
-                wait, told = _FIRST, ""
+                wait, problem = _FIRST, ""
             except (OSError, ValueError, KeyError, TypeError, AttributeError, WebSocketException) as error:
-                if told != (told := one_line(str(error)) or type(error).__name__):
-                    self._tell(f"No connection to {self._settings.address}: {told}")
+                if problem != (problem := one_line(str(error)) or type(error).__name__):
+                    self._report(f"No connection to {self._settings.address}: {problem}")
             await asyncio.sleep(wait)
             wait = min(2 * wait, _LONGEST)
 
@@ -119,7 +119,7 @@ class Dialer:
                 answer = json.loads(await connection.recv())
             if answer.get("type") != "joined":
                 raise RefusedError(f"the server refuses it: {one_line(str(answer.get('text', '')))}")
-            self._tell(f"Joined {self._settings.address} as '{one_line(str(answer.get('name', '')))}'.")
+            self._report(f"Joined {self._settings.address} as '{one_line(str(answer.get('name', '')))}'.")
             self._connection = connection
             try:
                 with suppress(ConnectionClosed):
@@ -130,7 +130,7 @@ class Dialer:
                 for watching in self._watching.values():
                     watching.cancel()
                 self._watching.clear()
-        self._tell(f"The connection to {self._settings.address} broke.")
+        self._report(f"The connection to {self._settings.address} broke.")
 
     def _check_pin(self, connection: ClientConnection) -> None:
         """Nothing secret was sent until now."""
@@ -160,7 +160,7 @@ class Dialer:
 
     def _watch(self, stream: int, request: dict[str, Any] | None) -> None:
         if request is not None:
-            self._watching[stream] = asyncio.create_task(self._tell_all(stream, request))
+            self._watching[stream] = asyncio.create_task(self._forward_all(stream, request))
         elif stream in self._watching:
             self._watching.pop(stream).cancel()
 
@@ -204,7 +204,7 @@ class Dialer:
         except OSError:
             await self._send({"id": id})
 
-    async def _tell_all(self, stream: int, request: dict[str, Any]) -> None:
+    async def _forward_all(self, stream: int, request: dict[str, Any]) -> None:
         """What happens on the robot, as fast as the connection takes it."""
         number = stream.to_bytes(STREAM, "big")
         with suppress(OSError, WebSocketException):

@@ -87,11 +87,11 @@ async def _serve(
 ) -> None:
     async def changed(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         await api.check()
-        writer.close()  # now who told it knows that it holds
+        writer.close()  # so that the caller knows that the change is in effect
 
     with suppress(FileNotFoundError):
         os.unlink(control)
-    told = await asyncio.start_unix_server(changed, control)
+    listener = await asyncio.start_unix_server(changed, control)
     os.chmod(control, 0o600)
     serving = asyncio.create_task(server.serve([door]))
     while not server.started and not serving.done():
@@ -100,7 +100,7 @@ async def _serve(
     try:
         await serving
     finally:
-        told.close()
+        listener.close()
         with suppress(FileNotFoundError):
             os.unlink(control)
 

@@ -122,11 +122,11 @@ class EditorApi(Api):
 
     async def _list_files(self, request: Request) -> Response:
         await self._who(request)
-        return _told({"files": await asyncio.to_thread(self._files.listed)})
+        return _answered({"files": await asyncio.to_thread(self._files.listed)})
 
     async def _read_file(self, request: Request) -> Response:
         await self._who(request)
-        return _told(await asyncio.to_thread(self._files.read, request.path_params["name"]))
+        return _answered(await asyncio.to_thread(self._files.read, request.path_params["name"]))
 
     async def _save_file(self, request: Request) -> Response:
         await self._who(request)
@@ -146,7 +146,7 @@ class _NoRobots(Robots):
         """There is nothing to do."""
 
 
-def _told(data: dict[str, object]) -> Response:
+def _answered(data: dict[str, object]) -> Response:
     return JsonResponse(Answer(True, "", data, "").as_json())
 
 

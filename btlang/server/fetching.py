@@ -113,11 +113,11 @@ class Pieces(StreamingResponse):
 
 async def _piece(read: Read, name: str, at: int) -> tuple[int, bytes]:
     """The bytes of all, and some from a place on. Raises AccessError (404), and ConnectionError."""
-    told = await read({"type": "recording", "name": name, "at": at})
+    answer = await read({"type": "recording", "name": name, "at": at})
     try:
-        if told.get("missing"):
+        if answer.get("missing"):
             raise AccessError(404, "There's no such recording.")
-        size, data = told["size"], base64.b64decode(told["data"], validate=True)
+        size, data = answer["size"], base64.b64decode(answer["data"], validate=True)
         if type(size) is not int or size < 0 or len(data) > PIECE:
             raise ValueError("no piece")
     except (AttributeError, KeyError, TypeError, ValueError):

@@ -187,9 +187,9 @@ class XmlFiles(Files):
             write_onto(self._words.mission(self._words.source(text)), self._tree, force=True)
         except MissionError as error:
             write_file(self.path, text)
-            told = f"{tree} is not written: {error.diagnostics[0].message}"
-            data = {"revision": self._state(), "tree": tree, "problem": told}
-            return Answer(True, f"Kept {name}. {told}", data)
+            trouble = f"{tree} is not written: {error.diagnostics[0].message}"
+            data = {"revision": self._state(), "tree": tree, "problem": trouble}
+            return Answer(True, f"Kept {name}. {trouble}", data)
         with suppress(FileNotFoundError):
             os.remove(self.path)
         return Answer(True, f"Saved {tree}.", {"revision": self._state(), "tree": tree})

@@ -6,7 +6,7 @@ import json
 import socket
 import time
 
-from btlang.server.command import door_path, server_folder, tell_changes
+from btlang.server.command import door_path, notify_changes, server_folder
 from btlang.task.applicable import check_robot_words
 from btlang.task.checks import refused
 from btlang.task.companion import require_server
@@ -31,7 +31,7 @@ def serve(options: argparse.Namespace) -> int:
 
     accounts = Accounts(server_folder())
     try:
-        _do(options, Fleet(accounts.database, tell_changes))
+        _do(options, Fleet(accounts.database, notify_changes))
     finally:
         accounts.close()
     return 0

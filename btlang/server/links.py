@@ -98,8 +98,8 @@ class RobotLink:
             raise ConnectionError(text) from error
 
     def add(self, outlet: Outlet, after: int | None = None) -> None:
-        """A client that is told what is now, and from now on all that happens; who was here before gets the changes of
-        tasks `after` the last one that he knows first.
+        """Adds a client that gets the present state, then all updates. One that was here before first gets the changes
+        of tasks `after` the last one that it knows.
         """
         for message in self._snapshot():
             outlet.put(News(self.name, message))
@@ -108,7 +108,7 @@ class RobotLink:
             self._catching_up[outlet] = asyncio.create_task(self._catch_up(outlet, after))
 
     def discard(self, outlet: Outlet) -> None:
-        """A client that is told nothing any more."""
+        """Removes a client: it gets no more updates."""
         self._outlets.discard(outlet)
         catching_up = self._catching_up.pop(outlet, None)
         if catching_up is not None:
@@ -128,10 +128,10 @@ class RobotLink:
         """It is no longer up."""
         if self.is_up:
             self._up.clear()
-            self._tell({"type": "away"})
+            self._publish({"type": "away"})
 
     async def _messages(self, after: int | None) -> AsyncGenerator[dict[str, Any]]:
-        """What the robot tells a watcher, until it ends."""
+        """What the robot sends to a watcher, until it ends."""
         async with self._reach.watching({"rate": RATE, "after": after}) as reader:
             while True:
                 async with asyncio.timeout(_SILENT):  # which, unlike wait_for, takes all that is there in one go
@@ -141,22 +141,22 @@ class RobotLink:
                 yield json.loads(line)
 
     async def _catch_up(self, outlet: Outlet, after: int) -> None:
-        """Tells a client the changes after one, until it knows all that were told to others."""
+        """Sends a client the changes after one, until it has all that were sent to others."""
         while True:
             await self._up.wait()
-            told = self._change or 0
-            if after >= told:
+            latest = self._change or 0
+            if after >= latest:
                 break
             await outlet.wait_for_room()
             async with self._paging:
                 last, is_all = await self._page(outlet, after)
             if not is_all and last == after:
                 await asyncio.sleep(_AGAIN)
-            after = max(last, told) if is_all else last  # the task of a change may be deleted by now
+            after = max(last, latest) if is_all else last  # the task of a change may be deleted by now
         del self._catching_up[outlet]
 
     async def _page(self, outlet: Outlet, after: int) -> tuple[int, bool]:
-        """Tells a client some of the changes after one; the number of the last, and whether others know no more."""
+        """Sends a client some changes after one; returns the number of the last, and whether others have no more."""
         end = after + _PAGE
         with suppress(*_BROKEN):
             async with aclosing(self._messages(after)) as messages:
@@ -181,7 +181,7 @@ class RobotLink:
                 self.recordings = str(message.get("recordings", ""))
             self._change = int(message["change"])
             self._up.set()
-            self._tell(self._beginning)
+            self._publish(self._beginning)
             return
         if kind == "alive":
             return
@@ -194,9 +194,9 @@ class RobotLink:
             self._t = message["t"]
         elif kind in STATES:
             self._states[kind] = message
-        self._tell(message)
+        self._publish(message)
 
-    def _tell(self, message: dict[str, Any]) -> None:
+    def _publish(self, message: dict[str, Any]) -> None:
         news = News(self.name, message)
         for outlet in self._outlets:
             if message["type"] != "change" or outlet not in self._catching_up:

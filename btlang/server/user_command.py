@@ -6,7 +6,7 @@ import getpass
 import sys
 import time
 
-from btlang.server.command import server_folder, tell_changes
+from btlang.server.command import notify_changes, server_folder
 from btlang.task.companion import require_server
 from btlang.task.messages import wrong
 from btlang.task.moments import shown
@@ -26,7 +26,7 @@ def serve(options: argparse.Namespace) -> int:
     require_server("user")
     from btlang.server.accounts import Accounts
 
-    accounts = Accounts(server_folder(), tell_changes)
+    accounts = Accounts(server_folder(), notify_changes)
     try:
         _do(options, accounts)
     finally:

@@ -1,4 +1,4 @@
-"""How often something may be told."""
+"""How often something may be sent."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ class Allowance:
         self._due = 0.0
 
     def wait(self, now: float) -> float:
-        """Seconds until it may be told."""
+        """Seconds until it may be sent."""
         return max(0.0, self._due - self._period * _EARLY - now)
 
     def use(self, now: float) -> None:
-        """It is told."""
+        """It is sent."""
         self._due = max(self._due, now) + self._period

@@ -42,7 +42,7 @@ _NOT_GIVEN = object()
 
 
 def note_given(parser: argparse.ArgumentParser) -> None:
-    """To be called when a parser has all options: `given` can then tell those that were given from the other ones."""
+    """To be called when a parser has all options: `given` can then distinguish those that were given."""
     options = [action for action in parser._actions if action.option_strings and action.dest != "help"]
     flags = {action.dest: action.option_strings[-1] for action in options}
     for action in options:

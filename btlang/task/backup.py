@@ -88,7 +88,7 @@ def _check_file(path: str) -> None:
 
 
 def _write(database: Database, part: str, path: str, steps: Sequence[Step] | None, without: Collection[str]) -> None:
-    with suppress(FileNotFoundError):  # of the folder, which the database tells better
+    with suppress(FileNotFoundError):  # of the folder: the error of the database is better
         os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600))  # it has all that the store has
     target = Sqlite(part, durable=True, shown=path)
     try:

@@ -57,10 +57,10 @@ def emergency_stop(name: str = "", reason: str = "") -> list[str]:
     Returns a line for each. Raises MissionError (BT185) if there is no such robot, BT195 if a latch can't be written.
     """
     names = [name] if name else _listening() or robots_known()
-    told = [_stopped(each, reason) for each in names]
-    if not names or None in told:
+    lines = [_stopped(each, reason) for each in names]
+    if not names or None in lines:
         raise _nobody(name or USUAL_NAME)
-    return [each for each in told if each is not None]
+    return [each for each in lines if each is not None]
 
 
 def _stopped(name: str, reason: str) -> str | None:

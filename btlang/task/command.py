@@ -34,10 +34,10 @@ def serve(options: argparse.Namespace) -> int:
     with Client(options.name) as client:
         if options.live:
             return _live(client, command)
-        return tell(client.send(command), options.json)
+        return print_answer(client.send(command), options.json)
 
 
-def tell(answer: Answer, as_json: bool) -> int:
+def print_answer(answer: Answer, as_json: bool) -> int:
     """Prints an answer; returns the exit code."""
     if as_json:
         show(json.dumps(answer.as_json(), ensure_ascii=False, indent=2))

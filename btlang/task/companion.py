@@ -37,11 +37,11 @@ def require_server(verb: str = "serve") -> None:
 
 class Companion:
     """A module of btlang as a process. It ends when its standard input, whose first line is `given`, does: also if this
-    process is killed. `tell` gets its lines, and what becomes of it.
+    process is killed. `report` gets its lines, and a line when it ends.
     """
 
-    def __init__(self, name: str, words: Sequence[str], given: str, tell: Callable[[str], object]) -> None:
-        self._name, self._given, self._tell = name, given, tell
+    def __init__(self, name: str, words: Sequence[str], given: str, report: Callable[[str], object]) -> None:
+        self._name, self._given, self._report = name, given, report
         self._command = [sys.executable, "-P", "-m", *words]  # -P: a file beside the mission is no module
         self._began, self._closed = threading.Event(), threading.Event()
         self._spoke = False
@@ -79,25 +79,25 @@ class Companion:
             assert process.stdout is not None
             with process.stdout, process.stdin:
                 for line in process.stdout:
-                    self._tell(line.rstrip())
+                    self._report(line.rstrip())
                     self._spoke = True
                     self._began.set()
                 code = process.wait()
             if self._closed.is_set() or code in _ENDED or not self._spoke:
                 self._began.set()
                 return
-            self._tell(f"The {self._name} ended with exit code {code}; it starts again.")
+            self._report(f"The {self._name} ended with exit code {code}; it starts again.")
             if self._closed.wait(_AGAIN):
                 return
             try:
                 self._process = self._begun()
             except OSError as error:
-                self._tell(f"The {self._name} can't start: {reason_of(error)}")
+                self._report(f"The {self._name} can't start: {reason_of(error)}")
                 return
 
 
 @contextmanager
-def companions(options: argparse.Namespace, robot: str, tell: Callable[[str], object]) -> Iterator[int]:
+def companions(options: argparse.Namespace, robot: str, report: Callable[[str], object]) -> Iterator[int]:
     """Those that the options of `add_companion_options` ask for; the exit code of one that can't come up, else 0.
 
     Raises MissionError (BT200).
@@ -108,11 +108,11 @@ def companions(options: argparse.Namespace, robot: str, tell: Callable[[str], ob
     try:
         if options.serve:
             words = ["btlang", "serve", "--until-eof", "--host", options.host, "--port", str(options.port)]
-            started.append(Companion("server", words, "", tell))
+            started.append(Companion("server", words, "", report))
         if options.join:
             kept = os.path.join(data_folder(robot), "server.json")
             settings = {"robot": robot, "address": options.join, "code": options.code, "kept": kept}
-            started.append(Companion("link to the server", ["btlang.server.dialer"], json.dumps(settings), tell))
+            started.append(Companion("link to the server", ["btlang.server.dialer"], json.dumps(settings), report))
         yield max([each.start() for each in started], default=0)
     finally:
         for each in started:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from btlang.task import messages
 from btlang.task.client import Client
-from btlang.task.command import tell
+from btlang.task.command import print_answer
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -17,4 +17,4 @@ def serve(options: argparse.Namespace) -> int:
         raise messages.wrong(options.act, "it takes no name" if options.item else "it needs the name of a component")
     command = messages.Components() if options.act == "list" else messages.ChangeComponent(options.item, options.act)
     with Client(options.name) as client:
-        return tell(client.send(command), options.json)
+        return print_answer(client.send(command), options.json)

@@ -27,7 +27,7 @@ def shut_latch(folder: str, person: str, reason: str = "") -> None:
     """Stops a robot by its file alone, in a moment if its process is alive, else from its next start on, until it is
     released. Raises OSError.
     """
-    _write(latch_path(folder), _told(person, reason))
+    _write(latch_path(folder), _reason(person, reason))
 
 
 class EmergencyStop:
@@ -63,7 +63,7 @@ class EmergencyStop:
 
     def stop(self, person: str, reason: str = "") -> None:
         """Stops the robot for a person; nothing begins before `release`."""
-        self._stop(_told(person, reason))
+        self._stop(_reason(person, reason))
         self._changed.set()
 
     def release(self) -> None:
@@ -104,7 +104,7 @@ class EmergencyStop:
                 listener()
 
 
-def _told(person: str, reason: str) -> str:
+def _reason(person: str, reason: str) -> str:
     return f"emergency stop by {person or 'somebody'}" + (f": {reason}" if reason else "")
 
 

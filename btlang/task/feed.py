@@ -47,7 +47,7 @@ class _Watched:
 
 
 class Feed:
-    """`sinks` makes the sinks of a run; `watch` tells what happens, beginning with what is now.
+    """`sinks` makes the sinks of a run; `watch` reports the present state, then what happens.
 
     `robot` gives what keeps the robot from working, `words` are where its words and its world are, `world` is its map
     where it has one, `recordings` the folder of its recordings, "" for none, `parts` gives its components and devices,
@@ -96,8 +96,8 @@ class Feed:
     def watch(self, rate: float = 10.0, after: int | None = None) -> Generator[dict[str, Any]]:
         """Messages, each with its "type", until it is closed or the robot goes down; the caller waits for the next one.
 
-        The first one, "hello", has the number of the last change of a task that is known. Who comes back gives it as
-        `after`, unless the store is another one by now: then all changes that came since are told, before all else.
+        The first one, "hello", has the number of the last change of a task that is known. A client that comes
+        back with it as `after` first gets all changes since, unless the store is another one by now.
         """
         least, most = RATES
         latest = self._store.latest_change()
@@ -146,7 +146,7 @@ class Feed:
             if not watcher.news.wait(_ALIVE):
                 yield {"type": "alive"}
                 continue
-            # A period ends just before the next tick: so one message tells of both, and not of the tick a period later.
+            # A period ends just before the next tick: so one message reports both, and not the tick a period later.
             time.sleep(max(min(period * _GATHERED, _GATHERED_AT_MOST), allowance.wait(time.monotonic())))
             allowance.use(time.monotonic())
             watcher.news.clear()

@@ -17,7 +17,7 @@ _EACH = 200_000_000  # bytes of one, which then goes on in another file
 
 class Recordings:
     """A recorder for each task, in `folder`; none if the package mcap isn't installed or the folder can't be written,
-    which `trouble` is told once.
+    which `trouble` gets once.
     """
 
     def __init__(

@@ -22,7 +22,7 @@ from btlang.task import messages
 from btlang.task.applicable import check_robot_words
 from btlang.task.backup import restore_backup
 from btlang.task.client import Client, emergency_stop
-from btlang.task.command import tell
+from btlang.task.command import print_answer
 from btlang.task.companion import companions
 from btlang.task.house import furnished_layer
 from btlang.task.layer import KEPT, TaskLayer
@@ -95,7 +95,7 @@ def serve(options: argparse.Namespace) -> int:
         "step": messages.Step, "say": partial(messages.Say, " ".join(options.item)), "visitor": messages.InviteVisitor,
     }  # fmt: skip
     with Client(options.name) as client:
-        return tell(client.send(commands[act]()), options.json)
+        return print_answer(client.send(commands[act]()), options.json)
 
 
 def layer_options(options: argparse.Namespace, name: str) -> dict[str, Any]:

@@ -157,8 +157,8 @@ class ScheduleWords:
         explained = None if self.is_over else explain_time(self._text, self.at, True, self._vocabulary)
         if explained is None:
             raise self.unknown("9:00, 9 am or noon")
-        told = dict(explained.arguments)
-        raise Unread(explained.span, told["problem"], self.at, told["example"], fix=explained.fix)
+        arguments = dict(explained.arguments)
+        raise Unread(explained.span, arguments["problem"], self.at, arguments["example"], fix=explained.fix)
 
     def listed_time(self) -> int | None:
         """A time of day. Raises Unread for one or two figures that aren't one, nor a day."""

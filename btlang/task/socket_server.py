@@ -124,7 +124,7 @@ class SocketServer:
             while line := lines.readline(MOST_BYTES):
                 data = _read(line)
                 if isinstance(data, dict) and "watch" in data and self._watch is not None:
-                    self._tell(connection, data["watch"])
+                    self._stream(connection, data["watch"])
                     return
                 with self._at_work():
                     answer = self._answer(data, person)
@@ -143,8 +143,8 @@ class SocketServer:
                 self._busy -= 1
                 self._answered.notify_all()
 
-    def _tell(self, connection: socket.socket, wanted: object) -> None:
-        """Until one of both ends."""
+    def _stream(self, connection: socket.socket, wanted: object) -> None:
+        """Sends what happens, until one side ends."""
         assert self._watch is not None
         known = wanted if isinstance(wanted, dict) else {}
         rate, after = known.get("rate", _RATE), known.get("after")

@@ -69,7 +69,7 @@ class Store:
             added: Task = task.replace(id=_count(execute, "task"))
             insert(execute, "task", added)
             _note(execute, Change(added.id, added.created, added.state, cause, added.person))
-        self._tell()
+        self._notify()
         return added
 
     def task(self, id: int) -> Task | None:
@@ -116,7 +116,7 @@ class Store:
             noted = Change(id, time, state, cause, person)
             changed = self._changed(execute, noted, before, {"reason": cause, **fields})
         if changed is not None:
-            self._tell()
+            self._notify()
         return changed
 
     def amend(self, id: int, **fields: Any) -> Task | None:
@@ -138,7 +138,7 @@ class Store:
             # has gone to another one meanwhile, and two who wait would wait for each other
             claimed = self._claim(now, Mode.ALONE)
         if claimed is not None:
-            self._tell()
+            self._notify()
         return claimed
 
     def peek(self, now: float) -> Task | None:
@@ -293,7 +293,7 @@ class Store:
         """
         write_backup(self._database, path)
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         for listener in tuple(self.listeners):
             listener()
 

@@ -129,8 +129,8 @@ class Ending(Record):
     token: str = ""
 
     def outranks(self, other: Ending) -> bool:
-        """Whether it replaces one that was asked for a moment before. Whoever asked for that was told that it happens,
-        so only more does: a token after a suspension without one, the end after that, and a kill after another end.
+        """Whether it replaces one that was asked for a moment before. Whoever asked for that was promised it, so only
+        more replaces it: a token after a suspension without one, the end after that, and a kill after another end.
         """
         return self._rank > other._rank
 

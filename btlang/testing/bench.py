@@ -25,8 +25,8 @@ _PATIENCE = 5.0  # seconds, on a busy computer
 class ComponentBench:
     """Leads components through their life in this process: `bench(Machine, heat=70)` is one that is active.
 
-    The test is their devices: `readings` are what these tell, by their names, and a device without one is silent;
-    `commands` are the latest that they were told. `events` are what the components have reported: kind and data.
+    The test stands in for their devices: `readings` are their readings by name, and a device without one is silent;
+    `commands` are the latest that they got. `events` are what the components have reported: kind and data.
     """
 
     def __init__(self) -> None:
@@ -40,7 +40,7 @@ class ComponentBench:
         made = kind()
         made.name = kind.__name__.lower()
         made._devices = dict.fromkeys([*kind.needs, *self.readings], self)
-        made._tell = lambda event, data: self.events.append((event, data))
+        made._report_event = lambda event, data: self.events.append((event, data))
         made.set_parameters(parameters)
         made.configure()
         made.activate()
@@ -48,13 +48,13 @@ class ComponentBench:
         return made
 
     def read(self, name: str) -> Reading:
-        """What a device tells. Raises DeviceSilent."""
+        """The reading of a device. Raises DeviceSilent."""
         if name not in self.readings:
             raise DeviceSilent(f"the {name} is silent: the test gives no reading")
         return self.readings[name]
 
     def write(self, name: str, command: Command) -> None:
-        """Keeps what a device is told."""
+        """Keeps a command to a device."""
         self.commands[name] = command
 
     def close(self) -> None:
@@ -82,7 +82,7 @@ class DeviceBench:
         return self._loop.read(self._device.name)
 
     def write(self, command: Command) -> None:
-        """Tells it a command, which counts for 0.2 s. Raises DeviceError."""
+        """Sends it a command, which counts for 0.2 s. Raises DeviceError."""
         self._loop.write(self._device.name, command)
 
     def wait(self, expected: Callable[[Any], bool] = lambda reading: True, seconds: float = _PATIENCE) -> Reading:
@@ -95,7 +95,7 @@ class DeviceBench:
                 return None
             return reading if expected(reading) else None
 
-        return self._first(look, seconds, "tells nothing like that")
+        return self._first(look, seconds, "gives no such reading")
 
     def wait_for_silence(self, seconds: float = _PATIENCE) -> str:
         """Why it has fallen silent. Raises AssertionError where it doesn't in so many seconds."""

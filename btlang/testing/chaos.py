@@ -43,24 +43,24 @@ class Chaos:
     ) -> None:
         self.broken = ""
         """The first rule that did not hold, and when."""
-        self.told: list[str] = []
+        self.troubles: list[str] = []
         """What went wrong in the world, and when."""
         self._observed, self._robot, self._controls, self._words = observed, robot, controls, words
         self._random = Random(seed)
-        self._troubles = list(self._planned(limit))
+        self._pending = list(self._planned(limit))
         self._stopped_at: float | None = None
 
     def __call__(self, event: Event) -> None:
         """An event of the run."""
         if not isinstance(event, PeriodPassed):
             return
-        while self._troubles and self._troubles[0][0] <= event.t:
-            at, what, happen = self._troubles.pop(0)
-            self.told.append(f"{at:.1f} s: {what}")
+        while self._pending and self._pending[0][0] <= event.t:
+            at, what, happen = self._pending.pop(0)
+            self.troubles.append(f"{at:.1f} s: {what}")
             try:
                 happen()
             except RobotError as problem:
-                self.told[-1] += f" ({problem})"
+                self.troubles[-1] += f" ({problem})"
         if not self.broken:
             self.broken = next(self._rules(event.t), "")
             if self.broken:

@@ -45,8 +45,8 @@ def ending(summaries: Sequence[Summary]) -> str:
     failed = sum(bool(summary.failures) for summary in summaries)
     mission_time = sum(result.seconds for summary in summaries for result in summary.results)
     count = f"{len(summaries)} test{'s' * (len(summaries) != 1)}"
-    told = f"{failed} of {count} failed" if failed else f"{count} passed"
-    return f"{told} ({brief_time(mission_time)} of mission time)"
+    result = f"{failed} of {count} failed" if failed else f"{count} passed"
+    return f"{result} ({brief_time(mission_time)} of mission time)"
 
 
 def junit(summaries: Iterable[Summary]) -> str:
@@ -67,8 +67,8 @@ def junit(summaries: Iterable[Summary]) -> str:
         if summary.failures:
             suite.set("failures", str(int(suite.get("failures", "0")) + 1))
             shown = summary.failures[0]
-            told = ElementTree.SubElement(case, "failure", message=_printable(shown.problem.splitlines()[0]))
-            told.text = _printable(f"{shown.problem}\nseed {shown.seed}")
+            failure = ElementTree.SubElement(case, "failure", message=_printable(shown.problem.splitlines()[0]))
+            failure.text = _printable(f"{shown.problem}\nseed {shown.seed}")
     ElementTree.indent(suites)
     return ElementTree.tostring(suites, "unicode", xml_declaration=True) + "\n"
 

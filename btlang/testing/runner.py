@@ -112,7 +112,7 @@ def run_test(
     result = partial(Result, test.name, test.place, seed, seconds, seen=statuses_seen(mission.tree, observed))
     if script.broken is not None:
         return result(
-            _told(script.broken, mission, outcome), line=script.broken.step.span, at=_at(script.broken, outcome)
+            _problem(script.broken, mission, outcome), line=script.broken.step.span, at=_at(script.broken, outcome)
         )
     if is_cut:
         return result(f"cut after {brief_time(test.limit)}: the mission was not over", is_cut=True)
@@ -135,8 +135,8 @@ def run_chaos(test: MissionTest, seed: int, sinks: Iterable[Sink] = ()) -> Resul
         outcome = _executed(run, controls)
         chaos.end()
     seen = statuses_seen(test.mission.tree, observed)
-    problem = "\n".join((chaos.broken, *(f"  {line}" for line in chaos.told))) if chaos.broken else ""
-    return Result(test.name, test.place, seed, outcome.seconds, problem, seen=seen, troubles=tuple(chaos.told))
+    problem = "\n".join((chaos.broken, *(f"  {line}" for line in chaos.troubles))) if chaos.broken else ""
+    return Result(test.name, test.place, seed, outcome.seconds, problem, seen=seen, troubles=tuple(chaos.troubles))
 
 
 def _executed(run: Run, controls: Controls) -> Outcome:
@@ -152,7 +152,7 @@ def _commands(test: MissionTest) -> dict[str, Command]:
     return {text: command for text, command in found if command is not None}
 
 
-def _told(broken: Broken, mission: Mission, outcome: Outcome | None) -> str:
+def _problem(broken: Broken, mission: Mission, outcome: Outcome | None) -> str:
     """The line that did not hold, when and why, and what the mission did."""
     span = broken.step.span
     lines = [f"{span.place.rpartition(':')[0]}: {span.text}", f"  after {brief_time(broken.seconds)}: {broken.reason}"]

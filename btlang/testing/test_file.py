@@ -56,7 +56,7 @@ def read_tests(source: Source, given: Given = lambda name, world: None) -> tuple
         except MissionError as error:
             problems += error.diagnostics
     if not found and not problems:
-        problems.append(_told("BT181", Span(source, 0, 0), "there is no test in this file", 'test "it waves":'))
+        problems.append(_problem("BT181", Span(source, 0, 0), "there is no test in this file", 'test "it waves":'))
     if problems:
         raise MissionError(sorted(problems, key=lambda one: one.span.start if one.span.source is source else -1))
     return tuple(found)
@@ -95,7 +95,7 @@ def _blocks(text: Words, problems: list[Diagnostic]) -> Iterator[_Block]:
         yield _Block(words[1][1:], span, tuple(text.lines[number + 1 : last]))
 
 
-def _told(code: str, span: Span, reason: str, example: str) -> Diagnostic:
+def _problem(code: str, span: Span, reason: str, example: str) -> Diagnostic:
     return diagnostic(code, span, reason=reason, example=example)
 
 
@@ -116,15 +116,15 @@ class _Reader:
         if len(runs) != 1:
             span = runs[1].span if runs else self._block.span
             reason = "it runs more than one mission" if runs else "it runs no mission"
-            self._problems.append(_told("BT181", span, reason, 'run "patrol.txt"'))
+            self._problems.append(_problem("BT181", span, reason, 'run "patrol.txt"'))
             raise MissionError(self._problems)
         try:
             mission = self._mission(runs[0])
             if rules := self._named_file("rules"):
                 mission = house_rules(self._parsed(read_source(rules, _root(self._source)))).around(mission)
         except MissionError as error:  # the other lines need its words
-            told = [moved(problem, self._source) for problem in error.diagnostics]
-            raise MissionError([*self._problems, *told]) from None
+            moved_problems = [moved(problem, self._source) for problem in error.diagnostics]
+            raise MissionError([*self._problems, *moved_problems]) from None
         keywords = list(self._robot_words)
         if mission.syntax is not None:
             needed = [path for role, path in mission.syntax.needs if role == NEEDED_WORDS]
@@ -158,7 +158,7 @@ class _Reader:
                 return mission
             return self._parsed(read_source(self._path(run.file), _root(self._source)))
         if run.block is None:
-            raise MissionError([_told("BT181", run.span, "it runs no mission", 'run "patrol.txt"')])
+            raise MissionError([_problem("BT181", run.span, "it runs no mission", 'run "patrol.txt"')])
         return self._parsed(_only(self._source, run.block))
 
     def _parsed(self, source: Source) -> Mission:

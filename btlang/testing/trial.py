@@ -78,18 +78,18 @@ def _results(
     until, films = time.monotonic() + patience, 0
     for test in tests:
         film, left = Film(test.mission), until - time.monotonic()
-        told: dict[str, Any] = {"name": test.name, "line": _line(test.span, source), "passed": None, "seconds": 0.0}
+        entry: dict[str, Any] = {"name": test.name, "line": _line(test.span, source), "passed": None, "seconds": 0.0}
         if left > 0:
             result = _run(test, film, left)
-            told |= {"passed": result.passed, "seconds": result.seconds}
+            entry |= {"passed": result.passed, "seconds": result.seconds}
             if not result.passed:
                 films += 1
                 mission = next((each for each in own if each is test.mission), None)
-                told |= {
+                entry |= {
                     "problem": result.problem, "at": _line(result.line, source),
                     **_place(result.at, mission), "film": _data(film, mission) if films <= _MOST_FILMS else None,
                 }  # fmt: skip
-        yield told
+        yield entry
 
 
 def _run(test: MissionTest, film: Film, patience: float) -> Result:

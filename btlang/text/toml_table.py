@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 _MOST = 1_000_000
-_MOST_PROBLEMS = 100  # that are told; who reads more of them at once?
+_MOST_PROBLEMS = 100  # that are reported; who reads more of them at once?
 
 
 def is_coordinate(value: object) -> bool:
@@ -34,7 +34,7 @@ class Problem(Exception):
 
 
 class Problems:
-    """Gathers what is wrong with a file, so that all of it can be told at once."""
+    """Gathers what is wrong with a file, so that all of it can be reported at once."""
 
     def __init__(self) -> None:
         self.found: list[Problem] = []

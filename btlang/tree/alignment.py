@@ -20,7 +20,7 @@ _MOST = 40_000  # comparisons of two lists of nodes; of longer ones only equal n
 
 
 class Alignment:
-    """Pairs new nodes with old ones; nodes are told by their identity, and none stands in two places.
+    """Pairs new nodes with old ones. Nodes are keyed by identity, and none is in two places.
 
     Top down, then equal subtrees wherever they are, then what stands in or around something new: the phases of GumTree
     (Falleri et al., Fine-grained and accurate source code differencing, 2014), with children in their order.
@@ -31,13 +31,13 @@ class Alignment:
         pairs: Iterable[tuple[Node, Node]],
         gone: Iterable[Node],
         come: Iterable[Node],
-        told: Callable[[Node], Iterable[tuple[str, str]]],
+        features: Callable[[Node], Iterable[tuple[str, str]]],
     ) -> None:
-        """`pairs` are old and new trees that belong together, `gone` and `come` other old and new ones. `told` gives
-        what counts of a node beside its id, its name and its children.
+        """`pairs` are old and new trees that belong together, `gone` and `come` other old and new ones. `features`
+        gives what counts in a node beside its id, its name and its children.
         """
-        self._told = told
-        self._numbers = SubtreeNumbers(lambda node: sorted(told(node)))
+        self._features = features
+        self._numbers = SubtreeNumbers(lambda node: sorted(features(node)))
         self._ranges: dict[int, tuple[int, int]] = {}  # the positions of a node and all below it
         self._positions: defaultdict[int, list[int]] = defaultdict(list)  # by number, ascending
         self._old: dict[int, Node] = {}
@@ -136,7 +136,7 @@ class Alignment:
             [*inner] = other.children
             if len(inner) == 1 and inner[0].id == one.id and self._shared(one, inner[0]) > shared:
                 return 0.0
-        return 1 + shared + _overlap(self._told(old), self._told(new)) + (old.name == new.name != "")
+        return 1 + shared + _overlap(self._features(old), self._features(new)) + (old.name == new.name != "")
 
     def _shared(self, one: Node, other: Node) -> float:
         """The share of their children that both have."""

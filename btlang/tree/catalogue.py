@@ -63,7 +63,7 @@ class NodeKind(Record):
     - `again`: the status of its child after which it runs the child again; `rounds`: the port that limits how often
       (-1: no limit), "" where no port does; `endless`: nothing else limits it either.
     - `reactive`: children before the running one are asked at each tick; `interrupts`: it may halt a running child.
-    - `takes_time`: it is RUNNING for a time of its own.
+    - `takes_time`: it is RUNNING for some time by itself.
     - `turns`: statuses of its child that it turns into another one.
     - `ends`: the statuses that a leaf can end with, where not every one.
     - `skipped`: which children must be SKIPPED for it to be: "any", "all", "first", "last", "tried" (all but the
@@ -71,7 +71,7 @@ class NodeKind(Record):
     - `keeps_completed`: it does not reset a child that has completed.
     - `symbol`: for drawings; `origin`: the library that has it; `text`: what it does, where that library isn't at hand.
     - `tags_3`: its tags in version 3 of BehaviorTree.CPP, the one to write first, () where it has no such node;
-      `is_common_name`: users of version 3 have nodes of their own by this name, so that it doesn't tell the version.
+      `is_common_name`: users of version 3 have their own nodes by this name, so that it doesn't show the version.
     """
 
     id: str

@@ -1,4 +1,4 @@
-"""The comments of a mission by the statement that they tell of: the one on their line, or else the next one."""
+"""The comments of a mission by the statement that they describe: the one on their line, or else the next one."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def line_of(node: Node) -> int:
 
 
 def comments_by_line(source: Source, orthography: Orthography, tree: Tree) -> dict[float, list[str]]:
-    """The comments of the text of a tree without their marks, by the line of the statement that they tell of.
+    """The comments of the text of a tree without their marks, by the line of the statement that they describe.
 
     Those without a letter or digit are left out: they are rulers.
     """

@@ -6,7 +6,7 @@ from btlang.record import Record
 
 
 class PortModel(Record):
-    """A port: `direction` is "input", "output" or "inout", `type` as in C++, "" where it is not told."""
+    """A port: `direction` is "input", "output" or "inout", `type` as in C++, "" if it isn't declared."""
 
     name: str
     direction: str = "input"

@@ -35,8 +35,8 @@ class Node(Record, uncompared=("span",)):
 class Tree(Record, uncompared=("models", "origin", "warnings")):
     """A main tree and the named subtrees that its SubTree nodes (port `ID`) refer to, in the order defined.
 
-    `name` is that of the main tree, "" for the usual one (`MainTree` in XML); no two trees have the same. `models` tell
-    of kinds of nodes what a front end has read of them. `origin` is what a front end knows beside the tree, for its own
+    `name` is that of the main tree, "" for the usual one (`MainTree` in XML); no two trees have the same. `models` are
+    what a front end has read about kinds of nodes. `origin` is what a front end knows beside the tree, for its own
     back end: such as the comments of an XML file, and how its tags were written; of a mission it is its Source.
     `warnings` are those of reading it.
     """

@@ -8,13 +8,13 @@ from btlang.tree.node import Node
 
 
 class SubtreeNumbers:
-    """The number of each node that was added; equal subtrees have the same. Nodes are told by their identity.
+    """The number of each node that was added; equal subtrees have the same. Nodes are keyed by identity.
 
-    `told` gives what counts of a node beside its id, its name and its children.
+    `features` gives what counts in a node beside its id, its name and its children.
     """
 
-    def __init__(self, told: Callable[[Node], Iterable[tuple[str, str]]]) -> None:
-        self._told = told
+    def __init__(self, features: Callable[[Node], Iterable[tuple[str, str]]]) -> None:
+        self._features = features
         self._kinds: dict[object, int] = {}
         self._numbers: dict[int, int] = {}
         self._kept: list[Node] = []  # so that no identity is given to another node
@@ -23,7 +23,7 @@ class SubtreeNumbers:
         """Counts nodes, each behind its children."""
         for node in nodes:
             below = tuple([self._numbers[id(child)] for child in node.children])
-            key = node.id, node.name, tuple(self._told(node)), below
+            key = node.id, node.name, tuple(self._features(node)), below
             self._numbers[id(node)] = self._kinds.setdefault(key, len(self._kinds))
             self._kept.append(node)
 

@@ -158,10 +158,10 @@ def test_a_flood_of_events_neither_holds_a_tick_nor_hides_what_the_robot_says(tm
     with btlang.Session(hostile(tmp_path, "Liar", runs='"here"')) as session:
         own: Any = session.connection
         for _ in range(5_000):
-            own._told("villain", {})
-        own._tell("part", {"kind": "component", "name": "villain", "state": "active", "text": "it matters"})
+            own._post_from_component("villain", {})
+        own._post("part", {"kind": "component", "name": "villain", "state": "active", "text": "it matters"})
         for _ in range(5_000):
-            own._told("villain", {})
+            own._post_from_component("villain", {})
         own._said = _Flood(own._said, own._said.maxlen)
         heard: list[Any] = []
         session.connection.bus.add(heard.append)

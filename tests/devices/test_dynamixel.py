@@ -117,7 +117,7 @@ def test_a_goal_without_end_is_refused() -> None:
     with rig(servo) as r:
         r.loop.start()
         r.until(lambda: degrees(servo) > 5, {"j1": JointTarget(90.0, 30.0)})
-        with pytest.raises(DeviceError, match="the j1 can't be told a position that is not finite"):
+        with pytest.raises(DeviceError, match="the j1 doesn't take a position that is not finite"):
             r.loop.write("j1", JointTarget(math.inf))
         assert r.is_back()
         assert degrees(servo) < 60

@@ -112,7 +112,7 @@ def test_a_command_ends_before_its_time_is_over() -> None:
     loop = DeviceLoop(TestDriver(), (BASE,), silence=1.0)
     loop.write("base", WheelSpeeds(0.5, 0.5))
     written = loop._commands["base"][1]
-    loop._tell("base", DRIVES, written + 5.0)
+    loop._take_reading("base", DRIVES, written + 5.0)
     assert loop._due_commands(written + 0.99) == {"base": WheelSpeeds(0.5, 0.5)}
     assert loop._due_commands(written + 1.01) == {"base": WheelSpeeds()}
 
@@ -157,13 +157,13 @@ def test_commands_that_a_device_does_not_take(simulated: bool) -> None:
         write("front", WheelSpeeds())
     with pytest.raises(DeviceError, match="the base doesn't take a Colour"):
         write("base", Colour())
-    with pytest.raises(DeviceError, match="the base can't be told a right that is not a number"):
+    with pytest.raises(DeviceError, match="the base doesn't take a right that is not a number"):
         write("base", WheelSpeeds(0.0, math.nan))
-    with pytest.raises(DeviceError, match="the base can't be told a left that is not a number"):
+    with pytest.raises(DeviceError, match="the base doesn't take a left that is not a number"):
         write("base", WheelSpeeds(10**400, 0.0))
-    with pytest.raises(DeviceError, match="the base can't be told a left that is not a number"):
+    with pytest.raises(DeviceError, match="the base doesn't take a left that is not a number"):
         write("base", WheelSpeeds("fast", 0.0))  # type: ignore[arg-type]
-    with pytest.raises(DeviceError, match="the base can't be told a left that is not finite"):
+    with pytest.raises(DeviceError, match="the base doesn't take a left that is not finite"):
         write("base", WheelSpeeds(math.inf, 0.0))
 
 
@@ -173,9 +173,9 @@ def test_readings_that_cease_and_come_back() -> None:
         until(lambda: served(loop))
         del driver.told["front"]
         until(lambda: loop.silent("front"))
-        with pytest.raises(DeviceSilent, match="the front is silent: it tells nothing new"):
+        with pytest.raises(DeviceSilent, match="the front is silent: it reports nothing new"):
             loop.read("front")
-        until(lambda: ("front", "it tells nothing new") in changes)
+        until(lambda: ("front", "it reports nothing new") in changes)
         assert loop.silent("base") is None  # one device of a port is silent, the others go on
         driver.told["front"] = Distance(2.0)
         until(lambda: loop.silent("front") is None)
@@ -211,7 +211,7 @@ def test_readings_that_cannot_be_used(told: Reading | DeviceError) -> None:
 def test_readings_that_cannot_be_true(kind: str, reading: Reading, reason: str) -> None:
     device = Device("thing", kind, "test", scale=2.0)
     loop = DeviceLoop(TestDriver(), (device,))
-    loop._tell("thing", reading, time.monotonic())
+    loop._take_reading("thing", reading, time.monotonic())
     assert reason in str(loop.silent("thing"))
     with pytest.raises(DeviceSilent):
         loop.read("thing")
@@ -228,7 +228,7 @@ def test_readings_that_can_be_true() -> None:
         ("imu", Motion(1.0)),
     ):
         loop = DeviceLoop(TestDriver(), (Device("thing", kind, "test"),))
-        loop._tell("thing", reading, time.monotonic())
+        loop._take_reading("thing", reading, time.monotonic())
         assert loop.read("thing") is reading
 
 
@@ -286,7 +286,7 @@ def test_a_driver_that_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
         until(lambda: served(loop))
         driver.acts = lambda: freed.wait(30.0)
         until(lambda: all(map(loop.silent, loop.devices)))
-        with pytest.raises(DeviceSilent, match="the base is silent: it tells nothing new"):
+        with pytest.raises(DeviceSilent, match="the base is silent: it reports nothing new"):
             loop.read("base")
         began = time.monotonic()
         loop.close()

@@ -10,9 +10,9 @@ from btlang.devices.serial_board.frames import MOST, FrameReader, crc16, decode_
 from btlang.devices.serial_board.messages import (
     read_answer,
     read_ask_hello,
+    read_command_head,
+    read_commands,
     read_hello,
-    read_tell_commands,
-    read_tell_head,
 )
 from tests.profiles import searches
 
@@ -81,7 +81,7 @@ def test_a_frame_with_one_wrong_byte_is_refused(message: bytes, place: int, chan
 @searches(200, 20_000)
 @given(st.sampled_from([0x01, 0x02, 0x03, 0x81, 0x82]), st.binary(max_size=MOST))
 def test_messages_of_any_bytes(kind: int, data: bytes) -> None:
-    for read in (read_answer, read_hello, read_tell_head, read_tell_commands, read_ask_hello):
+    for read in (read_answer, read_hello, read_command_head, read_commands, read_ask_hello):
         read(bytes([kind]) + data)
         if data:
             read(data)

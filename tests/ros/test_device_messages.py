@@ -62,13 +62,13 @@ def test_readings_there_and_back(kind: str) -> None:
 @pytest.mark.parametrize("kind", COMMANDS)
 def test_commands_there_and_back(kind: str) -> None:
     command = COMMANDS[kind]
-    assert values(command) == values(TRANSLATIONS[kind](SETTING).command(TRANSLATIONS[kind](SETTING).told(command)))
+    assert values(command) == values(TRANSLATIONS[kind](SETTING).command(TRANSLATIONS[kind](SETTING).sent(command)))
 
 
 @pytest.mark.parametrize("kind", [kind for kind in KINDS.values() if kind.moves], ids=lambda kind: kind.name)
 def test_what_brings_to_rest_does_so_there(kind: Any) -> None:
     there = TRANSLATIONS[kind.name](SETTING)
-    assert there.command(there.told(kind.command())) == kind.command()
+    assert there.command(there.sent(kind.command())) == kind.command()
 
 
 def test_the_wheels_of_a_base_roll_as_its_odometry_says() -> None:
@@ -91,7 +91,7 @@ def test_the_wheels_of_a_base_roll_as_its_odometry_says() -> None:
         ("imu", IMU, "not a number"),
         ("battery", BatteryState(percentage=nan), "no percentage"),
         ("battery", BatteryState(percentage=55.0), "no percentage"),
-        ("joint", JointState(name=["wrist"], position=[1.0]), "nothing of the joint"),
+        ("joint", JointState(name=["wrist"], position=[1.0]), "doesn't report the joint"),
         ("joint", JointState(name=["elbow"]), "no position"),
         ("joint", JointState(name=["elbow"], position=[nan]), "not a number"),
         ("drive", TURNED, "invalid quaternion"),

@@ -79,7 +79,7 @@ class Caller:
         self.told: list[tuple[float, str]] = []
         self.ended: list[tuple[bool, str]] = []
 
-    def tell(self, share: float, state: str) -> None:
+    def report(self, share: float, state: str) -> None:
         self.told.append((share, state))
 
     def end(self, success: bool, reason: str) -> None:

@@ -61,7 +61,7 @@ class Robot(Client):
 
     def _begin(self, goal: HeldGoal) -> Any:
         self.goals.append(goal)
-        goal.tell(self.action.Feedback(distance_remaining=2.5))
+        goal.publish_feedback(self.action.Feedback(distance_remaining=2.5))
 
         def cancel(reason: str) -> None:
             self.cancelled.append(goal)

@@ -38,7 +38,7 @@ def margin(depth: int) -> str:
 
 
 class Markers:
-    """Writes attributes. `problems` are names and texts that no XML file can hold, each told once."""
+    """Writes attributes. `problems` are names and texts that no XML file can hold, each reported once."""
 
     def __init__(self) -> None:
         self.problems: list[Diagnostic] = []

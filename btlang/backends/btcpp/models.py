@@ -52,7 +52,7 @@ class Uses:
         return list(self._ports)
 
     def _is_described(self, node_id: str) -> bool:
-        """Whether more is known of a node than a mission tells: its kind and its outputs."""
+        """Whether more is known of a node than a mission shows: its kind and its outputs."""
         model = self._known.get(node_id)
         return model is not None and (bool(model.text) or any(port.type or port.text for port in model.ports))
 
@@ -69,7 +69,7 @@ class Uses:
             self._given[name] = self._given.get(name, ports) & ports
 
     def kind(self, node_id: str) -> str:
-        """Action, Condition, Control or Decorator: as told, else as it is used."""
+        """Action, Condition, Control or Decorator: as declared, else as it is used."""
         found = self._kinds.get(node_id)
         if found is None:
             found = self._kinds[node_id] = self._kind(node_id)
@@ -99,7 +99,7 @@ class Uses:
         return model if given is None else model.replace(ports=tuple(p for p in model.ports if p.name in given))
 
     def port_types(self, node_id: str) -> dict[str, str]:
-        """The C++ types of the ports of such a node; of any other none are told."""
+        """The C++ types of the ports of such a node; none for any other."""
         found = self._types.get(node_id)
         if found is None:
             ports = self._model(node_id).ports if node_id in self._ports else ()
@@ -137,7 +137,7 @@ class Uses:
 
 
 def model_part(models: list[NodeModel], ids: dict[str, str]) -> Element | None:
-    """TreeNodesModel, None where there is nothing to tell."""
+    """TreeNodesModel, None if there are no models."""
     if not models:
         return None
     return Element(MODEL, (), tuple(_element(model, ids) for model in models))
@@ -152,6 +152,6 @@ def _element(model: NodeModel, ids: dict[str, str]) -> Element:
 
 
 def _port(port: PortModel) -> Element:
-    told = (("name", port.name), ("type", port.type or None), ("default", port.default))
-    attributes = tuple((key, text) for key, text in told if text is not None)
+    pairs = (("name", port.name), ("type", port.type or None), ("default", port.default))
+    attributes = tuple((key, text) for key, text in pairs if text is not None)
     return Element(f"{port.direction}_port", attributes, (port.text,) if port.text else ())

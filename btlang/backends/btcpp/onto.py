@@ -62,7 +62,7 @@ class _Onto:
     def __init__(self, original: Source, tree: Tree, vocabulary: Lexicon) -> None:
         self._vocabulary = vocabulary
         self._file = XmlFile(scanned(original))
-        is_there = tree.name in (head.name for head in self._file.heads)  # then it is the main tree, whatever is told
+        is_there = tree.name in (head.name for head in self._file.heads)  # then it is the main tree in any case
         self._before = read_xml(original, tree.name if is_there else "")
         subtrees = tuple((name, _apart(root)) for name, root in tree.subtrees)
         self._after = tree.replace(root=_apart(tree.root), subtrees=subtrees)
@@ -105,7 +105,7 @@ class _Onto:
         gone = [root for name, root in named.items() if name not in self._new]
         come = [root for name, root in self._new.items() if name not in named and name not in self._elsewhere]
         included = [(root, self._new[name]) for name, root in self._elsewhere.items() if name in self._new]
-        alignment = Alignment([*roots, *included], gone, come, _told)
+        alignment = Alignment([*roots, *included], gone, come, _features)
         wrong = [_in_other_file(name, root, self._new[name]) for name, root in self._elsewhere.items()
                  if name in self._new and not alignment.is_equal(root, self._new[name])]  # fmt: skip
         if wrong:
@@ -178,9 +178,9 @@ class _Onto:
             new = self._renamed.get(old, old)
             if not old and self._after.name != self._before.name:
                 new = self._after.name or MAIN_TREE
-                told = self._file.attributes.get(MAIN)
-                if told is not None:
-                    self._text.attributes(0, ((MAIN, told),), ((MAIN, self._ids[self._after.name]),))
+                main = self._file.attributes.get(MAIN)
+                if main is not None:
+                    self._text.attributes(0, ((MAIN, main),), ((MAIN, self._ids[self._after.name]),))
             elif new == old:
                 continue
             there = self._file.document.attributes(head.index)
@@ -355,7 +355,7 @@ def _in_other_file(name: str, old: Node, new: Node) -> Diagnostic:
     return diagnostic("BT135", new.span or NOWHERE, name=name, path=path)
 
 
-def _told(node: Node) -> list[tuple[str, str]]:
+def _features(node: Node) -> list[tuple[str, str]]:
     return [port for port in node.ports if not is_editors(port[0])]
 
 

@@ -68,8 +68,8 @@ class Rewriter:
         self._changes: list[tuple[int, int, str]] = []
         self._leads: dict[int, list[str]] = {}  # comments to come before nodes
         self._removed: set[int] = set()  # comments, by their `id()`
-        told = [note for note in document.notes if not note.is_text]
-        self._spans = {id(note): span for note, span in zip(told, self._layout.notes, strict=True)}
+        comments = [note for note in document.notes if not note.is_text]
+        self._spans = {id(note): span for note, span in zip(comments, self._layout.notes, strict=True)}
         self._parents: list[int] = []
         self._before: list[int] = []  # the element before each inside the same one, -1 for none
         self._children: list[list[int]] = [[] for _ in document.elements]

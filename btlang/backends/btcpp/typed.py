@@ -172,7 +172,7 @@ class _Typing:
     # -- writing
 
     def _type(self, facts: _Facts) -> str:
-        """The type of an entry, "" where nothing tells."""
+        """The type of an entry, "" if nothing shows it."""
         is_given = not facts.given.isdisjoint((int, float))
         if facts.is_decimal and (is_given or facts.is_set or any(kind in _DECIMALS for kind in facts.ports)):
             return "double"

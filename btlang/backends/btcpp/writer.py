@@ -8,7 +8,7 @@ from btlang.backends.btcpp.markup import INDENT, Markers, margin, sound_comment
 from btlang.backends.btcpp.models import Uses, model_part
 from btlang.backends.btcpp.names import tree_ids
 from btlang.backends.btcpp.typed import typed
-from btlang.frontends.btcpp.dialect import told_by_shapes
+from btlang.frontends.btcpp.dialect import dialect_of_shapes
 from btlang.frontends.btcpp.file import SPOKEN_NAME
 from btlang.frontends.btcpp.kept import Kept, kept_in
 from btlang.frontends.btcpp.models import why_no_port
@@ -66,7 +66,7 @@ class _Writer:
             self._find_comments(tree.origin)
         else:
             kinds = {model.id: model.kind for model in tree.models}
-            self._kind = lambda node_id: kinds.get(node_id, "")  # any other tag is told by the origin
+            self._kind = lambda node_id: kinds.get(node_id, "")  # the origin has any other tag
             written = {name: dict(own.attributes).get("ID", name) for name, own in self._origin.trees.items()}
             self._ids = {name: ID for name, ID in written.items() if name != ID}
 
@@ -104,10 +104,10 @@ class _Writer:
         return (("BTCPP_format", "4"), *main) if self._dialect == 4 else self._format_3() + main
 
     def _format_3(self) -> Pairs:
-        """Told only where the file would be taken for one of format 4."""
+        """Declared only if the file would otherwise be taken for one of format 4."""
         spelled = (spelled_3(node, self._kind, self._ids) for node in self._tree.walk())
         shapes = {(tag, *(key for key, _ in pairs)) for tag, pairs in spelled}
-        return (("BTCPP_format", "3"),) if told_by_shapes(shapes) == 4 else ()
+        return (("BTCPP_format", "3"),) if dialect_of_shapes(shapes) == 4 else ()
 
     def _items(self) -> tuple[Element | Markup | str, ...]:
         """The main tree, the others in their order, the models; with the comments of a mission."""
@@ -194,7 +194,7 @@ def _marked(lines: Iterable[str]) -> tuple[str, ...]:
 
 
 def _own_origin(tree: Tree, dialect: int) -> XmlOrigin | None:
-    """What the file of the tree told, where it is of this tree and dialect."""
+    """What the file of the tree held beside it, if it is of this tree and dialect."""
     origin = tree.origin
     if isinstance(origin, XmlOrigin) and origin.dialect == dialect:
         if origin.root is tree.root and origin.subtrees is tree.subtrees:

@@ -25,7 +25,7 @@ _SIGNS = {"+=": "increase", "-=": "decrease"}
 class Given(Record):
     """What a Script gives a key: `operation` is that of ast.Assign, or "time" for milliseconds of a time in seconds.
 
-    `is_number` is None where the code does not tell, as it only copies a value.
+    `is_number` is None if the code doesn't show it, as it only copies a value.
     """
 
     key: str
@@ -82,10 +82,10 @@ def compared_by(code: str, texts: Mapping[str, str]) -> Comparison | None:
         arguments.append((_WAYS[sign], text))
         keys.add(key)
         numbers.add(is_number)
-    told = numbers - {None}
-    if len(keys) != 1 or len(told) > 1:
+    known = numbers - {None}
+    if len(keys) != 1 or len(known) > 1:
         return None
-    return Comparison(keys.pop(), told.pop() if told else None, tuple(arguments))
+    return Comparison(keys.pop(), known.pop() if known else None, tuple(arguments))
 
 
 class Computed(Record):

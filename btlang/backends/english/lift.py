@@ -46,7 +46,7 @@ class _Place(Record):
 
 
 class Lifter:
-    """Raises the nodes of one tree, of which `known` tells what can be said.
+    """Lifts the nodes of one tree to English. `known` are its names and loops.
 
     With `natural` False every node is said by its id. `comments` are those of the file that
     the tree was read from, `refused` the bodies of loops that turned out to be none.
@@ -140,7 +140,7 @@ class Lifter:
             self.printer.note(_first_line(said), lines)
 
     def _exact(self, node: Node, children: tuple[Candidate, ...], condition: ast.Ast | None) -> ast.Ast:
-        """A condition is said as one, as only its words tell of what kind it is where no keyword entry does."""
+        """A condition is said as one: without a keyword entry, only its words show its kind."""
         if isinstance(condition, ast.Exact) and self._kind(node.id) == "Condition":
             made: ast.Ast = ast.Check(condition, NOWHERE)
         else:
@@ -256,7 +256,7 @@ class Lifter:
         return self._kind(node.id) == "Condition" or _asks(node)
 
     def _kind(self, node_id: str) -> str:
-        """What the tree or a keyword entry tells of a kind of node, "" for one of the language itself."""
+        """The kind of a node by the tree or a keyword entry, "" for one of the language itself."""
         if node_id in self._vocabulary.nodes:
             return ""
         entry = self._vocabulary.entry(node_id)

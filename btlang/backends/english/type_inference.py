@@ -112,7 +112,7 @@ class TypeInference:
     # -- reading
 
     def read(self, root: Node, owners: Mapping[str, str]) -> None:
-        """Notes what a tree tells of values."""
+        """Notes what a tree shows about values."""
         stack = [(root, owners)]
         while stack:
             node, own = stack.pop()
@@ -257,7 +257,7 @@ class TypeInference:
         return "text"
 
     def is_doubtful(self, value: Value) -> bool:
-        """Whether only its first use tells the type, and another use could tell another one."""
+        """Whether only its first use gives the type, and another use could give another one."""
         group = self._groups.get(self._first(value), [])
         texts = [text for one in group for text in self._texts.get(one, ())]
         others = [kind for kind, one in self._vocabulary.types.items() if one.kind in ("number", "names")]

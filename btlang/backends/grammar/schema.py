@@ -20,7 +20,7 @@ _REFERENCE = r"\{[^{}]+\}"  # to an entry of the blackboard
 _NUMBER = r"-?[0-9]+(\.[0-9]+)?(e-?[0-9]+)?"
 _PATTERNS = {"time": r"([01][0-9]|2[0-3]):[0-5][0-9]"}
 _NUMBERS = {"int": r"-?[0-9]+", "unsigned int": "[0-9]+", "double": _NUMBER, "bool": "true|false"}
-_TOLD = ("phrase", "sentence", "place")  # what a tree tells about its text
+_TEXTS = ("phrase", "sentence", "place")  # what a tree says about its text
 
 
 def to_schema(vocabulary: Lexicon) -> str:
@@ -31,7 +31,7 @@ def to_schema(vocabulary: Lexicon) -> str:
     with open(SCHEMA, encoding="utf-8") as file:
         schema: dict[str, Any] = json.load(file)
     general = schema["$defs"]["node"]
-    own = {key: part for key, part in general["properties"].items() if key not in (*_TOLD, "id", "ports", "children")}
+    own = {key: part for key, part in general["properties"].items() if key not in (*_TEXTS, "id", "ports", "children")}
     entries = [entries[0] for entries in vocabulary.entries.values()]
     kinds = [kind for kind in CATALOGUE.values() if kind.id not in vocabulary.entries]
     schema["$id"] = "urn:btlang:mission:1"
@@ -102,14 +102,14 @@ def _value(kind: ValueType, vocabulary: Lexicon) -> dict[str, Any]:
     if kind.kind == "text":
         return {"type": "string"}
     about = "".join(_unit(kind))
-    told = {"description": about} if about else {}
+    described = {"description": about} if about else {}
     if kind.kind == "names":
         reference = {"pattern": f"^{_REFERENCE}$"}
-        return {**told, "type": "string", "anyOf": [{"enum": vocabulary.values.names(kind.name)}, reference]}
+        return {**described, "type": "string", "anyOf": [{"enum": vocabulary.values.names(kind.name)}, reference]}
     pattern = _PATTERNS.get(kind.kind) or (r"[1-9][0-9]*" if kind.whole else _NUMBER)
     if kind.least is not None:
         pattern = pattern.removeprefix("-?")
-    return {**told, "type": "string", "pattern": f"^({pattern}|{_REFERENCE})$"}
+    return {**described, "type": "string", "pattern": f"^({pattern}|{_REFERENCE})$"}
 
 
 def _unit(kind: ValueType) -> Iterator[str]:

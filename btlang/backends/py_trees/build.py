@@ -45,7 +45,7 @@ def to_py_trees(
     those of the mission.
 
     Raises MissionError with all that is wrong with the tree (BT126, BT131, BT132), a leaf that has no keyword entry or
-    cannot be bound (BT132), or all that cannot be told to py_trees (BT134).
+    cannot be bound (BT132), or all that py_trees can't express (BT134).
     """
     plan = plan_of(tree, vocabulary, is_action)
     known: dict[str, Any] = {

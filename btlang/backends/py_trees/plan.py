@@ -1,4 +1,4 @@
-"""How each node of a tree is told to py_trees: as its own node where that means the same, else as one of ours."""
+"""How py_trees expresses each node of a tree: as its own node if that means the same, else as one of ours."""
 
 from __future__ import annotations
 
@@ -64,14 +64,14 @@ class Plan(Record):
     uses: frozenset[str]  # what is called
 
 
-class _Untold(Exception):
-    """Why a node cannot be told to py_trees."""
+class _Inexpressible(Exception):
+    """Why py_trees can't express a node."""
 
 
 def plan_of(tree: Tree, vocabulary: Lexicon, is_action: Callable[[Node], bool] | None = None) -> Plan:
     """The plan of a tree, each use of a subtree for itself. `is_action` says which leaves take more than one tick.
 
-    Raises MissionError with all that is wrong with the tree (BT126, BT131, BT132), or all that cannot be told (BT134).
+    Raises MissionError with all errors of the tree (BT126, BT131, BT132), or all that py_trees can't express (BT134).
     """
     problems = tree_problems(tree, vocabulary, lambda id: LeafBinding(anything))
     if problems:
@@ -138,12 +138,12 @@ class _Planner:
         part = Part("Skipped", self._name(node))
         try:
             if self._depths[index] == DEEPEST + 1:  # once is enough
-                raise _Untold(f"it is more than {DEEPEST} levels deep, and py_trees recurses at each level")
+                raise _Inexpressible(f"it is more than {DEEPEST} levels deep, and py_trees recurses at each level")
             if self._always_skipped(node):
                 self._skips[index] = True
             else:
-                part = self._told(instance, below, children)
-        except _Untold as problem:
+                part = self._expressed(instance, below, children)
+        except _Inexpressible as problem:
             span = node.span or NOWHERE
             self._problems.append(diagnostic("BT134", span, id=node.id, target="py_trees", reason=str(problem)))
         self._uses.add(part.make)
@@ -151,7 +151,7 @@ class _Planner:
             self._uses.add("interrupting")
         return part
 
-    def _told(self, instance: NodeInstance, below: list[int], children: tuple[Part, ...]) -> Part:
+    def _expressed(self, instance: NodeInstance, below: list[int], children: tuple[Part, ...]) -> Part:
         node, index = instance.node, instance.index
         if not children:
             return self._leaf(instance)
@@ -192,7 +192,7 @@ class _Planner:
             if port[:1] != "_" or port == "_autoremap" or is_of_editors(port):
                 continue
             if port != "_skipIf" or text not in ("true", "false"):
-                raise _Untold(f"py_trees has no {port}")
+                raise _Inexpressible(f"py_trees has no {port}")
         return node.port("_skipIf") == "true"
 
     def _name(self, node: Node) -> str:
@@ -249,7 +249,7 @@ def _ours(node: Node) -> tuple[str, tuple[tuple[str, Any], ...]]:
         return node.id, ()
     if node.id not in _NUMBERS:
         what = "with catch_on_halt " if node.id == "TryCatch" else ""
-        raise _Untold(f"py_trees has no such node {what}and btlang has no replacement")
+        raise _Inexpressible(f"py_trees has no such node {what}and btlang has no replacement")
     make, names = _NUMBERS[node.id]
     arguments: list[tuple[str, Any]] = []
     for name, port in zip(names, CATALOGUE[node.id].ports.items(), strict=True):
@@ -261,7 +261,7 @@ def _argument(node: Node, name: str, port: str, kind: Port) -> list[tuple[str, A
     """A port of numbers as an argument of our class; times are in seconds there, and need a clock."""
     text = node.port(port) or kind.default or ""
     if "{" in text:
-        raise _Untold(f"its {port} is a value of the mission, and py_trees needs a number")
+        raise _Inexpressible(f"its {port} is a value of the mission, and py_trees needs a number")
     if kind.unit == "ms":
         return [(name, float(text) * 0.001), ("now", Name("now"))]
     if kind.unit == "Hz":
@@ -285,7 +285,7 @@ _NUMBERS: dict[str, tuple[str, tuple[str, ...]]] = {
 def _truth(node: Node, port: str) -> bool:
     text = node.port(port) or CATALOGUE[node.id].ports[port].default or ""
     if "{" in text:
-        raise _Untold(f"its {port} is a value of the mission, and py_trees needs a constant")
+        raise _Inexpressible(f"its {port} is a value of the mission, and py_trees needs a constant")
     return text in ("true", "1")
 
 

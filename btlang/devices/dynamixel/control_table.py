@@ -27,7 +27,7 @@ GOAL = Struct("<Ii")
 STATE = Struct("<BBBhiiB")
 """What is read in each cycle: torque, hardware error, watchdog, load, velocity, position, temperature."""
 STATE_ADDRESSES = (TORQUE, HARDWARE_ERROR, WATCHDOG, *range(LOAD, POSITION + 4), TEMPERATURE)
-"""Where the bytes of STATE are; the servo is told to show them side by side (its indirect addresses)."""
+"""Where the bytes of STATE are; the servo's indirect addresses are set to show them side by side."""
 INDIRECT = b"".join(address.to_bytes(2, "little") for address in STATE_ADDRESSES)
 
 WATCHDOG_UNIT = 0.02

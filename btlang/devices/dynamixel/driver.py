@@ -72,21 +72,21 @@ class DynamixelDriver:
             target = JointTarget() if id in self._absent else commands.get(servo.name)
             orders[id] = servo.orders(target if isinstance(target, JointTarget) else None)
         self._send(orders)
-        told: dict[str, Reading | DeviceError] = {}
+        readings: dict[str, Reading | DeviceError] = {}
         for id, state in self._polling.read().items():
             servo = self._servos[id]
             try:
-                told[servo.name] = servo.reading(state)
+                readings[servo.name] = servo.reading(state)
             except Restarted as problem:
                 self._lose(servo, problem, pause=0.0)
             except DeviceError as problem:
-                told[servo.name] = problem
+                readings[servo.name] = problem
         self._client.flush()  # where nobody was asked
         for id in self._polling.silent():
             servo = self._servos[id]
             self._lose(servo, DeviceSilent(f"{servo.where} doesn't answer"))
-        told.update((self._servos[id].name, absent.reason) for id, absent in self._absent.items())
-        return told
+        readings.update((self._servos[id].name, absent.reason) for id, absent in self._absent.items())
+        return readings
 
     def close(self) -> None:
         """Joints hold where they are or let go, as their option `at_end` says; the port is free then."""

@@ -152,7 +152,7 @@ class PacketReader:
         return True
 
     def _is_common(self) -> bool:
-        got = self._bytes  # its length tells it from a late answer to a question for other bytes
+        got = self._bytes  # its length distinguishes it from a late answer to a question for other bytes
         return (
             got[_HEAD] == STATUS
             and got[4] == BROADCAST

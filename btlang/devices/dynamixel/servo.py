@@ -113,8 +113,8 @@ class Servo:
         return Orders(table.GOAL.pack(fastest, goal), None if self._has_torque else True, self._is_tripped)
 
     def reading(self, state: bytes) -> JointState:
-        """What its state means. Raises Restarted where it has to be made ready again, DeviceError where it is at fault
-        or was told a goal that is none."""
+        """What its state means. Raises Restarted if it has to be made ready again, DeviceError if it is at fault or its
+        commanded goal isn't finite."""
         torque, error, watchdog, load, velocity, position, temperature = table.STATE.unpack_from(state)
         if torque > 1 or watchdog not in (WATCHDOG_SET, table.WATCHDOG_TRIPPED):
             self._has_torque = self._is_steady = False  # as far as is known; the position is none either
@@ -149,7 +149,7 @@ class Servo:
         """In ticks, within the limits, and the highest speed in units of the servo."""
         position, speed = target.position, target.speed
         if not math.isfinite(position or 0.0) or not math.isfinite(speed or 0.0):
-            self._refused = DeviceError(f"the {self.name} can't be told to go to {position} at a speed of {speed}")
+            self._refused = DeviceError(f"the {self.name} can't go to {position} at a speed of {speed}")
             return None, self._fastest
         if position is None or (speed is not None and speed <= 0):
             return None, self._fastest

@@ -25,7 +25,7 @@ class SoundCard:
     """See btlang.devices.driver.Driver. The port is a device of ALSA such as "default" or "hw:1", or a file that ends
     in .wav. One microphone or one speaker on it; sound is mono, 16 bits, 16 kHz.
 
-    A command of a speaker that is told again goes on; another one begins, and one without samples is silence at once.
+    A speaker plays on if its command is repeated; a different one begins, and one without samples is silence at once.
     """
 
     kinds: ClassVar[Sequence[str]] = ("microphone", "speaker")

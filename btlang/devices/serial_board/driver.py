@@ -15,11 +15,11 @@ from btlang.devices.serial_board.line import Line, begin_session, find_board
 from btlang.devices.serial_board.messages import (
     Answer,
     Channel,
-    Told,
+    Commands,
     answer_size,
+    command_message,
+    command_size,
     read_answer,
-    tell_message,
-    tell_size,
 )
 from btlang.devices.serial_board.options import BoardOptions, ChannelOptions, read_options
 from btlang.devices.serial_board.values import COMMANDS, KIND_NUMBERS, READINGS, Tally
@@ -42,7 +42,7 @@ class _Sent(Record):
 
 
 class _Known(Record):
-    """What a device told last: since when its samples have been counted, and since when its value has been the same."""
+    """A device's last sample: since when its samples have been counted, and since when its value has been the same."""
 
     count: int
     counted: float
@@ -81,7 +81,7 @@ class SerialBoard:
                 tally.restart()
         self._session, self._name = hello.session, hello.name
         self._begin(hello.channels, time.monotonic())
-        moving = tell_size([device.kind for device in self._devices.values() if KINDS[device.kind].moves])
+        moving = command_size([device.kind for device in self._devices.values() if KINDS[device.kind].moves])
         if moving > MOST_MESSAGE:
             raise DeviceError(
                 f"the board '{hello.name}' has too many motors: a message has {MOST_MESSAGE} bytes at most"
@@ -102,19 +102,19 @@ class SerialBoard:
         if line is None:
             raise DeviceError("the port is not open")
         refused = self._send(line, commands)
-        told: dict[str, Reading | DeviceError] = {}
+        readings: dict[str, Reading | DeviceError] = {}
         until = time.monotonic() + self._patience
         while True:
             for message in line.receive(until):
-                told |= self._take(message)
+                readings |= self._take(message)
             if self._sequence not in self._sent:  # it is answered; answers to those before may come first
-                return told | refused
+                return readings | refused
             now = time.monotonic()
             if now - self._answered > _LOST:
                 raise DeviceError(f"the board '{self._name}' at {line.path} doesn't answer")
             if now >= until:
                 self._patience = min(_PATIENCE, 2 * self._patience)
-                return told | refused
+                return readings | refused
 
     def close(self) -> None:
         """See Driver."""
@@ -160,7 +160,7 @@ class SerialBoard:
                 refused[name] = problem
                 data = COMMANDS[kind].pack(rest)
             if not KINDS[kind].moves:
-                if self._kept.get(name) == data or tell_size([*kinds, kind]) > MOST_MESSAGE:
+                if self._kept.get(name) == data or command_size([*kinds, kind]) > MOST_MESSAGE:
                     continue
                 kept[name] = data
             kinds.append(kind)
@@ -168,11 +168,11 @@ class SerialBoard:
         self._sequence = (self._sequence + 1) % 2**16
         self._sent = {number: sent for number, sent in self._sent.items() if now - sent.time <= _OLD}
         self._sent[self._sequence] = _Sent(now, kept)
-        line.send(tell_message(Told(self._session, self._sequence, tuple(packed))))
+        line.send(command_message(Commands(self._session, self._sequence, tuple(packed))))
         return refused
 
     def _take(self, message: bytes) -> dict[str, Reading | DeviceError]:
-        """What devices tell in an answer; nothing where it isn't one that can be used."""
+        """The readings in an answer; none if the answer can't be used."""
         answer, now = read_answer(message), time.monotonic()
         if answer is None:
             return {}
@@ -192,7 +192,7 @@ class SerialBoard:
 
     def _read(self, answer: Answer, now: float) -> dict[str, Reading | DeviceError]:
         kinds = {name: KINDS[self._devices[name].kind] for name in self._users.values()}
-        told: dict[str, Reading | DeviceError] = {
+        readings: dict[str, Reading | DeviceError] = {
             name: Reading() for name, kind in kinds.items() if kind.reading is None
         }
         claims = Counter(sample.number for sample in answer.samples)
@@ -209,10 +209,10 @@ class SerialBoard:
                 known = self._counted(name, sample.count, sample.integers, now)
                 self._check_age(name, channel, known, now)
                 if known.moved:
-                    told[name] = READINGS[channel.kind].reading(sample.integers, self._tallies[name])
+                    readings[name] = READINGS[channel.kind].reading(sample.integers, self._tallies[name])
             except DeviceError as problem:
-                told[name] = problem
-        return told
+                readings[name] = problem
+        return readings
 
     def _counted(self, name: str, count: int, integers: tuple[int, ...], now: float) -> _Known:
         last = self._known.get(name)

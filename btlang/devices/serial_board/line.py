@@ -69,7 +69,7 @@ class Line:
         return "nothing answers"
 
     def stop(self) -> None:
-        """Tells a board to bring all to rest, as far as it can be reached."""
+        """Commands a board to bring everything to rest, as far as it can be reached."""
         with suppress(DeviceError):
             for _ in range(3):  # one may be damaged on its way
                 self.send(bytes([STOP]))

@@ -40,7 +40,7 @@ class Hello(Record):
 
 
 class Sample(Record):
-    """What a channel tells in an answer: `count` goes on by one with each sample."""
+    """A channel's part of an answer: `count` goes up by one with each sample."""
 
     number: int
     kind: str
@@ -49,7 +49,7 @@ class Sample(Record):
 
 
 class Answer(Record):
-    """What a board tells of all channels that measure something. `sequence` is that of the message it answers,
+    """A board's samples of all channels that measure something. `sequence` is that of the message it answers,
     `milliseconds` the time since it was started, in 32 bits."""
 
     session: int
@@ -58,8 +58,8 @@ class Answer(Record):
     samples: tuple[Sample, ...]
 
 
-class Told(Record):
-    """What a board is told: the bytes of the command for each channel."""
+class Commands(Record):
+    """Commands to a board: the number and kind of each channel, and the bytes of its command."""
 
     session: int
     sequence: int
@@ -108,13 +108,13 @@ def read_hello(message: bytes) -> Hello | None:
     return Hello(version, name, session, before, channels)
 
 
-def tell_message(told: Told) -> bytes:
-    """Tells a board commands; without any it is a heartbeat."""
-    commands = b"".join(_COMMAND.pack(number, KIND_NUMBERS[kind]) + data for number, kind, data in told.commands)
-    return _TELL.pack(TELL, told.session, told.sequence) + commands
+def command_message(message: Commands) -> bytes:
+    """The message with commands to a board; without any it is a heartbeat."""
+    commands = b"".join(_COMMAND.pack(number, KIND_NUMBERS[kind]) + data for number, kind, data in message.commands)
+    return _TELL.pack(TELL, message.session, message.sequence) + commands
 
 
-def read_tell_head(message: bytes) -> tuple[int, int] | None:
+def read_command_head(message: bytes) -> tuple[int, int] | None:
     """Session and sequence."""
     if len(message) < _TELL.size:
         return None
@@ -122,7 +122,7 @@ def read_tell_head(message: bytes) -> tuple[int, int] | None:
     return session, sequence
 
 
-def read_tell_commands(message: bytes) -> tuple[tuple[int, str, bytes], ...] | None:
+def read_commands(message: bytes) -> tuple[tuple[int, str, bytes], ...] | None:
     """None where they can't be read to their end."""
     commands, at = [], _TELL.size
     while at < len(message):
@@ -138,7 +138,7 @@ def read_tell_commands(message: bytes) -> tuple[tuple[int, str, bytes], ...] | N
 
 
 def answer_message(answer: Answer) -> bytes:
-    """A board tells its samples."""
+    """The message with a board's samples."""
     samples = b"".join(
         _READING.pack(sample.number, KIND_NUMBERS[sample.kind], sample.count)
         + READINGS[sample.kind].layout.pack(*sample.integers)
@@ -165,7 +165,7 @@ def read_answer(message: bytes) -> Answer | None:
     return Answer(session, sequence, milliseconds, tuple(samples))
 
 
-def tell_size(kinds: Sequence[str]) -> int:
+def command_size(kinds: Sequence[str]) -> int:
     """Bytes of a message with commands for channels of these kinds."""
     return _TELL.size + sum(_COMMAND.size + COMMANDS[kind].layout.size for kind in kinds)
 

@@ -1,4 +1,4 @@
-"""A simulated board, which does byte for byte what the firmware does: its wheels turn and its joints move as told.
+"""A simulated board, which does byte for byte what the firmware does: its wheels and joints obey their commands.
 
 `python -m btlang.devices.serial_board.simulated_board NAME` shows one on a pty, and prints the path of its port.
 """
@@ -36,8 +36,8 @@ from btlang.devices.serial_board.messages import (
     answer_message,
     hello_message,
     read_ask_hello,
-    read_tell_commands,
-    read_tell_head,
+    read_command_head,
+    read_commands,
 )
 from btlang.devices.serial_board.simulated_line import SimulatedLine
 from btlang.devices.serial_board.values import COMMANDS, READINGS
@@ -68,7 +68,7 @@ _JOINT_SPEED = 90.0  # degrees a second
 
 
 class SimulatedBoard:
-    """A board of these channels. Its sensors tell `readings`, by number; `commands` are what it does.
+    """A board of these channels. Its sensors measure `readings`; it obeys `commands`; both are by number.
 
     Faults: the channels in `frozen` measure nothing new; those in `claims` answer with another number; `ahead` are
     seconds that its clock is ahead.
@@ -87,7 +87,7 @@ class SimulatedBoard:
         self.commands: dict[int, Command] = {
             c.number: command() for c in self.channels if (command := KINDS[c.kind].command)
         }
-        self._told: dict[int, float] = {}
+        self._command_times: dict[int, float] = {}
         self._counts = dict.fromkeys(self.readings, 0)
         self._sampled = dict.fromkeys(self.readings, now)
         self._samples = {number: self._integers(number) for number in self.readings}
@@ -99,8 +99,8 @@ class SimulatedBoard:
     def speeds(self) -> tuple[float, float]:
         """Metres a second of the wheels of its first drive."""
         drives = (command for command in self.commands.values() if isinstance(command, WheelSpeeds))
-        told = next(drives, WheelSpeeds())
-        return told.left, told.right
+        command = next(drives, WheelSpeeds())
+        return command.left, command.right
 
     def receive(self, data: bytes, now: float) -> bytes:
         """What it answers to bytes of the line."""
@@ -109,9 +109,9 @@ class SimulatedBoard:
         )
 
     def turn(self, now: float) -> None:
-        """Time has passed: moves, measures, and brings to rest what is no longer told to move."""
-        for number, told in list(self._told.items()):
-            if now - told >= SILENCE:
+        """Time has passed: moves, measures, and brings to rest every channel whose command is too old."""
+        for number, commanded in list(self._command_times.items()):
+            if now - commanded >= SILENCE:
                 self._rest(number)
         for number, command in self.commands.items():
             if number in self.readings:
@@ -134,11 +134,11 @@ class SimulatedBoard:
                 self._session = session
                 self._rest_all()
             yield hello_message(Hello(self._version, self.name, self._session, before, self.channels))
-        elif message[0] == TELL and (head := read_tell_head(message)):
+        elif message[0] == TELL and (head := read_command_head(message)):
             session, sequence = head
             if session == 0 or session != self._session:
                 yield answer_message(Answer(self._session, sequence, self._milliseconds(now), ()))
-            elif self._obey(read_tell_commands(message), now):
+            elif self._obey(read_commands(message), now):
                 samples = tuple(
                     Sample(
                         self.claims.get(channel.number, channel.number),
@@ -158,12 +158,12 @@ class SimulatedBoard:
         for number, kind, data in commands:
             self.commands[number] = COMMANDS[kind].unpack(data)
             if KINDS[kind].moves:
-                self._told[number] = now
+                self._command_times[number] = now
         return True
 
     def _rest(self, number: int) -> None:
         self.commands[number] = type(self.commands[number])()
-        self._told.pop(number, None)
+        self._command_times.pop(number, None)
 
     def _rest_all(self) -> None:
         for channel in self.channels:

@@ -91,8 +91,8 @@ def _distance(values: tuple[int, ...], tallies: Sequence[Tally]) -> Distance:
     return Distance(math.inf if values[0] == _U16[1] else values[0] / 1000)
 
 
-def _distance_integers(told: Distance) -> tuple[int, ...]:
-    return (_U16[1] if told.distance == math.inf else _integer(told.distance, 0.001, (0, _U16[1] - 1)),)
+def _distance_integers(reading: Distance) -> tuple[int, ...]:
+    return (_U16[1] if reading.distance == math.inf else _integer(reading.distance, 0.001, (0, _U16[1] - 1)),)
 
 
 def _wheels(values: tuple[int, ...], tallies: Sequence[Tally]) -> Wheels:
@@ -100,9 +100,9 @@ def _wheels(values: tuple[int, ...], tallies: Sequence[Tally]) -> Wheels:
     return Wheels(left, right, values[2] / 1000, values[3] / 1000)
 
 
-def _wheels_integers(told: Wheels) -> tuple[int, ...]:
-    ticks = [(round(metres / 0.0001) + 2**31) % 2**32 - 2**31 for metres in (told.left, told.right)]
-    return (*ticks, *(_integer(speed, 0.001, _I16) for speed in (told.left_speed, told.right_speed)))
+def _wheels_integers(reading: Wheels) -> tuple[int, ...]:
+    ticks = [(round(metres / 0.0001) + 2**31) % 2**32 - 2**31 for metres in (reading.left, reading.right)]
+    return (*ticks, *(_integer(speed, 0.001, _I16) for speed in (reading.left_speed, reading.right_speed)))
 
 
 def _motion(values: tuple[int, ...], tallies: Sequence[Tally]) -> Motion:
@@ -112,9 +112,9 @@ def _motion(values: tuple[int, ...], tallies: Sequence[Tally]) -> Motion:
     return Motion(turning / 100, ahead, left, up, known)
 
 
-def _motion_integers(told: Motion) -> tuple[int, ...]:
-    pushes = (_integer(push, 0.01, _I16, _I16[0]) for push in (told.ahead, told.left, told.up))
-    return (_integer(told.turning, 0.01, _I32), *pushes, _integer(told.heading, 0.01, _I32, _I32[0]))
+def _motion_integers(reading: Motion) -> tuple[int, ...]:
+    pushes = (_integer(push, 0.01, _I16, _I16[0]) for push in (reading.ahead, reading.left, reading.up))
+    return (_integer(reading.turning, 0.01, _I32), *pushes, _integer(reading.heading, 0.01, _I32, _I32[0]))
 
 
 def _charge(values: tuple[int, ...], tallies: Sequence[Tally]) -> Charge:
@@ -130,13 +130,13 @@ def _charge(values: tuple[int, ...], tallies: Sequence[Tally]) -> Charge:
     )
 
 
-def _charge_integers(told: Charge) -> tuple[int, ...]:
+def _charge_integers(reading: Charge) -> tuple[int, ...]:
     return (
-        _integer(told.percent, 0.01, (0, 10_000)),
-        _integer(told.volts, 0.001, _U16, _U16[1]),
-        _integer(told.amperes, 0.01, _I16, _I16[0]),
-        _integer(told.temperature, 0.1, _I16, _I16[0]),
-        _UNKNOWN if told.charging is None else int(told.charging),
+        _integer(reading.percent, 0.01, (0, 10_000)),
+        _integer(reading.volts, 0.001, _U16, _U16[1]),
+        _integer(reading.amperes, 0.01, _I16, _I16[0]),
+        _integer(reading.temperature, 0.1, _I16, _I16[0]),
+        _UNKNOWN if reading.charging is None else int(reading.charging),
     )
 
 
@@ -154,9 +154,9 @@ def _joint(values: tuple[int, ...], tallies: Sequence[Tally]) -> JointState:
     return JointState(position / 100, speed / 10, _known(load, 1, _I8[0]), warmth, loose == _LOOSE)
 
 
-def _joint_integers(told: JointState) -> tuple[int, ...]:
-    load, temperature = (_integer(value, 1.0, _I8, _I8[0]) for value in (told.load, told.temperature))
-    return (_integer(told.position, 0.01, _I32), _integer(told.speed, 0.1, _I16), load, temperature, int(told.loose))
+def _joint_integers(state: JointState) -> tuple[int, ...]:
+    load, temperature = (_integer(value, 1.0, _I8, _I8[0]) for value in (state.load, state.temperature))
+    return (_integer(state.position, 0.01, _I32), _integer(state.speed, 0.1, _I16), load, temperature, int(state.loose))
 
 
 READINGS = {
@@ -164,7 +164,7 @@ READINGS = {
     "drive": ReadingFormat(Struct("<iihh"), _wheels_integers, _wheels),
     "imu": ReadingFormat(Struct("<ihhhi"), _motion_integers, _motion),
     "battery": ReadingFormat(Struct("<HHhhB"), _charge_integers, _charge),
-    "button": ReadingFormat(Struct("<B"), lambda told: (int(told.pressed),), _pressed),
+    "button": ReadingFormat(Struct("<B"), lambda reading: (int(reading.pressed),), _pressed),
     "joint": ReadingFormat(Struct("<ihbbB"), _joint_integers, _joint),
 }
 """By kind; the other kinds measure nothing."""
@@ -173,8 +173,8 @@ READINGS = {
 _SPEEDS, _TARGET, _COLOUR, _SHOWN = Struct("<hh"), Struct("<BiH"), Struct("<BBB"), Struct(f"<{TEXT}s")
 
 
-def _pack_speeds(told: WheelSpeeds) -> bytes:
-    return _SPEEDS.pack(_integer(told.left, 0.001, _I16), _integer(told.right, 0.001, _I16))
+def _pack_speeds(command: WheelSpeeds) -> bytes:
+    return _SPEEDS.pack(_integer(command.left, 0.001, _I16), _integer(command.right, 0.001, _I16))
 
 
 def _unpack_speeds(data: bytes) -> WheelSpeeds:
@@ -182,9 +182,9 @@ def _unpack_speeds(data: bytes) -> WheelSpeeds:
     return WheelSpeeds(left / 1000, right / 1000)
 
 
-def _pack_target(told: JointTarget) -> bytes:
-    flags = _LOOSE * told.loose | _GOES * (told.position is not None)
-    return _TARGET.pack(flags, _integer(told.position, 0.01, _I32), _integer(told.speed, 0.1, _U16, _U16[1]))
+def _pack_target(command: JointTarget) -> bytes:
+    flags = _LOOSE * command.loose | _GOES * (command.position is not None)
+    return _TARGET.pack(flags, _integer(command.position, 0.01, _I32), _integer(command.speed, 0.1, _U16, _U16[1]))
 
 
 def _unpack_target(data: bytes) -> JointTarget:
@@ -192,16 +192,16 @@ def _unpack_target(data: bytes) -> JointTarget:
     return JointTarget(position / 100 if flags & _GOES else None, _known(speed, 10, _U16[1]), bool(flags & _LOOSE))
 
 
-def _pack_colour(told: Colour) -> bytes:
-    return _COLOUR.pack(*(_integer(part, 1 / 255, _U8) for part in (told.red, told.green, told.blue)))
+def _pack_colour(command: Colour) -> bytes:
+    return _COLOUR.pack(*(_integer(part, 1 / 255, _U8) for part in (command.red, command.green, command.blue)))
 
 
 def _unpack_colour(data: bytes) -> Colour:
     return Colour(*(part / 255 for part in data))
 
 
-def _pack_shown(told: Shown) -> bytes:
-    whole = told.text.encode("utf-8", "replace")[:TEXT].decode("utf-8", "ignore")  # no half character at the end
+def _pack_shown(command: Shown) -> bytes:
+    whole = command.text.encode("utf-8", "replace")[:TEXT].decode("utf-8", "ignore")  # no half character at the end
     return _SHOWN.pack(whole.encode())
 
 
@@ -215,4 +215,4 @@ COMMANDS = {
     "light": CommandFormat(_COLOUR, _pack_colour, _unpack_colour),
     "display": CommandFormat(_SHOWN, _pack_shown, _unpack_shown),
 }
-"""By kind; the other kinds are told nothing."""
+"""By kind; the other kinds take no commands."""

@@ -1,4 +1,4 @@
-"""Which version of BehaviorTree.CPP a file is for, where it does not tell: what nodes and ports it has."""
+"""Which version of BehaviorTree.CPP a file is for: if it doesn't declare one, its nodes and ports decide."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _NODES = {
         if kind.id not in kind.tags_3 and kind.origin == BEHAVIOR_TREE_CPP and not kind.is_common_name
     ),
 }
-"""Tags that only one version has. Kind tags tell nothing: `<Action ID="Script"/>` may be a node that somebody made."""
+"""Tags that only one version has. Kind tags decide nothing: `<Action ID="Script"/>` may be somebody's own node."""
 _KEYS = {
     3: frozenset((SHARED, AUTOREMAP_3)),
     4: frozenset((AUTOREMAP, *PRE_CONDITIONS, *POST_CONDITIONS)),
@@ -39,17 +39,17 @@ _NONE: frozenset[str] = frozenset()
 
 
 def dialect_of(document: Document, within: int = 3) -> int:
-    """3 or 4: what BTCPP_format tells, else what the nodes tell, else `within`, that of the file that includes it."""
-    told = document.attributes(0).get("BTCPP_format")
-    if told is not None:
-        return 3 if told.strip().startswith("3") else 4
+    """3 or 4: by BTCPP_format, else by the nodes, else `within`, the version of the file that includes it."""
+    declared = document.attributes(0).get("BTCPP_format")
+    if declared is not None:
+        return 3 if declared.strip().startswith("3") else 4
     elements = document.elements
     if "${" in document.text and any(without_dollar(text) != text for _, flat, _, _ in elements for text in flat[1::2]):
         return 3
-    return told_by_shapes({(tag, *flat[::2]) for tag, flat, _, _ in elements}) or within
+    return dialect_of_shapes({(tag, *flat[::2]) for tag, flat, _, _ in elements}) or within
 
 
-def told_by_shapes(shapes: set[Shape]) -> int:
+def dialect_of_shapes(shapes: set[Shape]) -> int:
     """3 where something is only in version 3, else 4 where something is only in version 4, else 0."""
     return next((version for version in (3, 4) if any(_is_only_in(version, *shape) for shape in shapes)), 0)
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _PARTS = ("BehaviorTree", MODEL, "include")
 _NAMING = frozenset(("BehaviorTree", SUBTREE, *KINDS))
-_REFUSED = re.compile(f"(?![\\x00-\\x1f])[{IN_NO_ID}]")  # what English can't say either is told there
+_REFUSED = re.compile(f"(?![\\x00-\\x1f])[{IN_NO_ID}]")  # English refuses control characters itself
 SPOKEN_NAME = "_name"
 """The attribute of a BehaviorTree with the name that its tree has in English, where that can be no ID."""
 
@@ -50,8 +50,8 @@ class TreeHead(Record):
 
 
 class XmlFile:
-    """What a document holds. `problems` is what is wrong with it; then the rest may lack parts. `warnings` tell of what
-    BehaviorTree.CPP takes no notice of.
+    """The content of a document. `problems` is what is wrong with it; then the rest may lack parts. `warnings` report
+    what BehaviorTree.CPP ignores.
 
     Nodes are read by `read_trees`, when the trees of all included files are known. `within` is the dialect of the file
     that includes it.
@@ -98,8 +98,8 @@ class XmlFile:
             if tag == "BehaviorTree":
                 self._add_tree(at, end, attributes)
             elif tag == MODEL and described >= 0:
-                told = "Put all models into the first one."
-                self._wrong("BT122", document.span(at), what=f"A second <{tag}>", problem="isn't allowed", advice=told)
+                help = "Put all models into the first one."
+                self._wrong("BT122", document.span(at), what=f"A second <{tag}>", problem="isn't allowed", advice=help)
             elif tag == MODEL:
                 described = at
                 for model in models.read(at):
@@ -107,8 +107,8 @@ class XmlFile:
             elif tag == "include":
                 self.includes.append((attributes, document.span(at)))
             else:
-                told = among(tag, _PARTS)
-                self._wrong("BT122", document.span(at), what=f"<{tag}>", problem="isn't allowed in <root>", advice=told)
+                help = among(tag, _PARTS)
+                self._wrong("BT122", document.span(at), what=f"<{tag}>", problem="isn't allowed in <root>", advice=help)
         self.warnings += models.warnings
         self._find_texts()
         self._find_gaps()
@@ -141,7 +141,7 @@ class XmlFile:
             self._wrong("BT122", span, what=span.text, problem=problem, advice=advice)
 
     def _find_texts(self) -> None:
-        """Texts that tell nothing: those of models are descriptions."""
+        """Texts without effect: those of models are descriptions."""
         elements = self.document.elements
         ends = [(at, self.document.end(at)) for at in self._parts if elements[at][0] == MODEL]
         for note, inside in self.notes.texts:
@@ -155,8 +155,8 @@ class XmlFile:
         for start in self.document.gaps:
             span = Span(source, start, source.text.find("=", start))
             fix = (Span(source, start, start), " ")
-            told = "BehaviorTree.CPP reads it, but other programs don't."
-            self.warnings.append(odd(span, f"'{span.text.strip()}'", "has no blank before it", told, fix))
+            advice = "BehaviorTree.CPP reads it, but other programs don't."
+            self.warnings.append(odd(span, f"'{span.text.strip()}'", "has no blank before it", advice, fix))
 
     def _text_span(self, note: Note) -> Span:
         """Its first line, looked for behind the tag before it."""
@@ -170,7 +170,7 @@ class XmlFile:
         """Reads the nodes.
 
         `names` are the trees of all files by the ID that they have there, `defaults` those of their ports; `kinds` gets
-        those that tags tell.
+        those that tags declare.
         """
         document = self.document
         reader = NodeReader(document, self.dialect, names, kinds, defaults)
@@ -200,8 +200,8 @@ class XmlFile:
     def head(self) -> tuple[str, ...]:
         """What stands before <root>."""
         document = self.document
-        told = (document.declaration, document.doctype)
-        return tuple(text for text in told if text) + tuple(note.text for note in self.notes.before(0))
+        prolog = (document.declaration, document.doctype)
+        return tuple(text for text in prolog if text) + tuple(note.text for note in self.notes.before(0))
 
     def foot(self) -> tuple[str, ...]:
         """What stands behind it."""

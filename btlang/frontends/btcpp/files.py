@@ -35,7 +35,7 @@ class XmlFiles:
         self.problems: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
         self._read: set[str] = set()
-        self._kinds: dict[str, str] = {}  # of nodes, which models and tags tell
+        self._kinds: dict[str, str] = {}  # of nodes, as models and tags declare them
         self._follows_includes = follows_includes
 
     def add(self, source: Source) -> None:
@@ -74,20 +74,20 @@ class XmlFiles:
             self.problems += file.problems
 
     def known_models(self) -> list[NodeModel]:
-        """The models of the files, then kinds that tags tell, then what is known of Nav2's nodes that are used; once
-        the trees are read.
+        """The models of the files, then kinds that tags declare, then what is known of the Nav2 nodes that are used;
+        once the trees are read.
         """
-        told = self.models
+        known = self.models
         for node_id, kind in self._kinds.items():
-            told.setdefault(node_id, NodeModel(kind, node_id))
+            known.setdefault(node_id, NodeModel(kind, node_id))
         tags = {element[0] for file in self.files for element in file.document.elements}
-        bare = {node_id for node_id, model in told.items() if not model.ports}
-        strange = sorted((tags - _NO_NODES - self.trees.keys() - told.keys()) | bare)
+        bare = {node_id for node_id, model in known.items() if not model.ports}
+        strange = sorted((tags - _NO_NODES - self.trees.keys() - known.keys()) | bare)
         if strange:
             for node_id, model in nav2_models(strange).items():
-                if node_id not in told or told[node_id].kind == model.kind:
-                    told[node_id] = model
-        return list(told.values())
+                if node_id not in known or known[node_id].kind == model.kind:
+                    known[node_id] = model
+        return list(known.values())
 
     def nodes(self) -> Iterator[Node]:
         """Every node of every tree."""
@@ -112,7 +112,7 @@ class XmlFiles:
         }  # fmt: skip
         found = [(circle[0], " contains ".join(f"'{name}'" for name in (*circle, circle[0])))
                  for circle in in_order_of_use(uses)[1]]  # fmt: skip
-        return [diagnostic("BT124", heads[name].span, name=name, circle=told) for name, told in found]
+        return [diagnostic("BT124", heads[name].span, name=name, circle=circle) for name, circle in found]
 
     @property
     def _sound(self) -> list[XmlFile]:

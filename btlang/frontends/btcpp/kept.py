@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 _GOES_ON = f"{KEPT}:"
 _WIDTH = 160  # characters of a line without its mark
 _OWN = {"ID", "_name", "BTCPP_format", "main_tree_to_execute"}
-"""Attributes that the writer gives anew."""
+"""Attributes that the writer sets itself."""
 _FILE = "file"
 _DIGEST = re.compile(rf'^({KEPT} <{_FILE} [^\n]*digest=")[0-9a-f]*', re.MULTILINE)
-_TOLD = "So that btc can write this onto its XML file again; don't change it."
+_NOTICE = "So that btc can write this onto its XML file again; don't change it."
 
 
 class Kept(Record):
@@ -73,7 +73,7 @@ def marked(lines: Iterable[str]) -> Iterator[str]:
     """Lines of XML as comments of a mission."""
     for at, line in enumerate(lines):
         if not at:
-            yield f"{KEPT} {_TOLD}"
+            yield f"{KEPT} {_NOTICE}"
         mark = KEPT
         while line:
             yield f"{mark} {line[:_WIDTH]}"
@@ -112,8 +112,8 @@ def kept_in(text: str) -> Kept:
         else:
             found[part.tag] = part.attributes
     file = dict(found.get(_FILE, ()))
-    told = file.get("name", ""), file.get("digest", ""), found.get("root", ())
-    return Kept(*told, tuple(trees.items()), tuple(parts), tuple(models))
+    origin = file.get("name", ""), file.get("digest", ""), found.get("root", ())
+    return Kept(*origin, tuple(trees.items()), tuple(parts), tuple(models))
 
 
 def with_digest(text: str, digest: str) -> str:

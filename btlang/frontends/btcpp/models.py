@@ -1,4 +1,4 @@
-"""TreeNodesModel: what a file tells of kinds of nodes, and what is known of those of Nav2."""
+"""TreeNodesModel: what a file declares about kinds of nodes, and what is known of those of Nav2."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _MARKS = {"<": "output", "=": "inout"}
 
 
 class ModelReader:
-    """Reads the models of one file. `warnings` tell of what is left out."""
+    """Reads the models of one file. `warnings` report what is left out."""
 
     def __init__(self, document: Document, notes: Notes) -> None:
         self.warnings: list[Diagnostic] = []
@@ -113,7 +113,7 @@ def why_no_port(name: str) -> str:
 def subtree_defaults(models: Iterable[NodeModel]) -> dict[str, Pairs]:
     """By the ID of a tree, its ports that have a default, with it.
 
-    As in BehaviorTree.CPP an empty text is none; a name such as `_autoremap` tells of the node, and is no port.
+    As in BehaviorTree.CPP an empty text is none; a name such as `_autoremap` describes the node, and is no port.
     """
     return {model.id: tuple((port.name, port.default) for port in model.ports if port.default and port.name[:1] != "_")
             for model in models if model.kind == SUBTREE}  # fmt: skip

@@ -39,7 +39,7 @@ class NodeReader:
     """Makes the nodes of one file. `problems` is what is wrong with them.
 
     `names` are the trees by the ID that they have in the file. `kinds` are the kinds of nodes by id; those that tags
-    tell are added to it. `defaults` are ports that a SubTree of format 4 has where they are not written, by that ID.
+    declare are added to it. `defaults` are ports that a SubTree of format 4 has where they are not written, by that ID.
     """
 
     def __init__(
@@ -113,7 +113,7 @@ class NodeReader:
         return levels[depths[first]][0], unusual
 
     def _usual_tags(self) -> dict[str, int]:
-        """Tags that the writer would write as well; how many entries of their attributes tell of the node itself."""
+        """Tags that the writer would write as well; how many entries of their attributes describe the node itself."""
         document = self._document
         if self._dialect == 4:
             tags = {element[0] for element in document.elements} - _ODD - self._names.keys()

@@ -1,4 +1,4 @@
-"""What an XML file tells beside its tree, so that it can be written again as it was."""
+"""The parts of an XML file beside its tree, so that it can be written again as it was."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ class TreeOrigin(Record):
 
 
 class XmlOrigin(Record):
-    """What the file of a tree holds beside it. It says nothing of another tree than the one of `root` and `subtrees`.
+    """What the file of a tree holds beside it. It belongs only to the tree of `root` and `subtrees`.
 
-    `items` are the parts of <root> in their order, a str being the name of a tree; `trees` tells of the trees of this
-    file, those of included files are missing; `head` and `foot` are what stands around <root>. `file` is the name of
+    `items` are the parts of <root> in their order, a str being the name of a tree; `trees` describes the trees of this
+    file, without those of included files; `head` and `foot` are what stands around <root>. `file` is the name of
     the file without its folder, "" for a text, `digest` that of its text (see kept.py).
     """
 

@@ -34,7 +34,7 @@ class XmlProject(Record):
 def read_project(read: XmlFiles, palettes: XmlFiles, main: str = "") -> XmlProject:
     """The project of these files; of `palettes` only the models count, before those of the files.
 
-    A tree that has the ID of one in another file is told (BT127), unless both files start with them and no tree uses
+    A tree with the ID of one in another file is reported (BT127), unless both files start with them and no tree uses
     them. `main` is the ID of a tree that must be there.
     """
     sound = [file for file in read.files if file.is_sound]

@@ -42,7 +42,7 @@ class _Reader:
         heads = [head for each in read.files for head in each.heads]
         read.problems += repeated(heads) if heads else [empty_file(file)]
         self._stop_where_wrong()
-        # what a file tells counts for more than what those tell that it includes
+        # the declarations of a file override those of the files that it includes
         read.read_trees(read.models)
         trees = read.trees
         read.problems += read.circles()
@@ -60,7 +60,7 @@ class _Reader:
             raise MissionError(self._read.problems)
 
     def _main_tree(self, trees: dict[str, Node], heads: dict[str, TreeHead]) -> str:
-        """The name of the main tree; anything where none can be told."""
+        """The name of the main tree; anything if there is no single one."""
         read = self._read
         file = read.files[0]
         asked = self._main or file.attributes.get(MAIN, "")
@@ -86,19 +86,19 @@ def empty_file(file: XmlFile) -> Diagnostic:
     advice = 'Add one: <BehaviorTree ID="MainTree">'
     if file.models:
         advice = "It only describes nodes. For trees with them: btc check TREE.xml --models FILE.xml"
-    told = {"problem": "contains no BehaviorTree", "advice": advice}
-    return diagnostic("BT122", file.root_span, (), None, what="<root>", **told)
+    arguments = {"problem": "contains no BehaviorTree", "advice": advice}
+    return diagnostic("BT122", file.root_span, (), None, what="<root>", **arguments)
 
 
 def no_tree(span: Span, name: str, trees: Collection[str]) -> Diagnostic:
     """That none of the trees has this name (BT126)."""
     near = nearest(name, trees)
-    told = f"Similar: {', '.join(near)}" if near else f"There are: {', '.join(list(trees)[:8])}"
-    return diagnostic("BT126", span, name=name, help=told)
+    help = f"Similar: {', '.join(near)}" if near else f"There are: {', '.join(list(trees)[:8])}"
+    return diagnostic("BT126", span, name=name, help=help)
 
 
 def _origin(file: XmlFile, tree: Tree, asked: str) -> XmlOrigin:
-    """What the main file tells beside the tree; `asked` is the ID of the main tree where the caller chose it."""
+    """What the main file holds beside the tree; `asked` is the ID of the main tree where the caller chose it."""
     attributes, source = dict(file.attributes), file.document.source
     if asked:
         attributes[MAIN] = asked

@@ -199,9 +199,9 @@ class _Scanner:
         self._document.notes.append(Note(text, len(self._document.elements), len(self._ends), at, is_text))
 
     def _declared(self, version: str, encoding: str | None, standalone: int) -> None:
-        told = f' encoding="{encoding}"' if encoding is not None else ""
+        encoded = f' encoding="{encoding}"' if encoding is not None else ""
         alone = {1: ' standalone="yes"', 0: ' standalone="no"'}.get(standalone, "")
-        self._document.declaration = f'<?xml version="{version}"{told}{alone}?>'
+        self._document.declaration = f'<?xml version="{version}"{encoded}{alone}?>'
 
     def _doctype(self, name: str, system: str | None, public: str | None, has_inner: int) -> None:
         if system is not None or public is not None:
@@ -272,7 +272,7 @@ class _Scanner:
 
 
 def _why_invalid(text: str, start: int) -> str:
-    """What is wrong with a character inside a tag, "" where that cannot be told."""
+    """What is wrong with a character inside a tag, "" if that isn't known."""
     before = text[max(start - 100, 0) : start].rstrip()
     if text[start : start + 1] < " ":
         return f"the character U+{ord(text[start]):04X} isn't allowed in XML" if text[start : start + 1] else ""

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     """A tag and its attributes."""
 
 KINDS = ("Action", "Condition", "Control", "Decorator")
-"""Tags that tell what sort of node their attribute ID names; in this order they stand in TreeNodesModel."""
+"""Tags that declare the kind of the node that their attribute ID names; TreeNodesModel has them in this order."""
 MAIN_TREE = "MainTree"
 """The ID of the main tree where it has no name of its own."""
 MODEL = "TreeNodesModel"

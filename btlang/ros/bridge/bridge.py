@@ -48,7 +48,7 @@ class Bridge:
             self._leave(number)
             return
         if number not in self._clients:
-            self._clients[number] = _Client(self._node, self.servers, partial(self._tell, number))
+            self._clients[number] = _Client(self._node, self.servers, partial(self._send, number))
         client = self._clients[number]
         try:
             client.do[asked["op"]](asked)
@@ -74,14 +74,14 @@ class Bridge:
         for client in self._clients.values():
             client.look()
 
-    def _tell(self, number: int, text: str, topic: str = "", most: int = 0) -> None:
+    def _send(self, number: int, text: str, topic: str = "", most: int = 0) -> None:
         if number in self._clients:
             self._write({"client": number, "topic": topic, "most": most}, text)
 
 
 class _Client:
-    def __init__(self, node: Node, servers: Servers, tell: Callable[..., object]) -> None:
-        self._node, self._servers, self._tell = node, servers, tell
+    def __init__(self, node: Node, servers: Servers, send: Callable[..., object]) -> None:
+        self._node, self._servers, self._send = node, servers, send
         self._subscriptions: dict[str, tuple[Subscription, Asked]] = {}
         self._publishers: dict[str, Publisher] = {}
         self._calls: list[Call] = []
@@ -93,9 +93,9 @@ class _Client:
         }  # fmt: skip
 
     def fail(self, asked: Asked, text: str) -> None:
-        """Tells the client why something isn't done."""
+        """Sends the client the reason why something isn't done."""
         for message in failures(asked, text):
-            self._tell(json.dumps(message))
+            self._send(json.dumps(message))
 
     def look(self) -> None:
         """Goes on with subscriptions as the graph changes."""
@@ -119,8 +119,8 @@ class _Client:
         subscription, _ = self._subscriptions.get(topic, (None, None))
         if subscription is None:
             _check("subscriptions", len(self._subscriptions))
-            tell = lambda topic, text, most: self._tell(text, topic, most)  # noqa: E731
-            subscription = Subscription(self._node, topic, tell, partial(self.fail, asked))
+            deliver = lambda topic, text, most: self._send(text, topic, most)  # noqa: E731
+            subscription = Subscription(self._node, topic, deliver, partial(self.fail, asked))
         subscription.want(asked)
         self._subscriptions[topic] = subscription, asked
         self._look_at(topic)
@@ -169,8 +169,8 @@ class _Client:
         id = object() if asked.get("id") is None else asked["id"]
         if id in self._goals:
             raise BridgeError("A goal with this id is running.")
-        tell, fail = partial(self._answer, asked), partial(self.fail, asked)
-        self._goals[id] = Goal(self._servers, asked, tell, fail, partial(self._feedback, id))
+        reply, fail = partial(self._answer, asked), partial(self.fail, asked)
+        self._goals[id] = Goal(self._servers, asked, reply, fail, partial(self._feedback, id))
 
     def _cancel_goal(self, asked: Asked) -> None:
         goal = self._goals.get(asked.get("id"))
@@ -181,14 +181,14 @@ class _Client:
     def _feedback(self, id: object, message: Asked) -> None:
         text = json.dumps(message)
         if len(text) <= MOST_CHARACTERS:
-            self._tell(text, f"feedback {id}", _FEEDBACK)
+            self._send(text, f"feedback {id}", _FEEDBACK)
 
     def _answer(self, asked: Asked, message: Asked) -> None:
         text = json.dumps(message)
         if len(text) > MOST_CHARACTERS:
             self.fail(asked, f"The answer has {len(text):,} characters, more than {MOST_CHARACTERS:,}.")
         else:
-            self._tell(text)
+            self._send(text)
 
 
 def _check(what: str, count: int) -> None:

@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
     Asked: TypeAlias = dict[str, Any]
-    Tell: TypeAlias = Callable[[dict[str, Any]], object]
+    Reply: TypeAlias = Callable[[dict[str, Any]], object]
     Fail: TypeAlias = Callable[[str], object]
 
 _FOUND = 5.0  # seconds in which a server is found
 _ANSWERED, _LONGEST = 10.0, 600.0  # seconds for an answer: by default, and at most
-_SETTLE = 0.3  # seconds: a server that hasn't found its new client yet drops the answer, and nothing tells when
+_SETTLE = 0.3  # seconds: a server that hasn't found its new client yet drops the answer, and nothing reports when
 
 
 class Servers:
@@ -78,13 +78,13 @@ class Servers:
 class Call:
     """A service that a client calls. Raises BridgeError."""
 
-    def __init__(self, servers: Servers, asked: Asked, tell: Tell, fail: Fail) -> None:
+    def __init__(self, servers: Servers, asked: Asked, reply: Reply, fail: Fail) -> None:
         self.ended = False
         seconds = asked.get("timeout")
         if seconds is not None and (not isinstance(seconds, int | float) or isinstance(seconds, bool)):
             raise BridgeError("'timeout' must be a number.")
         self._seconds = _ANSWERED if seconds is None else min(seconds, _LONGEST) if seconds > 0 else _LONGEST
-        self._servers, self._asked, self._tell, self._fail = servers, asked, tell, fail
+        self._servers, self._asked, self._reply, self._fail = servers, asked, reply, fail
         servers.find("service", asked["service"], None, self._send, self._late)
 
     def end(self) -> None:
@@ -107,7 +107,7 @@ class Call:
     def _answered(self, future: Any) -> None:
         if not self.ended:
             self.ended = True
-            self._tell(answer(self._asked, as_data(future.result()), success=True))
+            self._reply(answer(self._asked, as_data(future.result()), success=True))
 
     def _late(self, reason: str) -> None:
         if not self.ended:
@@ -116,11 +116,11 @@ class Call:
 
 
 class Goal:
-    """A goal that a client sends; `feedback` is called with what is told on the way. Raises BridgeError."""
+    """A goal that a client sends; `feedback` is called with each message on the way. Raises BridgeError."""
 
-    def __init__(self, servers: Servers, asked: Asked, tell: Tell, fail: Fail, feedback: Tell) -> None:
+    def __init__(self, servers: Servers, asked: Asked, reply: Reply, fail: Fail, feedback: Reply) -> None:
         self.ended = False
-        self._servers, self._asked, self._tell, self._fail, self._feedback = servers, asked, tell, fail, feedback
+        self._servers, self._asked, self._reply, self._fail, self._feedback = servers, asked, reply, fail, feedback
         self._is_sent = self._is_cancelled = False
         self._client: Any = None
         self._handle: Any = None
@@ -171,7 +171,7 @@ class Goal:
             self.ended = True
             result = future.result()
             success = result.status == GoalStatus.STATUS_SUCCEEDED
-            self._tell(answer(self._asked, as_data(result.result), success=success, goal=result.status))
+            self._reply(answer(self._asked, as_data(result.result), success=success, goal=result.status))
 
     def _end_badly(self, reason: str) -> None:
         if not self.ended:

@@ -1,4 +1,4 @@
-"""What clients of the rosbridge protocol are told. Imports no ROS, so that the server says the same in the same way."""
+"""The replies to clients of the rosbridge protocol. Imports no ROS, so that the server replies in the same way."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def answer(asked: dict[str, Any], values: object, *, success: bool, goal: int = 
 
 def failures(asked: dict[str, Any], text: str) -> list[dict[str, Any]]:
     """That an operation failed: a status and, if somebody waits for an answer, that one."""
-    told = [status(text, asked.get("id"))]
+    messages = [status(text, asked.get("id"))]
     if asked.get("op") in _ANSWERS and isinstance(asked.get(_ANSWERS[asked["op"]][1]), str):
-        told.append(answer(asked, text, success=False))
-    return told
+        messages.append(answer(asked, text, success=False))
+    return messages

@@ -22,7 +22,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
-    Tell: TypeAlias = Callable[[str, str, int], object]
+    Deliver: TypeAlias = Callable[[str, str, int], object]
 
 _DISCOVERED = 5.0  # seconds in which the publishers of a topic are found
 _MOST_BYTES = 4 * MOST_CHARACTERS  # of a message as ROS sends it: JSON may have fewer characters than that
@@ -34,11 +34,11 @@ _HEARD = Duration(seconds=0.2)  # for listeners to confirm what was published
 class Subscription:
     """One topic of one client. `look` has to be called now and then: it finds the type and fits to the publishers.
 
-    `tell` gets the topic as the client calls it, a message, and how many of them may wait; `refuse` why there is none.
+    `deliver` gets the topic as the client calls it, a message, and how many may wait; `refuse` why there is none.
     """
 
-    def __init__(self, node: Node, topic: str, tell: Tell, refuse: Callable[[str], object]) -> None:
-        self._node, self._topic, self._tell, self._refuse = node, topic, tell, refuse
+    def __init__(self, node: Node, topic: str, deliver: Deliver, refuse: Callable[[str], object]) -> None:
+        self._node, self._topic, self._deliver, self._refuse = node, topic, deliver, refuse
         self._name = full(topic)
         self._cls: Any = None
         self._wanted: dict[object, tuple[float, int]] = {}
@@ -48,7 +48,7 @@ class Subscription:
         self._qos: QoSProfile | None = None
         self._timer: Any = None  # runs while the next message has to wait
         self._newest: bytes | None = None
-        self._is_told = False
+        self._has_refused = False
 
     def want(self, asked: dict[str, Any]) -> None:
         """Another subscription of the client to the topic, or the same with other wishes. Raises BridgeError."""
@@ -132,9 +132,9 @@ class Subscription:
         text = "" if len(message) > _MOST_BYTES else json.dumps(as_data(deserialize_message(message, self._cls)))
         text = f'{{"op":"publish","topic":{json.dumps(self._topic)},"msg":{text}}}'
         if len(message) <= _MOST_BYTES and len(text) <= MOST_CHARACTERS:
-            self._tell(self._topic, text, self._depth)
-        elif not self._is_told:
-            self._is_told = True
+            self._deliver(self._topic, text, self._depth)
+        elif not self._has_refused:
+            self._has_refused = True
             self._refuse(f"Messages of {self._topic} with more than {MOST_CHARACTERS:,} characters are left out.")
 
     def _unsubscribe(self) -> None:

@@ -1,4 +1,4 @@
-"""What the ROS graph tells nobody of: looked for in the thread that spins, for so many seconds at most."""
+"""Waits for what the ROS graph doesn't report: polls in the thread that spins, for so many seconds at most."""
 
 from __future__ import annotations
 

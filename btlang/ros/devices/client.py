@@ -62,7 +62,7 @@ class TopicClient:
         self._messages: deque[tuple[Any, float]] = deque(maxlen=_MOST)
         self._latest: tuple[Reading | None, float] = None, -math.inf
         self._given, self._refused = -math.inf, ""
-        self._told: Command | None = None
+        self._sent: Command | None = None
         self._publisher: Any = None
         if device.topic:
             node.create_subscription(self._translation.reads, device.topic, self.arrived, qos_profile_sensor_data)
@@ -74,20 +74,20 @@ class TopicClient:
         """A message has come."""
         self._messages.append((message, time.monotonic()))
 
-    def tell(self, command: Command | None) -> None:
-        """Publishes a command: that of what moves in each cycle, others once. Raises RobotError."""
-        if command is None or (command is self._told and not self._kind.moves):
+    def send(self, command: Command | None) -> None:
+        """Publishes a command: in each cycle if the device moves, else once. Raises RobotError."""
+        if command is None or (command is self._sent and not self._kind.moves):
             return
-        self._told = command
-        self._publisher.publish(self._translation.told(command))
+        self._sent = command
+        self._publisher.publish(self._translation.sent(command))
 
     def rest(self) -> None:
         """Brings to rest what moves."""
         if self._kind.rest is not None:
-            self.tell(self._kind.rest)
+            self.send(self._kind.rest)
 
     def reading(self) -> Reading | DeviceError | None:
-        """What it has told last; None where that is old, and soon silence. What can't be true is silence too."""
+        """Its latest reading; None where that is old, and soon silence. One that can't be true is silence too."""
         if not self._device.topic:
             heard = self._publisher.get_subscription_count()
             return Reading() if heard else DeviceSilent(f"nobody listens to {self._device.command}")
@@ -135,16 +135,16 @@ class DeviceClient:
 
     def exchange(self, commands: Mapping[str, Command]) -> dict[str, Reading | DeviceError]:
         """See btlang.devices.driver.Driver."""
-        told: dict[str, Reading | DeviceError] = {}
+        readings: dict[str, Reading | DeviceError] = {}
         for name, client in self._clients.items():
             reading = client.reading()
             if reading is not None:
-                told[name] = reading
+                readings[name] = reading
             try:
-                client.tell(commands.get(name))
+                client.send(commands.get(name))
             except RobotError as problem:
-                told[name] = DeviceError(str(problem))
-        return told
+                readings[name] = DeviceError(str(problem))
+        return readings
 
     def close(self) -> None:
         """Brings to rest what moves, and leaves the ROS graph."""

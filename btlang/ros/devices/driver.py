@@ -46,8 +46,8 @@ class TopicDriver:
 
             self._client = DeviceClient(self._devices)
         except MissionError as problem:
-            told = dict(problem.diagnostics[0].arguments)
-            raise DeviceError(f"ROS 2 can't be used: {told['reason']}. {told['advice']}".strip()) from None
+            arguments = dict(problem.diagnostics[0].arguments)
+            raise DeviceError(f"ROS 2 can't be used: {arguments['reason']}. {arguments['advice']}".strip()) from None
 
     def exchange(self, commands: Mapping[str, Command]) -> Mapping[str, Reading | DeviceError]:
         """See Driver."""

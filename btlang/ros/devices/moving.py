@@ -69,7 +69,7 @@ class DriveTranslation(Translation):
         message.header.frame_id = ODOM
         return message
 
-    def told(self, command: Any) -> Any:
+    def sent(self, command: Any) -> Any:
         """See Translation."""
         turn = (command.right - command.left) / self._setting.wheel_gap
         return velocity(Twist, (command.left + command.right) / 2, turn, None)
@@ -97,7 +97,7 @@ class JointTranslation(Translation):
 
     def _read(self, message: Any) -> Reading:
         if self._setting.joint not in message.name:
-            raise DeviceSilent(f'it tells nothing of the joint "{self._setting.joint}"')
+            raise DeviceSilent(f'it doesn\'t report the joint "{self._setting.joint}"')
         index, si = list(message.name).index(self._setting.joint), self._setting.si
         if index >= len(message.position):
             raise DeviceSilent("it gives no position")
@@ -112,7 +112,7 @@ class JointTranslation(Translation):
             name=[self._setting.joint], position=[float(reading.position * si)], velocity=[float(reading.speed * si)]
         )
 
-    def told(self, command: Any) -> Any:
+    def sent(self, command: Any) -> Any:
         """See Translation."""
         if command.position is None or command.loose:
             return JointTrajectory(joint_names=[self._setting.joint])
@@ -147,7 +147,7 @@ class HandTranslation(Translation):
         effort = [] if reading.holds is None else [float(reading.holds)]
         return JointState(name=[self._setting.joint], position=[float(reading.closed)], effort=effort)
 
-    def told(self, command: Any) -> Any:
+    def sent(self, command: Any) -> Any:
         """See Translation. NaN: it stays as it is."""
         return Float64(data=nan if command.closed is None else float(command.closed))
 

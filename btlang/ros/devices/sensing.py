@@ -1,4 +1,4 @@
-"""The messages of devices that only tell: distances, motion, charge, buttons and pictures."""
+"""The messages of devices that only measure: distances, motion, charge, buttons and pictures."""
 
 from __future__ import annotations
 

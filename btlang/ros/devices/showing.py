@@ -33,7 +33,7 @@ class MicrophoneTranslation(Translation):
 
 
 class SpeakerTranslation(Translation):
-    """The seconds that it still has to play, and what it is to play as a microphone tells it."""
+    """The seconds that it still has to play, and the sound to play, in the message type of a microphone."""
 
     reads, takes = Float64, Int16MultiArray
 
@@ -44,7 +44,7 @@ class SpeakerTranslation(Translation):
         """See Translation."""
         return Float64(data=float(reading.left))
 
-    def told(self, command: Any) -> Any:
+    def sent(self, command: Any) -> Any:
         """See Translation."""
         return _sound(command)
 
@@ -58,7 +58,7 @@ class LightTranslation(Translation):
 
     takes = ColorRGBA
 
-    def told(self, command: Any) -> Any:
+    def sent(self, command: Any) -> Any:
         """See Translation."""
         return ColorRGBA(r=float(command.red), g=float(command.green), b=float(command.blue), a=1.0)
 
@@ -72,7 +72,7 @@ class DisplayTranslation(Translation):
 
     takes = String
 
-    def told(self, command: Any) -> Any:
+    def sent(self, command: Any) -> Any:
         """See Translation."""
         return String(data=command.text)
 

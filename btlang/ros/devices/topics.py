@@ -1,4 +1,4 @@
-"""The devices of a robot as topics: publishes what they tell, and tells them what is published."""
+"""The devices of a robot as topics: publishes their readings and takes commands for them."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class ShownDevice:
             self._publisher = node.create_publisher(self._translation.reads, topic, qos_profile_sensor_data)
         if kind.command is not None:
             below = f"{topic}/{COMMANDS}" if kind.reading is not None else topic
-            node.create_subscription(self._translation.takes, below, self._tell, 10)
+            node.create_subscription(self._translation.takes, below, self._command, 10)
 
     def publish(self, stamp: Callable[[], Any]) -> None:
         """Its reading, where it is new, it isn't silent, and somebody listens."""
@@ -63,7 +63,7 @@ class ShownDevice:
             message.header.frame_id = message.header.frame_id or self._frame
         self._publisher.publish(message)
 
-    def _tell(self, message: Any) -> None:
+    def _command(self, message: Any) -> None:
         """In the thread that spins."""
         try:
             self._reads.write(self._name, self._translation.command(message))

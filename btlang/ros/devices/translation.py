@@ -13,12 +13,12 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_TELLS_NOTHING, _TAKES_NOTHING = "it tells nothing", "it takes no commands"
+_MEASURES_NOTHING, _TAKES_NOTHING = "it measures nothing", "it takes no commands"
 
 
 class Translation:
     """Of one device. `reads` and `takes` are the classes of messages for readings and commands; None: it has none, and
-    what makes them raises DeviceError.
+    the methods that make them raise DeviceError.
     """
 
     reads: Any = None
@@ -36,13 +36,13 @@ class Translation:
         return self._read(message)
 
     def _read(self, message: Any) -> Reading:
-        raise DeviceError(_TELLS_NOTHING)
+        raise DeviceError(_MEASURES_NOTHING)
 
     def shown(self, reading: Any) -> Any:
         """The message for a reading."""
-        raise DeviceError(_TELLS_NOTHING)
+        raise DeviceError(_MEASURES_NOTHING)
 
-    def told(self, command: Any) -> Any:
+    def sent(self, command: Any) -> Any:
         """The message for a command. Raises RobotError where it is beyond all limits."""
         raise DeviceError(_TAKES_NOTHING)
 

@@ -160,7 +160,7 @@ def goal_leaf(
             return Failed(answer)
         said = judge.said(answer.result)
         if answer.status == GoalStatus.STATUS_SUCCEEDED:
-            return judge.tell(answer.result)
+            return judge.verdict(answer.result)
         if answer.status == GoalStatus.STATUS_CANCELED:
             return Failed(said or f"somebody else cancelled the goal of {name}")
         return Failed(said or f"{name} gave up")

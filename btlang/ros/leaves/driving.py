@@ -1,4 +1,4 @@
-"""Driving and turning by velocities, with odometry to tell how far the robot has come."""
+"""Driving and turning by velocities, with odometry to measure how far the robot has come."""
 
 from __future__ import annotations
 

@@ -33,9 +33,9 @@ def awaited(clients: Clients, client: Any, cls: Any, name: str, limit: float) ->
 
 
 class Judge:
-    """Tells of an answer whether it is a success, by the fields that the table names.
+    """Judges whether an answer is a success, by the fields that the table names.
 
-    Where it names none, these are `success`, `error_code` and `message` or `error_msg`, as far as there are such.
+    If it names none, they are `success`, `error_code` and `message` or `error_msg`, as far as these exist.
     Raises MissionError (BT105).
     """
 
@@ -57,7 +57,7 @@ class Judge:
         """The reason in an answer, "" where it gives none."""
         return str(getattr(answer, self._reason)).strip() if self._reason else ""
 
-    def tell(self, answer: Any) -> bool | Failed:
+    def verdict(self, answer: Any) -> bool | Failed:
         """True, or FAILURE with the reason."""
         if self._failed and getattr(answer, self._failed):
             return Failed(self.said(answer) or f"{self._failed} is {getattr(answer, self._failed)}")

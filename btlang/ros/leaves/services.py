@@ -32,7 +32,7 @@ def service_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
     def call(wake: Callable[[], object] = nothing, **values: Any) -> Generator[None, None, bool | Failed]:
         request = make(values)
         yield from awaited(clients, client, cls, name, wait)
-        return judge.tell((yield from answered(clients, client, name, request, limit, wake)))
+        return judge.verdict((yield from answered(clients, client, name, request, limit, wake)))
 
     return call
 

@@ -47,26 +47,26 @@ class Progress:
     ) -> None:
         self._snapshot, self._changed, self._reached = snapshot, changed, reached
         self._new: dict[str, int] = {}
-        self._untold = False
-        self._told = -_PAUSE
+        self._pending = False
+        self._reached_at = -_PAUSE
 
     def __call__(self, event: Event) -> None:
         if isinstance(event, StatusesChanged):
             for change in event:
                 self._new[change.path] = change.status
         elif isinstance(event, PeriodPassed):
-            self._report(time.monotonic() - self._told >= _PAUSE)
+            self._report(time.monotonic() - self._reached_at >= _PAUSE)
         elif isinstance(event, Ended):
             self._report(True, is_last=True)
 
     def _report(self, all_too: bool, *, is_last: bool = False) -> None:
-        if not (self._new or (self._untold and all_too)):
+        if not (self._new or (self._pending and all_too)):
             return
         now = self._snapshot()
         running = "; ".join(now.running)
         if self._new:
             self._changed(News(now.t, running, self._new))
-            self._new, self._untold = {}, True
+            self._new, self._pending = {}, True
         if all_too:
-            self._untold, self._told = False, time.monotonic()
+            self._pending, self._reached_at = False, time.monotonic()
             self._reached(News(now.t, running, now.statuses, is_last))

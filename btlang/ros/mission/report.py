@@ -7,7 +7,7 @@ from btlang.task.executor import NOTHING_TO_DO
 from btlang.task.task import State, Task
 
 _OUTCOMES = {State.COMPLETED: "success", State.FAILED: "failure", State.ERROR: "failure"}
-_TOLD = {"success": "succeeded", "failure": "failed", "skipped": "had nothing to do", "stopped": "was stopped"}
+_PHRASES = {"success": "succeeded", "failure": "failed", "skipped": "had nothing to do", "stopped": "was stopped"}
 
 
 class Report(Record):
@@ -24,7 +24,7 @@ class Report(Record):
 
     def __str__(self) -> str:
         reason = f": {self.reason}" if self.reason else ""
-        return f"the mission {_TOLD[self.outcome]} after {self.seconds:.1f} s{reason}"
+        return f"the mission {_PHRASES[self.outcome]} after {self.seconds:.1f} s{reason}"
 
 
 def report_of(task: Task, seconds: float) -> Report:

@@ -50,7 +50,7 @@ class MissionServer:
         """What is new in the run of a task."""
         goal = self._goals.get(task)
         if goal is not None:
-            goal.tell(filled(RunMission.Feedback(task=task, state="underway"), news))
+            goal.publish_feedback(filled(RunMission.Feedback(task=task, state="underway"), news))
 
     def changed(self, data: dict[str, Any], report: Report | None) -> None:
         """A task has another state: `data` as answers have it, and the report if it is over."""
@@ -59,7 +59,7 @@ class MissionServer:
         if goal is None:
             return
         if report is None:
-            goal.tell(RunMission.Feedback(task=data["id"], state=data["state"], waits=data["waits"]))
+            goal.publish_feedback(RunMission.Feedback(task=data["id"], state=data["state"], waits=data["waits"]))
         else:
             self._end(data["id"], report)
 

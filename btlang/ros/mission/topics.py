@@ -1,4 +1,4 @@
-"""What the node of a mission tells on its topics."""
+"""The topics on which the node of a mission publishes."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ class Topics:
         self._tasks = node.create_publisher(Tasks, "~/tasks", LATCHED)
         self._log = node.create_publisher(String, "~/log", 100)
         self._diagnostics = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
-        # of the machine's time, so that a simulated one that stands still is told of too
-        node.create_timer(_PERIOD, self._tell_health, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        # of the machine's time, so that it also reports a simulated time that stands still
+        node.create_timer(_PERIOD, self._publish_health, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def tree(self, snapshot: str) -> None:
         """The tree that runs now, with its statuses; see btlang.ros.mission.tree_topic."""
@@ -72,7 +72,7 @@ class Topics:
         self._log.publish(String(data=text))
         self._node.get_logger().error(text)
 
-    def _tell_health(self) -> None:
+    def _publish_health(self) -> None:
         level, message, values = self._health()
         pairs = [KeyValue(key=key, value=value) for key, value in values.items()]
         status = DiagnosticStatus(level=level, name=f"{self._node.get_name()}: mission", message=message, values=pairs)

@@ -32,7 +32,7 @@ class TreeTopic:
         ]
         self._head = {"run": run.id, "outline": str(mission), "nodes": nodes}
         self._sequence = 0
-        self._told = time.monotonic()
+        self._published_at = time.monotonic()
         self._snapshot(json.dumps({**self._head, "sequence": 0, "time": 0.0, "statuses": {}}))
 
     def changed(self, news: News) -> None:
@@ -44,8 +44,8 @@ class TreeTopic:
     def reached(self, news: News, *, is_last: bool = False) -> None:
         """All nodes that were reached."""
         now = time.monotonic()
-        if is_last or now >= self._told + _PAUSE:
-            self._told = now
+        if is_last or now >= self._published_at + _PAUSE:
+            self._published_at = now
             state = {"sequence": self._sequence, "time": news.time, "statuses": _named(news)}
             self._snapshot(json.dumps({**self._head, **state}))
 

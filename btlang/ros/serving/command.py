@@ -80,7 +80,7 @@ def serve(options: argparse.Namespace) -> int:
 
 
 def _check(connection: Connection, ids: Sequence[str], vocabulary: Lexicon) -> None:
-    """Tells what the robot lacks. Raises MissionError where an action cannot be bound."""
+    """Reports what the robot lacks. Raises MissionError where an action cannot be bound."""
     everything = Tree(Node(SEQUENCE, tuple(Node(node_id) for node_id in ids)))
     survey = getattr(connection, "survey", None)  # of a ROS 2 robot
     for interface, (node, reason) in survey(everything, vocabulary).items() if survey is not None else ():

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     class Caller(Protocol):
         """Who has sent the goal."""
 
-        def tell(self, share: float, state: str) -> object:
+        def report(self, share: float, state: str) -> object:
             """How much is done, from 0 to 1, and what it does now."""
 
         def end(self, success: bool, reason: str) -> object:
@@ -55,8 +55,8 @@ class Goal:
         self.resources = frozenset(r for entry in vocabulary.entries[node.id] for r in entry.resources)
         self._node, self._caller, self._connection, self._vocabulary = node, caller, connection, vocabulary
         self._news = (0.0, self.words)
-        self._told: tuple[float, str] | None = None
-        self._told_at = connection.bus.clock.now
+        self._reported: tuple[float, str] | None = None
+        self._reported_at = connection.bus.clock.now
         self._repeats_at = 0.0
 
     @property
@@ -87,7 +87,7 @@ class Goal:
         self._connection.bus.before = self.engine.flush  # all engines publish into the same stream
         status = self.engine.tick()
         if status == RUNNING:
-            self.tell()
+            self.report()
             return
         failure = self.engine.failure
         self.engine.close()
@@ -107,16 +107,16 @@ class Goal:
         """It is over; the caller does not know yet."""
         self.reason, self.ended = reason, self._connection.bus.clock.now
 
-    def tell(self, waits_for: str = "") -> None:
-        """Tells the caller what is new, and now and then that it still goes on."""
+    def report(self, waits_for: str = "") -> None:
+        """Reports to the caller what is new, and now and then that it still goes on."""
         news, now = (0.0, waits_for) if waits_for else self._news, self._connection.bus.clock.now
-        is_new = news != self._told and (self._told is None or now - self._told_at >= _PAUSE)
+        is_new = news != self._reported and (self._reported is None or now - self._reported_at >= _PAUSE)
         if is_new or time.monotonic() >= self._repeats_at:
-            self._told, self._told_at, self._repeats_at = news, now, time.monotonic() + WORD
-            self._caller.tell(*news)
+            self._reported, self._reported_at, self._repeats_at = news, now, time.monotonic() + WORD
+            self._caller.report(*news)
 
     def answer(self) -> None:
-        """Tells the caller how it ended."""
+        """Reports to the caller how it ended."""
         self._caller.end(self.reason == "", self.reason or "")
 
     def _progress(self, share: float, state: str = "") -> None:

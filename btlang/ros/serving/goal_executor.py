@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 BUSY = 0.5
 """Real seconds that a goal waits for what another one uses: the word that cancels that one may come a moment later."""
 REST = 2.0
-"""Seconds of the mission that a robot gets to come to rest before the end of a cancelled goal is told."""
+"""Seconds of the mission that a robot gets to come to rest before the end of a cancelled goal is reported."""
 
 
 class GoalExecutor:
@@ -92,7 +92,7 @@ class GoalExecutor:
         return []
 
     def answer_all(self) -> None:
-        """Tells the end of each goal that is over."""
+        """Reports the end of each goal that is over."""
         self._answer(lambda goal: True)
 
     def _wake(self) -> None:
@@ -105,7 +105,7 @@ class GoalExecutor:
             shared = sorted(goal.resources & other.resources) if other.running else ()
             if shared:
                 if self._now() < goal.patient_until:
-                    goal.tell(f"waits for the {shared[0]}")
+                    goal.report(f"waits for the {shared[0]}")
                 else:
                     goal.end(f"'{other.words}' is using the {shared[0]}")
                 return False
@@ -119,7 +119,7 @@ class GoalExecutor:
             self._halt_failures += engine.take_halt_failures()
 
     def _at_rest(self, goal: Goal) -> bool:
-        """Whether the end of a goal may be told. One that took over from a cancelled one moves the robot on."""
+        """Whether the end of a goal may be reported. One that took over from a cancelled one moves the robot on."""
         if not goal.cancelled or goal.engine is None or goal.reason == "":
             return True
         taken_over = any(other.running and other.resources & goal.resources for other in self._goals)

@@ -22,7 +22,7 @@ def servable(vocabulary: Lexicon, *, ros: bool) -> list[str]:
 def chosen(only: Sequence[str], ids: Sequence[str], vocabulary: Lexicon) -> list[str]:
     """The ids that have one of these names, or are listed under such a topic; all where none is given.
 
-    Raises ValueError, in words, for a name that nothing has, and where two actions cannot be told apart.
+    Raises ValueError, in words, for a name that nothing has, and for two actions with the same name in ROS.
     """
     named: dict[str, list[str]] = {}
     for node_id in ids:

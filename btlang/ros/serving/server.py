@@ -27,8 +27,8 @@ class _Caller:
     def __init__(self, goal: HeldGoal) -> None:
         self._goal = goal
 
-    def tell(self, share: float, state: str) -> None:
-        self._goal.tell(RunPhrase.Feedback(progress=share, state=state))
+    def report(self, share: float, state: str) -> None:
+        self._goal.publish_feedback(RunPhrase.Feedback(progress=share, state=state))
 
     def end(self, success: bool, reason: str) -> None:
         self._goal.end(success, RunPhrase.Result(success=success, reason=reason))

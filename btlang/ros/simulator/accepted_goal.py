@@ -25,7 +25,7 @@ class AcceptedGoal:
         self._ended = Future()
 
     async def finished(self, leases: Leases) -> None:
-        """Waits for `end`, and tells how it ended; in the thread of the executor."""
+        """Waits for `end`, and reports how it ended; in the thread of the executor."""
         goal_id = bytes(self.handle.goal_id.uuid)
         leases.watch(goal_id, self._abandon)
         await self._ended

@@ -59,7 +59,7 @@ class Body:
         node.create_subscription(String, LANGUAGE, partial(self._hand_over, self._speak_in), LATCHED)
 
     def publish(self, now: Moment) -> None:
-        """Tells the state of joints, hands and voice."""
+        """Publishes the state of joints, hands and voice."""
         self._stepped = monotonic()
         self._speaking.set(self._speaks)
         for hand, topic in self._holding.items():

@@ -30,8 +30,8 @@ class CallQueue:
 
         def do() -> None:
             try:
-                told = job()
-                answer.set_result(told if isinstance(told, str) else "")
+                text = job()
+                answer.set_result(text if isinstance(text, str) else "")
             except RobotError as error:
                 answer.set_exception(error)
 
@@ -66,7 +66,7 @@ class CallQueue:
         self._jobs.put(None)
 
     def close(self) -> None:
-        """Nobody works any more: who asks is told so, also who is waiting now."""
+        """Nobody works any more: whoever asks or waits now gets that as an answer."""
         with self._lock:
             self._closed = True
             waiting = list(self._questions)

@@ -86,7 +86,7 @@ class Docking:
             ActionServer(node, kind, name, self._execute(docks), cancel_callback=lambda goal: CancelResponse.ACCEPT)
 
     def publish(self, now: Moment) -> None:
-        """Goes on with the goal under way, and tells the stages of docking."""
+        """Goes on with the goal under way, and publishes the stages of docking."""
         goal = self._goal
         if goal is None or goal.steps is None:
             return
@@ -132,7 +132,7 @@ class Docking:
     def _dock(self, goal: DockingGoal) -> Steps:
         if not self._robot.docked:
             station = _wanted(goal.handle.request, self._robot.stations)
-            yield from enter_dock(self._robot, station, lambda stage: self._tell(goal, stage))
+            yield from enter_dock(self._robot, station, lambda stage: self._publish_feedback(goal, stage))
 
     def _refusal(self, request: Any) -> tuple[str, int] | None:
         """Why it can't dock as it is asked to, with a code."""
@@ -152,7 +152,7 @@ class Docking:
             return "the robot isn't in front of the dock", DockRobot.Result.FAILED_TO_STAGE
         return None
 
-    def _tell(self, goal: DockingGoal, stage: str) -> None:
+    def _publish_feedback(self, goal: DockingGoal, stage: str) -> None:
         goal.stage = stage
         goal.retries += stage == RETRY
         feedback = DockRobot.Feedback(state=_STATES[stage], num_retries=goal.retries)

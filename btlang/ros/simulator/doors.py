@@ -33,7 +33,7 @@ class Doors:
             )
 
     def publish(self, now: Moment) -> None:
-        """Tells what has changed."""
+        """Publishes what has changed."""
         for topic, state in self._states:
             topic.set(state())
 

@@ -40,7 +40,7 @@ class JointPlayer:
         self._limits = Limits.of(body.joints)
         self._si = np.array([joint.si for joint in body.joints])
         self._playing: list[int] = []
-        self._told = self._told_really = inf  # simulated and real second of the latest one that has to be sent again
+        self._received = self._received_real = inf  # simulated and real second of the latest one to be sent again
 
     def play(self, message: JointTrajectory) -> None:
         """Raises RobotError for one that can't be played; the joints go on then."""
@@ -51,7 +51,7 @@ class JointPlayer:
         if not -_FAR_OFF - times[-1] < wait < _FAR_OFF:
             raise RobotError(f"its stamp is {abs(wait):.0f} s from now")
         times = times + now + wait
-        self._told, self._told_really = (now, monotonic()) if stamp else (inf, inf)
+        self._received, self._received_real = (now, monotonic()) if stamp else (inf, inf)
         if others := set(self._playing) - set(joints):
             self._timeline.freeze(others)
         self._playing = joints
@@ -63,10 +63,10 @@ class JointPlayer:
 
     def watch(self) -> None:
         """Brakes where the sender has fallen silent; to be called before each step."""
-        quiet = self._timeline.seconds - self._told, monotonic() - self._told_really
+        quiet = self._timeline.seconds - self._received, monotonic() - self._received_real
         if min(quiet) > _SILENCE:
             self._timeline.freeze(self._playing)
-            self._told = self._told_really = inf
+            self._received = self._received_real = inf
 
     def _read(self, message: JointTrajectory) -> tuple[list[int], Array, State]:
         """Its joints, the seconds of its points and how they are then. Raises RobotError."""

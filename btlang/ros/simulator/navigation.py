@@ -69,7 +69,7 @@ class Navigation:
         )
 
     def publish(self, now: Moment) -> None:
-        """Tells the way, how far the goal has come, or that it is over."""
+        """Publishes the way, how far the goal has come, or that it is over."""
         self._publish_plan(now)
         ride = self._ride
         if ride is None or ride.navigation is None:
@@ -80,7 +80,7 @@ class Navigation:
             self._ride = None
             ride.end()
         elif ride.feedback.is_due(now.seconds):
-            self._tell(ride, ride.navigation, now)
+            self._publish_feedback(ride, ride.navigation, now)
 
     def _publish_plan(self, now: Moment) -> None:
         """Each way once."""
@@ -117,7 +117,7 @@ class Navigation:
             self._ride.end()  # the new goal has ended its own
         self._ride = ride
 
-    def _tell(self, ride: Ride, goal: NavigationGoal, now: Moment) -> None:
+    def _publish_feedback(self, ride: Ride, goal: NavigationGoal, now: Moment) -> None:
         left = goal.left
         feedback = NavigateToPose.Feedback(distance_remaining=left)
         feedback.current_pose.header.stamp, feedback.current_pose.header.frame_id = now.stamp, MAP

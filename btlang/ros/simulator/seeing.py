@@ -38,7 +38,7 @@ class Seeing:
         node.create_service(HandOver, HAND_OVER, hand_over)
 
     def publish(self, now: Moment) -> None:
-        """Tells what is in view."""
+        """Publishes what is in view."""
         robot = self._robot
         if not robot.body.has("perception") or not self._due.is_due(now.seconds):
             return

@@ -38,7 +38,7 @@ class Part(Protocol):
     """Some topics, services and actions of the robot."""
 
     def publish(self, now: Moment) -> None:
-        """Tells what has become of it with the step."""
+        """Publishes their state after the step."""
 
 
 class Simulator:
@@ -108,7 +108,7 @@ class Simulator:
         self._clock = node.create_publisher(Clock, "/clock", QoSProfile(depth=1)) if gives_clock else None
         node.create_service(Trigger, "stop", self._stop)
         node.create_subscription(String, "call", self._called, COMMANDS)
-        self.robot.on_event = self._tell
+        self.robot.on_event = self._take_event
 
     def work(self, seconds: float) -> None:
         """Does what the topics, services and actions ask for, within so many seconds of real time or until `wake`."""
@@ -159,7 +159,7 @@ class Simulator:
         response.success = True
         return response
 
-    def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
+    def _take_event(self, kind: str, data: Mapping[str, Any]) -> None:
         if kind == "bump":
             self._wheels.bumped(data["into"])
         elif kind in ("say", "print"):

@@ -1,4 +1,4 @@
-"""The wheels and what tells where the robot is: /cmd_vel, /odom, /amcl_pose, /bump."""
+"""The wheels and the topics that say where the robot is: /cmd_vel, /odom, /amcl_pose, /bump."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Wheels:
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot
         self._driven = False
-        self._told_at = 0.0
+        self._commanded_at = 0.0
         self._odometry = node.create_publisher(Odometry, "odom", COMMANDS)
         self._pose = node.create_publisher(PoseWithCovarianceStamped, "amcl_pose", LATCHED)
         self._bump = node.create_publisher(String, "bump", COMMANDS)
@@ -33,7 +33,7 @@ class Wheels:
 
     def watch(self) -> None:
         """Brakes where commands have ceased; to be called before each step."""
-        if self._driven and self._robot.time - self._told_at >= _SILENCE - 1e-6:
+        if self._driven and self._robot.time - self._commanded_at >= _SILENCE - 1e-6:
             self.leave()
             self._robot.drive(0.0, 0.0)
 
@@ -51,7 +51,7 @@ class Wheels:
         self._bump.publish(String(data=into))
 
     def publish(self, now: Moment) -> None:
-        """Tells where the robot is and how it moves."""
+        """Publishes where the robot is and how it moves."""
         if not self._due.is_due(now.seconds):
             return
         linear, angular = self._robot.velocity
@@ -70,5 +70,5 @@ class Wheels:
         if not (isfinite(linear) and isfinite(angular)):
             return
         if self._driven or linear or angular:
-            self._driven, self._told_at = True, self._robot.time
+            self._driven, self._commanded_at = True, self._robot.time
             self._robot.drive(linear, angular)

@@ -36,4 +36,4 @@ def test_what_it_cannot_mean_is_not_used(sensor):
 
 def test_one_that_says_nothing_is_silent(sensor):
     sensor.driver.line.answer = b""
-    assert sensor.wait_for_silence() == "it tells nothing new"
+    assert sensor.wait_for_silence() == "it reports nothing new"

@@ -21,7 +21,7 @@ class Machine(Component):
 
     def brew(self, drink, robot):
         self._go_wrong("brew")
-        self.tell("say", cups=self.cups)  # with the name of an event of robots, but other fields
+        self.report("say", cups=self.cups)  # with the name of an event of robots, but other fields
         robot.print(f"brewing {drink} at {self.heat:g}")
         yield
         self.cups += 1

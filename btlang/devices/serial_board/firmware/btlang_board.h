@@ -38,7 +38,7 @@ enum {
     BTLANG_DISPLAY
 };
 
-/* What a channel is told; all zero is rest. */
+/* The command of a channel; all zero is rest. */
 typedef union {
     struct {
         int16_t left, right; /* mm/s */
