@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import degrees, isfinite, radians
+from time import monotonic
 
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
 from nav_msgs.msg import Odometry
@@ -16,6 +17,7 @@ from btlang.ros.simulator.call_queue import CallQueue
 from btlang.ros.simulator.publishing import COMMANDS, Every, Moment
 
 _SILENCE = 0.5  # simulated seconds without a command after which the robot brakes
+_ON_THE_WAY = 0.3  # real seconds for which velocities that were sent before a goal may still arrive
 
 
 class Wheels:
@@ -23,8 +25,9 @@ class Wheels:
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot
-        self._driven = False
+        self._driven = self._rolls = False
         self._commanded_at = 0.0
+        self._ignored_until = 0.0
         self._odometry = node.create_publisher(Odometry, "odom", COMMANDS)
         self._pose = node.create_publisher(PoseWithCovarianceStamped, "amcl_pose", LATCHED)
         self._bump = node.create_publisher(String, "bump", COMMANDS)
@@ -34,7 +37,7 @@ class Wheels:
     def watch(self) -> None:
         """Brakes where commands have ceased; to be called before each step."""
         if self._driven and self._robot.time - self._commanded_at >= _SILENCE - 1e-6:
-            self.leave()
+            self._driven = self._rolls = False
             self._robot.drive(0.0, 0.0)
 
     @property
@@ -43,8 +46,10 @@ class Wheels:
         return self._driven
 
     def leave(self) -> None:
-        """Somebody else drives from now on."""
-        self._driven = False
+        """A goal drives from now on, also if velocities that were sent before it arrive behind it."""
+        if self._rolls:
+            self._ignored_until = monotonic() + _ON_THE_WAY
+        self._driven = self._rolls = False
 
     def bumped(self, into: str) -> None:
         """A contact has just begun."""
@@ -69,6 +74,11 @@ class Wheels:
         linear, angular = twist.linear.x, degrees(twist.angular.z)
         if not (isfinite(linear) and isfinite(angular)):
             return
-        if self._driven or linear or angular:
-            self._driven, self._commanded_at = True, self._robot.time
+        rolls = bool(linear or angular)
+        if not rolls:
+            self._ignored_until = 0.0
+        elif monotonic() < self._ignored_until:
+            return
+        if self._driven or rolls:
+            self._driven, self._rolls, self._commanded_at = True, rolls, self._robot.time
             self._robot.drive(linear, angular)
