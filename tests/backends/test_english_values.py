@@ -88,6 +88,8 @@ def test_missions_with_values(mission: ast.Program) -> None:
         'for each n in 1, 2: for each m in {n}, 3: say "{n} {m}"\nfor each n in 3: nod {n} times\n',
         'visit {place} means for each n in 1, 2: say "{place} {n}"\nvisit lab\n',
         'set x to 1\nsay "{x} {{really}}"\n',
+        'set greeting to "hi"\nsay "{greeting}"\n',  # not Hindi
+        "set language to Hindi\nspeak {language}\n",
     ],
 )
 def test_said_as_it_was_written(text: str) -> None:

@@ -252,9 +252,13 @@ class TypeInference:
             return number
         names = [kind for kind, one in types.items() if one.kind == "names"]
         for kind in [*([] if sorts else [number]), *names] if texts else ():
-            if all(readable(text, kind, self._vocabulary) for text in texts):
+            if all(readable(text, kind, self._vocabulary) and self._is_said(text, kind) for text in texts):
                 return kind
         return "text"
+
+    def _is_said(self, text: str, kind: str) -> bool:
+        """Whether it looks as it does in the tree: not "hi", which as a language is said "Hindi"."""
+        return value_of(text, self._vocabulary.types[kind], self._vocabulary).lower() == text.lower()
 
     def is_doubtful(self, value: Value) -> bool:
         """Whether only its first use gives the type, and another use could give another one."""
