@@ -6,7 +6,7 @@ import gc
 import sys
 
 _COLLECT_AFTER = (
-    50_000  # new objects; Python's own 700 makes `btc check` a tenth slower, of whose objects none is garbage
+    50_000  # new objects; Python's own 700 makes `btc check` a tenth slower, and none of its objects are garbage
 )
 
 

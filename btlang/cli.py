@@ -299,7 +299,7 @@ _ELSEWHERE = {
     "ros-devices": "btlang.ros.devices.command",
     "serve-actions": "btlang.ros.serving.command",
 }
-"""The verbs that other modules do, each with the one whose `serve` does it."""
+"""The verbs that other modules do, each with the module that has its `serve`."""
 
 _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "repl": _repl,

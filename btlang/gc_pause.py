@@ -9,7 +9,7 @@ _LOOK_AFTER = 1_000_000  # objects that were made in pauses: garbage in cycles a
 
 
 class _Pause:
-    """Stays paused until the last of those that asked for it is done, in whatever thread; then all is as it was."""
+    """Stays paused until the last of those that asked for it is done, in whatever thread; then collects as before."""
 
     def __init__(self) -> None:
         self._lock = allocate_lock()

@@ -286,7 +286,7 @@ class Run:
         self.controls.suspend()
 
     def save(self) -> dict[str, Any]:
-        """All that `Session.restore` needs, as JSON: as it is between two ticks, for which it waits.
+        """All that `Session.restore` needs, as JSON. Waits for the moment between two ticks.
 
         Raises MissionError (BT192) if a value of the mission can't be saved.
         """

@@ -62,7 +62,7 @@ def answer_is(robot: Listening, text: str) -> bool | Failed:
 
 
 def answer(robot: Listening) -> str:
-    """The words of the last answer. Fails where there is none."""
+    """The words of the last answer. Fails if there is none."""
     if not robot.ears.answer:
         raise ActionFailed("nobody has answered")
     return robot.ears.answer

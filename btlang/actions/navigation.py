@@ -58,7 +58,7 @@ def choose(
     kind: str = "",
     use: str = "",
 ) -> None:
-    """Puts out the "nearest", a "random" name and so on of a type. Fails where there is none with these parts."""
+    """Puts out the "nearest", a "random" name and so on of a type. Fails if there is none with these parts."""
     parts = {"clothing": clothing, "color": color, "gesture": gesture, "kind": kind, "use": use}
     output(robot.choose(type, how, {name: text for name, text in parts.items() if text}))
 

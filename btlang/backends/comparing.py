@@ -30,7 +30,7 @@ _MOST_DIGITS = 17  # all that a double has
 def comparing(
     quantity: Callable[..., Any], say: Callable[[Mapping[str, Any], str], str]
 ) -> Callable[..., bool | Failed]:
-    """A function that calls the quantity and holds where all comparisons do whose ports are given.
+    """A function that calls the quantity and holds if all comparisons with given ports hold.
 
     What the quantity gives goes to the function in the output port first, so without comparisons it is just remembered.
     `say` gives the words for what was read, of the arguments of the quantity and the value as a text. Raises ValueError

@@ -84,7 +84,7 @@ _packages: dict[str, str] = {}  # of the modules beside keyword files, by their 
 def _module(entry: Entry, name: str) -> ModuleType:
     """The module beside the keyword file, else an installed one.
 
-    Those of one folder are a package whose name no other has: the modules of two packs may be called the same.
+    Those of one folder are a package with a unique name: the modules of two packs may be called the same.
     """
     if entry.span is None or not os.path.isfile(entry.span.source.name):
         return import_module(name)

@@ -1,4 +1,4 @@
-"""Files that are written as a whole: missions anew, and what trees are compiled to."""
+"""Files that are written as a whole: rewritten missions, and what trees are compiled to."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ def said_at(node: Node, node_id: str, vocabulary: Lexicon) -> SaidId | None:
 
 
 def respelt_leaf(said: SaidId, ids: Iterable[str], vocabulary: Lexicon, fits: Callable[[str], bool]) -> Fix | None:
-    """The change to the one known id that only a slip keeps apart; None where there is none, or it does not fit."""
+    """The change to the one known id that only a slip keeps apart; None if there is none, or it does not fit."""
     near = _near(said.id, ids, vocabulary)
     if len(near) != 1 or not fits(near[0]):
         return None
@@ -58,7 +58,7 @@ def respelt_leaf(said: SaidId, ids: Iterable[str], vocabulary: Lexicon, fits: Ca
 
 
 def respelt_subtree(said: SaidId, names: Iterable[str], vocabulary: Lexicon) -> Fix | None:
-    """The change to the one subtree that only a slip keeps apart; None where there is none."""
+    """The change to the one subtree that only a slip keeps apart; None if there is none."""
     near = _near(said.id, names, vocabulary)
     if len(near) != 1:
         return None

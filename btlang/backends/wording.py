@@ -86,7 +86,7 @@ def _state(words: list[str]) -> tuple[list[str], list[str]] | None:
 
 
 def _slots(words: list[str], ports: SpokenPorts, articles: Collection[str]) -> Iterator[str]:
-    """The slots behind words. One needs no name: that with whose name the words end, or a text that is the only one."""
+    """The slots behind words. One needs no name: the one that the words end with, or a text that is the only one."""
     bare = _named_last(words, ports.required)
     if not bare and len(ports.required) == 1 and ports.required[0] in ports.texts:
         [bare] = ports.required
@@ -102,7 +102,7 @@ def _slots(words: list[str], ports: SpokenPorts, articles: Collection[str]) -> I
 
 
 def _named_last(words: list[str], ports: Sequence[str]) -> str:
-    """The port whose name is what the words end with, "" where there is none."""
+    """The port whose name the words end with, "" if there is none."""
     return next((port for port in ports if words[-len(id_words(port)) or len(words) :] == id_words(port)), "")
 
 

@@ -127,7 +127,7 @@ class Component:
         """While it is active; so many seconds have passed."""
 
     def read(self, device: str) -> Reading:
-        """The latest reading of a device that it needs. Raises DeviceSilent where there is none that is new."""
+        """The latest reading of a device that it needs. Raises DeviceSilent if there is no new one."""
         reading: Reading = self._device(device).read(device)
         return reading
 

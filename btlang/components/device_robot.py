@@ -106,7 +106,7 @@ def connect_devices(world: World, *, body: Body, simulate: Sequence[str] = (), *
 
 
 def simulated_devices(body: Body, names: Sequence[str]) -> tuple[Device, ...]:
-    """The devices of a body, of which some are simulated. Raises DeviceError for a name that is none of theirs."""
+    """The devices of a body, some of them simulated. Raises DeviceError for a name that none of them has."""
     if ALL in names:
         return twins(body)
     known = {name for device in body.devices for name in (device.name, device.kind)}

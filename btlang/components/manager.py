@@ -127,7 +127,7 @@ class Manager:
             self.changed.notify_all()
 
     def restart(self, name: str) -> None:
-        """Starts one anew, also one that was given up. Raises ComponentError."""
+        """Starts one again, even one that was given up. Raises ComponentError."""
         with self.changed:
             keeper = self.keeper(name)
             keeper.replace(keeper.next or keeper.part)

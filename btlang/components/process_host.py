@@ -83,7 +83,7 @@ class ProcessHost:
         return ours
 
     def _shared(self) -> socket.socket:
-        """The way to the process that other robots of this user share; it is started where there is none."""
+        """The way to the process that other robots of this user share; it is started if there is none."""
         path = os.path.join(socket_folder(), f"component-{sha256(self._part.shared.encode()).hexdigest()[:16]}.sock")
         link, until = socket.socket(socket.AF_UNIX), time.monotonic() + _LOADING
         while True:

@@ -299,7 +299,7 @@ def main_shared(path: str) -> None:
 def _converse(worker: Worker, life: Life) -> None:
     worker.run()
     life.workers.remove(worker)
-    if life.problem:  # whoever needs it starts it anew
+    if life.problem:  # whoever needs it starts it again
         _end()
 
 

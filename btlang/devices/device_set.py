@@ -87,7 +87,7 @@ class DeviceSet:
         return self._reads
 
     def first(self, kind: str) -> str:
-        """The name of the first device of a kind; "" where there is none."""
+        """The name of the first device of a kind; "" if there is none."""
         return next((name for name, device in self.devices.items() if device.kind == kind), "")
 
     def follow(self, name: str, take: Callable[[Reading], object]) -> None:

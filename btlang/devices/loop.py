@@ -60,7 +60,7 @@ class DeviceLoop:
             self._thread.join(_JOIN)
 
     def read(self, name: str) -> Reading:
-        """The latest reading. Raises DeviceSilent where there is none that is new."""
+        """The latest reading. Raises DeviceSilent if there is no new one."""
         found, wrong = self._readings.get(name), self.silent(name)
         if wrong is None and found is not None:
             return found[0]

@@ -1,6 +1,6 @@
 """Changes of a mission by its tree: what somebody does to nodes, done to the English that says them.
 
-The English afterwards compiles to exactly the tree that was meant, only what was touched is written anew, and all
+The English afterwards compiles to exactly the tree that was meant, only what was touched is rewritten, and all
 comments stay. Which form says a node is looked up in the syntax (btlang.editing.syntax).
 """
 

@@ -40,7 +40,7 @@ class Lines:
                 self._last[line] = max(end, self._last.get(line, end))
 
     def place(self, node: ast.Ast) -> tuple[int, int]:
-        """The characters of a node, with both of each pair of brackets of which it has one: `(A) twice`."""
+        """The characters of a node; where it has one bracket of a pair, with the other one: `(A) twice`."""
         start, end = node.span.start, node.span.end
         first, last = bisect_left(self._brackets, (start, "")), bisect_left(self._brackets, (end, ""))
         opened = missing = 0

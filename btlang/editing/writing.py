@@ -1,4 +1,4 @@
-"""Changes of a syntax tree as changes of its text: only what is touched is written anew, and all comments stay.
+"""Changes of a syntax tree as changes of its text: only what is touched is rewritten, and all comments stay.
 
 Each way to write a change, from the smallest to that of a whole statement, is read again: the first one that has
 the tree that was meant is taken. So nothing here has to know how sentences are read.

@@ -18,7 +18,7 @@ class Blackboard:
     """One scope of named values; blackboard.cpp of BehaviorTree.CPP 4.10.
 
     A subtree has its own scope and sees of its parent's only the keys remapped to it. With `shares`, each key is also
-    the parent's, but for those that the scope has values of its own for, and private ones, which begin with `_`.
+    the parent's, except those that the scope has its own values for, and private ones, which begin with `_`.
     A key `@name` is the key `name` of the outermost scope, whatever is remapped.
 
     One difference: a subtree that unsets a key of its parent's unsets it there. In C++ it only forgets it itself.

@@ -237,7 +237,7 @@ def _how_many(kind: NodeKind) -> str:
 
 
 def _checked(instance: NodeInstance, compiled: Compiled) -> Compiled:
-    """A node that reads a number from the blackboard and fails where there is none."""
+    """A node that reads a number from the blackboard and fails if there is none."""
     tick, halt = compiled
 
     def checked() -> int:

@@ -12,7 +12,7 @@ Differences:
 - a script that cannot go on makes the node fail with its reason; there it raises an exception out of the tick;
 - a node that returned SKIPPED has not started: its pre-conditions are asked again, and halting it runs no `_onHalted`.
   There this holds for leaves only;
-- a child of a PipelineSequence and the condition of a WhileDoElse or IfThenElse start anew when they are ticked after
+- a child of a PipelineSequence and the condition of a WhileDoElse or IfThenElse start again when they are ticked after
   they completed. There their pre-conditions are not asked again;
 - halting the whole tree runs the `_onHalted` of its root only where it is RUNNING.
 """

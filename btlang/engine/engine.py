@@ -131,7 +131,7 @@ class Engine:
         return None if self._fault is None else self._failure(self._fault)
 
     def halt(self, emergency: bool = False) -> None:
-        """Halts every running leaf, children before parents, and resets all nodes; the next tick starts anew.
+        """Halts every running leaf, children before parents, and resets all nodes; the next tick starts over.
 
         Only a SequenceWithMemory keeps its place, as in BehaviorTree.CPP. What `catch_on_halt` of a TryCatch starts
         to clean up does not run in an emergency.
@@ -143,7 +143,7 @@ class Engine:
             self._state.emergency = False
 
     def suspend(self) -> None:
-        """Halts every running leaf but keeps positions, counts and timers; the next tick starts those leaves anew."""
+        """Halts every running leaf but keeps positions, counts and timers; the next tick restarts those leaves."""
         self._stop(True)
 
     def save(self) -> dict[str, Any]:

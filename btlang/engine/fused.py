@@ -40,8 +40,8 @@ def fused(usual: Compile, instance: NodeInstance, children: Sequence[Compiled]) 
 def _calls(children: Sequence[Compiled]) -> Calls:
     """What to call for a tick of each child, the halts, and the instances of function leaves, None for another child.
 
-    Whoever calls the ticks catches all but KeyboardInterrupt, and normalizes what he caught, every answer that is no
-    status, and each FAILURE because of which he fails, so that the failure is that of the leaf.
+    The caller of the ticks catches all but KeyboardInterrupt, and normalizes what it caught, every answer that is no
+    status, and each FAILURE that makes it fail, so that the failure is that of the leaf.
     """
     functions = [as_function(tick) for tick, _ in children]
     ticks = [tick if leaf is None else leaf.call for (tick, _), leaf in zip(children, functions, strict=True)]

@@ -50,7 +50,7 @@ def loose(body: Body) -> Iterator[Callable[[], dict[str, float]]]:
 
 
 class _Servos:
-    """A thread tells them again and again, as their loop asks for."""
+    """A thread repeats their commands, as their loop requires."""
 
     def __init__(self, body: Body) -> None:
         self._body = body

@@ -26,7 +26,7 @@ def record(name: str, path: str, body: Body, over: str) -> int:
     """Takes poses from standard input until it ends, and writes the gesture; returns the exit code.
 
     Where the robot has servos, they are loose meanwhile. Ctrl-C writes nothing. Raises MissionError (BT071 for devices
-    that can't be used, BT076 for poses of which no gesture can be made).
+    that can't be used, BT076 for poses that can't make a gesture).
     """
     if over != "devices" or not servos_of(body):
         show(f"The robot runs {over}, so nobody can move it by hand. {_TYPED}", sys.stderr)

@@ -30,8 +30,8 @@ def summary(world: World) -> Iterator[str]:
 
 
 def _with(name: str, *more: str) -> str:
-    told = ", ".join(each for each in more if each)
-    return f"{name} ({told})" if told else name
+    details = ", ".join(each for each in more if each)
+    return f"{name} ({details})" if details else name
 
 
 def _object(thing: WorldObject) -> str:

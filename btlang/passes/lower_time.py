@@ -42,7 +42,7 @@ def _timed(seconds: str, scope: Scope) -> tuple[list[Node], str]:
 
 
 def _timer(milliseconds: str) -> Node:
-    """The Sleep inside `for` and `every`: no sentence of its own, so that no log tells of it as a command."""
+    """The Sleep inside `for` and `every`: without a sentence, so that no log reports it as a command."""
     return Node("Sleep", (), (("msec", milliseconds),))
 
 

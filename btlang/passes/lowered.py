@@ -1,4 +1,4 @@
-"""What a piece of syntax is lowered to, and the nodes of which that is made."""
+"""What a piece of syntax is lowered to, and the nodes that it is made of."""
 
 from __future__ import annotations
 

@@ -55,11 +55,11 @@ def _conflicts(parts: Sequence[Holders], vocabulary: Lexicon) -> list[Diagnostic
     """Each resource that two of the parts hold, once."""
     held: dict[str, Node] = {}
     found: list[Diagnostic] = []
-    told: set[str] = set()
+    reported: set[str] = set()
     for part in parts:
-        both = sorted(held.keys() & part.keys() - told)
+        both = sorted(held.keys() & part.keys() - reported)
         found += [_conflict(resource, held[resource], part[resource], vocabulary) for resource in both]
-        told.update(both)
+        reported.update(both)
         held = {**part, **held}
     return found
 

@@ -18,7 +18,7 @@ class Scope:
 
     `skipping` are the names whose trees can end SKIPPED, `endless` those whose trees run until they fail, `free` the
     keys of the mission's values that the tree of a name needs from outside, in their order, `parameters` the types of
-    its parameters. `bodies` are the subtrees, used ones before their users. `made` is how many keys of its own it has
+    its parameters. `bodies` are the subtrees, used ones before their users. `made` is how many new keys it has
     made. `origins` are the nodes by their identities with the syntax that they were made of, if anybody asks for it.
     """
 

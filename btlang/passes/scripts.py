@@ -19,12 +19,12 @@ Ports = tuple[tuple[str, str], ...]
 
 
 def script(code: str) -> Node:
-    """A Script with no sentence of its own, so that no log tells of it as a command."""
+    """A Script without a sentence, so that no log reports it as a command."""
     return Node("Script", (), (("code", code),))
 
 
 def chosen(choice: Choice, key: str) -> Node:
-    """What chooses a name for a key, with no sentence of its own."""
+    """What chooses a name for a key, without a sentence."""
     return Node("Choose", (), (("type", choice.type), ("how", choice.how), ("output", f"{{{key}}}"), *choice.parts))
 
 

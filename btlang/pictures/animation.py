@@ -64,7 +64,7 @@ def _palette(frames: list[Image]) -> Image:
 
 
 class _Film:
-    """What stands still is drawn once; onto it the way grows; robot, things and text are drawn anew on each frame."""
+    """What stands still is drawn once; onto it the way grows; robot, things and text are redrawn on each frame."""
 
     def __init__(self, world: World, record: RunRecord, title: str) -> None:
         self._record = record

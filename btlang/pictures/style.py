@@ -1,4 +1,4 @@
-"""Colours, signs and sizes. Sizes are in points; the colours of statuses can be told apart by colour-blind people."""
+"""Colours, signs and sizes. Sizes are in points; colour-blind people can distinguish the colours of statuses."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ class Printer:
         self.names: TrieNode = {}
         self.subtrees: set[str] = set()
         """The names in quotes."""
-        self._said: dict[int, tuple[ast.Ast, Doc]] = {}  # with its node, whose id is then that of no other
+        self._said: dict[int, tuple[ast.Ast, Doc]] = {}  # with its node, so that no other one gets its id
         self._forms: dict[str, Form] = {}
         self._leaves: dict[tuple[str, tuple[tuple[str, str], ...]], str] = {}
         self._reads_on: dict[tuple[Piece, Piece], bool] = {}
@@ -179,7 +179,7 @@ class Printer:
         return Piece(" ".join(words), WORD)
 
     def phrase(self, node_id: str, arguments: tuple[tuple[str, str], ...]) -> str:
-        """The phrase of a leaf, "" where there is none."""
+        """The phrase of a leaf, "" if there is none."""
         key = node_id, arguments
         if key not in self._leaves:
             self._leaves[key] = leaf_words(node_id, dict(arguments), self.vocabulary, self.names)

@@ -1,4 +1,4 @@
-"""What of a run is written into which channel: our own events as they are, and what Foxglove has a schema for."""
+"""Which parts of a run go into which channel: our own events as they are, and what Foxglove has a schema for."""
 
 from __future__ import annotations
 

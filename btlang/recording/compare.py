@@ -32,7 +32,7 @@ def steps(events: Iterable[Event]) -> Iterator[Step]:
 def first_difference(
     one: Iterable[Event], other: Iterable[Event], node: Callable[[int], Node], label: Callable[[Node], str]
 ) -> str:
-    """The first change of status in which two runs differ, in words; "" where there is none. Times don't count."""
+    """The first change of status in which two runs differ, in words; "" if there is none. Times don't count."""
     pair = first_pair(one, other)
     if pair is None:
         return ""
@@ -41,7 +41,7 @@ def first_difference(
 
 
 def first_pair(one: Iterable[Event], other: Iterable[Event]) -> Pair | None:
-    """The first changes of status in which two runs differ, None where there are none. Times don't count."""
+    """The first changes of status in which two runs differ, None if there are none. Times don't count."""
     for first, second in zip_longest(steps(one), steps(other)):
         if first is None or second is None or first[1:] != second[1:]:
             return first, second
@@ -63,7 +63,7 @@ def ended_differently(one: Iterable[Event], other: Iterable[Event]) -> list[int]
 
 
 def run_differences(one: Iterable[str], other: Iterable[str]) -> Iterator[str]:
-    """What the stories of two runs have of their own, whenever it was: `-` the first one, `+` the second."""
+    """What only one of the stories of two runs has, whenever it was: `-` the first one, `+` the second."""
     lines = [[_parted(line) for text in story for line in text.splitlines()] for story in (one, other)]
     done = [[words for _, words in story] for story in lines]
     for tag, first, last, begin, end in SequenceMatcher(a=done[0], b=done[1], autojunk=False).get_opcodes():

@@ -21,7 +21,7 @@ def side_by_side(one: str, other: str) -> dict[str, Any]:
     - `films`: see Film.data; `stories`: what only one of the runs did, as `btc diff` writes it;
     - `missions`: what differs between their trees, as `btc diff` writes it; nodes are compared only where nothing does:
     - `first`: of each run the time, node and words of the first change of status that the other one doesn't have, with
-      None and -1 for a run that has no more; None where there is none. Times don't count;
+      None and -1 for a run that has no more; None if there is none. Times don't count;
     - `ended`: the numbers of the nodes whose last status isn't the same.
     """
     with ExitStack() as stack:

@@ -24,7 +24,7 @@ MOST_SECONDS = 3600.0
 _MOST_TICKS = 72_000
 _RATE = 20.0
 OURS = "btlang.actions."
-"""Where the names of modules begin whose functions do nothing but lead the robot that they are given."""
+"""The prefix of modules whose functions do nothing but command the robot that they are given."""
 
 
 def simulated(

@@ -130,13 +130,13 @@ class MissionDraft:
         return "".join(f"{entry.text}\n" for entry in self.entries)
 
     def context(self, text: str = "") -> str:
-        """The definitions that a new entry sees: those whose names it does not define anew."""
+        """The definitions that a new entry sees: those whose names it doesn't redefine."""
         known = self.definitions
         if not known:
             return ""
         names = Lexer(Source(text), self.vocabulary, explain=False).names
-        anew = {header.name for header in names.definitions.headers.values()} | {fact.name for fact in names.facts}
-        return "".join(f"{definition}\n" for name, definition in known.items() if name not in anew)
+        redefined = {header.name for header in names.definitions.headers.values()} | {fact.name for fact in names.facts}
+        return "".join(f"{definition}\n" for name, definition in known.items() if name not in redefined)
 
     def compile(self, text: str, suggest: bool = True) -> Compiled:
         """Reads an entry together with the definitions above. Raises MissionError.
@@ -210,11 +210,11 @@ class MissionDraft:
         self.entries = tuple(entries)
 
     def undo(self) -> bool:
-        """Takes back the latest change; False where there is none."""
+        """Takes back the latest change; False if there is none."""
         return self._swap(self._before, self._undone)
 
     def redo(self) -> bool:
-        """Takes back the latest undo; False where there is none."""
+        """Takes back the latest undo; False if there is none."""
         return self._swap(self._undone, self._before)
 
     def _swap(self, source: list[tuple[Entry, ...]], target: list[tuple[Entry, ...]]) -> bool:

@@ -30,7 +30,7 @@ class Preview(Record):
     """A text as the user may see it.
 
     `unfinished` means that maybe only more words are missing, `midword` that maybe only the rest of a word is.
-    `tree` is that of the part that can be read where not all can, None where there is none;
+    `tree` is that of the part that can be read if not all can, None if there is none;
     `marks` are characters of the text with "connective", "name" or "error".
     """
 

@@ -201,7 +201,7 @@ class Screen:
         return Layout(HSplit(rows), focused_element=line)
 
     def _problems(self) -> Group:
-        """Carets under the words, where each line of the entry stands on a line of its own, and what is wrong."""
+        """Carets under the words, if the entry fits on one line, and what is wrong."""
         seen, unfinished = self.preview(), self._is_unfinished()
         parts: list[RenderableType] = []
         for problem in seen.problems[:_MOST_PROBLEMS] if not (unfinished and seen.midword) else ():

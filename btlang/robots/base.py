@@ -95,7 +95,7 @@ class Base:
             self._substep(dt / pieces)
 
     def _forget_trouble(self) -> None:
-        """A new attempt to move is stuck after a second of its own, and counts as a bump of its own."""
+        """A new attempt to move gets its own second until it is stuck, and counts as its own bump."""
         self._idle, self._pressed = 0.0, False
 
     def _substep(self, h: float) -> None:

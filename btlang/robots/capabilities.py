@@ -157,7 +157,7 @@ class Base(Machine, Protocol):
         """The "nearest" or a "random" name of the type "place", "object" (not carried) or "person".
 
         "seen" is the nearest in view, else the nearest known; objects are also chosen as "largest" and "smallest".
-        `parts` are what it is like, by "color", "kind" and so on. Raises RobotError where there is none.
+        `parts` are what it is like, by "color", "kind" and so on. Raises RobotError if there is none.
         """
 
     def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
@@ -167,7 +167,7 @@ class Base(Machine, Protocol):
         """Forgets its place on the map, where something can find it again from what the sensors see."""
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
-        """A run begins, whose random choices follow from the seed; so many have been made before, in another run."""
+        """A run begins. Its random choices follow from the seed; so many have been made before, in another run."""
 
     def nearby_people(self, within: float) -> list[str]:
         """Names of the people within that many metres, nearest first."""

@@ -35,7 +35,7 @@ class Ears:
         self._awaited: list[Expected] = []
         self._looks: dict[str, tuple[float, int, int]] = {}
         self.asking = ""
-        """The open question; "" where there is none."""
+        """The open question; "" if there is none."""
         self.answer = ""
         """What answered the last question."""
         self.commands: Any = None
@@ -77,7 +77,7 @@ class Ears:
             self._awaited = [each for each in self._awaited if each is not expected]
 
     def news(self, text: str, now: float) -> list[Heard]:
-        """What was heard since this text was last looked for, in which it may be; nothing at the first look.
+        """What was heard since this text was last looked for, and may contain it; nothing at the first look.
 
         The robot listens for the text until 5 seconds after the last look. All who look at one time see the same.
         """

@@ -160,7 +160,7 @@ def _check_times(frames: Sequence[KeyFrame], problems: Problems) -> None:
 
 
 def _repeat(top: Table, frames: Sequence[KeyFrame]) -> tuple[float, float, int] | None:
-    """From which time to which the key frames come how often."""
+    """The part of the gesture to repeat: from a time to a time, and how often."""
     if not top.has("repeat"):
         return None
     table = top.table("repeat")

@@ -173,7 +173,7 @@ def _new_id(name: str, english: Lexicon) -> str:
 
 @cache
 def _folder() -> str:
-    """One that only the user writes to; for this process alone where there is none."""
+    """One that only the user writes to; for this process alone if there is none."""
     try:
         folder = os.path.join(own_folder(), "words")
         os.makedirs(folder, 0o700, exist_ok=True)

@@ -34,7 +34,7 @@ class Hands:
         return found
 
     def within_reach(self, hand: Hand, name: str | None, pose: Pose) -> str:
-        """The named or the nearest object that a hand could grasp. Raises RobotError where there is none."""
+        """The named or the nearest object that a hand could grasp. Raises RobotError if there is none."""
         part = self._part(hand)
         x, y = pose.ahead(part.ahead, part.left)
         known = (self._obstacles.things[key] for key in self._objects if not self._obstacles.is_carried(key))

@@ -85,7 +85,7 @@ class Knowledge:
         choices: Choices,
         on_event: OnEvent | None,
     ) -> str:
-        """One of the names of a type. Raises RobotError where there is none with these parts."""
+        """One of the names of a type. Raises RobotError if there is none with these parts."""
         listed = not parts and how not in PICKY
         pose = Pose(0.0, 0.0) if listed and how != "nearest" else where()
         names = self.free(kind) if listed else self.described(kind, parts, pose)

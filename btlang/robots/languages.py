@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from btlang.vocabulary.lexicon import Lexicon
 
 _TYPE = "spoken_language"
-"""That of slots whose value is a language, such as "es"."""
+"""The type of slots for a language, such as "es"."""
 
 
 def check_languages(body: Body, tree: Tree, vocabulary: Lexicon) -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def module_of(name: str, folder: str) -> ModuleType:
-    """A module. One in the folder is read anew each time: it may have a newer version, or be that of another robot with
+    """A module. One in the folder is reread each time: it may have a newer version, or be that of another robot with
     one of the same name. Raises what the module raises.
     """
     top = name.partition(".")[0]

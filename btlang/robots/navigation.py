@@ -162,7 +162,7 @@ class Navigator:
                 goal.end(f"{said(goal.held_up)} is in the way to {said(goal.name)}")
 
     def _check(self, goal: NavigationGoal) -> None:
-        """Ends a goal that cannot go on; plans anew when something has moved."""
+        """Ends a goal that cannot go on; plans again when something has moved."""
         name = goal.name
         if (silent := self._base.silent) is not None:
             goal.end(silent)

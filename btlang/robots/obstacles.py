@@ -48,7 +48,7 @@ class Obstacles:
         self.version += 1
 
     def add(self, thing: Thing) -> None:
-        """Somebody of whom the world doesn't know, and who walks."""
+        """Somebody who walks, and whom the world doesn't know."""
         self.things[thing.name] = thing
         self._away.add(thing.name)
 

@@ -187,7 +187,7 @@ class People:
             self._report("speak", name, text)
 
     def _arrive(self, now: float, robot: Other) -> None:
-        """Those whose time it is come, as soon as there is room, and those who have left are gone."""
+        """People come at their time, as soon as there is room, and those who have left are gone."""
         for name, walker in self._walkers.items():
             if not walker.present and not walker.gone and self._comes(walker, now) <= now:
                 others = (robot, *(other.body for other in self._walkers.values() if other.present))

@@ -54,7 +54,7 @@ def body_of(robot: str | Source) -> Body:
 
 
 def installed_robot(name: str) -> str | None:
-    """The robot file of an installed package, by the name of its entry point; None where there is none."""
+    """The robot file of an installed package, by the name of its entry point; None if there is none."""
     from importlib.metadata import entry_points
 
     for entry_point in entry_points(group=ENTRY_POINTS, name=name):

@@ -275,7 +275,7 @@ class SimulatedRobot:
         return self._surroundings.locate(name, self.pose)
 
     def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
-        """A name that is the "nearest", "random" and so on. Raises RobotError where there is none."""
+        """A name that is the "nearest", "random" and so on. Raises RobotError if there is none."""
         return self._surroundings.choose(kind, how, parts, lambda: self.pose, self._choices, self.on_event)
 
     def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
@@ -283,7 +283,7 @@ class SimulatedRobot:
         return self._surroundings.described(kind, parts, self.pose)
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
-        """A run begins, whose random choices follow from the seed; so many have been made."""
+        """A run begins. Its random choices follow from the seed; so many have been made."""
         self._choices.begin(seed, made)
         self._surroundings.begin(seed)
         self._voice.speak_in()
@@ -302,7 +302,7 @@ class SimulatedRobot:
         return self._surroundings.sight.seen(kind, self.pose)
 
     def take_picture(self) -> Operation:
-        """Takes a picture, whose event names what is in view. Raises RobotError where it has no camera."""
+        """Takes a picture; its event names what is in view. Raises RobotError where it has no camera."""
         self._need("perception")
         self._emit("picture", name=", ".join((*self.seen("person"), *self.seen("object"))))
         return CompletedOperation()
@@ -429,7 +429,7 @@ class SimulatedRobot:
 
     @property
     def stations(self) -> list[Station]:
-        """The docks, the nearest first. Raises RobotError where there is none."""
+        """The docks, the nearest first. Raises RobotError if there is none."""
         self._need("docking")
         return stations(self.world, self.body, self.pose)
 

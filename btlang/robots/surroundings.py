@@ -25,7 +25,7 @@ _SAME_SPOT = 0.01  # metres
 
 
 class Surroundings(Knowledge):
-    """What is where in a simulated world, of which the robot knows what it has seen.
+    """What is where in a simulated world. The robot knows the part that it has seen.
 
     `joint` says where a joint of the robot stands; `emit` hears the events "come", "leave", "hear" and "see".
     """
@@ -65,8 +65,8 @@ class Surroundings(Knowledge):
         self.sight.look(now, pose)
 
     def goal_at(self, pose: Pose) -> tuple[str, Pose | None]:
-        """What a way to a pose is called, and where it ends: None on the spot of an object or a person, to which it
-        then is a journey. On the spot of a place it is called by that name, and so knows that its way is blocked.
+        """What a way to a pose is called, and where it ends: None on the spot of an object or a person, since it
+        then goes to that. On the spot of a place it is called by that name, and so knows that its way is blocked.
         """
         for place in self.world.places:
             if pose.distance_to((place.x, place.y)) <= _SAME_SPOT:

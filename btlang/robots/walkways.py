@@ -32,7 +32,7 @@ class Walkways:
         self._distances: dict[int, list[float]] = {}
 
     def path(self, start: Point, goal: Point) -> list[Point]:
-        """The corners of the way, from the start on; empty where there is none."""
+        """The corners of the way, from the start on; empty if there is none."""
         self._refresh()
         first = self._cell(start)
         last = self._cell(goal)

@@ -44,7 +44,7 @@ def _area(wall: Polyline) -> float:
 
 
 def _joined(walls: list[Polyline]) -> list[Polyline]:
-    """The walls, those joined whose ends meet where no other one ends."""
+    """The walls; two are joined if their ends meet where no other one ends."""
     ends: dict[Point, list[Polyline]] = {}
     done = [wall for wall in walls if wall[0] == wall[-1]]
     for wall in walls:

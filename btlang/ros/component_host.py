@@ -183,7 +183,7 @@ class NodeHost:
             raise ComponentError(f"has started, but there is no node {name}")
 
     def _connect(self) -> Questions:
-        """A node of its own for each life: one that knew a node before that was killed takes seconds to find the next.
+        """A separate node for each life: one that knew a killed node before takes seconds to find the next.
 
         Raises ComponentError.
         """

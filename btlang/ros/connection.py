@@ -48,7 +48,7 @@ class RosConnection:
     """See `btlang.run.connection.Connection`. Names and poses are those of the world file, whose map is the robot's.
 
     With `sim_time` the mission's clock follows the topic /clock, else the system's. Missions run in real time.
-    `namespace` is that of the robot and of the node, `node`, whose name is `name`. With `servers` actions are done by
+    `namespace` is that of the robot and of the `node`, which is called `name`. With `servers` actions are done by
     the servers of `btc serve-actions` in that folder of names; what the robot senses comes from itself all the same.
     """
 

@@ -53,7 +53,7 @@ class Gate:
         return self._jump(pose.position.x, pose.position.y, seconds_of(message.header.stamp))
 
     def _jump(self, x: float, y: float, stamp: float) -> str:
-        """The next message is compared with this one: odometry that began anew is believed again."""
+        """The next message is compared with this one: odometry that restarted is believed again."""
         now = time.monotonic()
         before, self._before = self._before, (x, y, stamp, now)
         if before is None:

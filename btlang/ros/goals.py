@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _MANY = QoSProfile(depth=1000)  # of requests at once; more than ten get lost by default
 GONE = "its client is gone"
-"""Why a goal is cancelled whose client has died."""
+"""Why a goal is cancelled when its client has died."""
 
 
 class HeldGoal:

@@ -21,8 +21,8 @@ _STANDING = 1.0  # real seconds for which the clock of a simulation may stand st
 class NodeClock:
     """The clock of a node in seconds, from any thread.
 
-    Without simulated time those are real ones in which this process is awake. Where simulated time stands still because
-    nobody gives it, real time counts on, and where it begins anew it goes on from there: a limit is always reached.
+    Without simulated time those are real ones in which this process is awake. If simulated time stands still because
+    nobody publishes it, real time counts on; if it restarts, it goes on from there: a limit is always reached.
     """
 
     def __init__(self, node: Any) -> None:
@@ -79,7 +79,7 @@ class Latest:
 
     @property
     def message(self) -> Any:
-        """The message, however old; None where there is none."""
+        """The message, however old; None if there is none."""
         return None if self._last is None else self._last[0]
 
     def store(self, message: Any) -> bool:

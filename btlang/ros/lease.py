@@ -33,7 +33,7 @@ _ASKED = 11  # rounds before the end of these in which it is asked for an answer
 
 
 class Lease:
-    """Of a client, for as long as its node lives. Make it before the clients of actions, whose servers then know it."""
+    """Of a client, for as long as its node lives. Make it before clients of actions: then their servers know it."""
 
     def __init__(self, node: Node) -> None:
         self._client = os.urandom(_CLIENT)

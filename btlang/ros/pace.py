@@ -56,7 +56,7 @@ class RosPace(Pace):
         return now - begin
 
     def _time(self) -> float:
-        """Never goes back, also where a simulator begins anew."""
+        """Never goes back, even if a simulator restarts."""
         now, looked = self._now(), monotonic()
         if now == self._seen:
             self._stands += looked - self._looked

@@ -29,7 +29,7 @@ class Question:
         self._come = threading.Event()
 
     def wait(self, seconds: float) -> Any:
-        """The answer, None where there is none by then."""
+        """The answer, None if there is none by then."""
         self._come.wait(seconds)
         return self.answer
 

@@ -384,7 +384,7 @@ class RosRobot:
         return self._places.locate(name, self.pose)
 
     def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
-        """A name of the world file or the mission, or of who was seen. Raises RobotError where there is none."""
+        """A name of the world file or the mission, or of who was seen. Raises RobotError if there is none."""
         return self._places.choose(kind, how, parts, lambda: self.pose, self._choices, self.on_event)
 
     def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
@@ -392,7 +392,7 @@ class RosRobot:
         return self._places.described(kind, parts, self.pose)
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
-        """A run begins, whose random choices follow from the seed; so many have been made."""
+        """A run begins. Its random choices follow from the seed; so many have been made."""
         self._choices.begin(seed, made)
         self._began = None
         self._zones.begin()
@@ -479,7 +479,7 @@ class RosRobot:
         return self._doors.is_on(name)
 
     def awaited(self) -> list[str]:
-        """The topics of which somebody publishes how things are, and that have said nothing yet."""
+        """The topics on the state of things that somebody publishes, but that have reported nothing yet."""
         return [*self._doors.awaited(), *self._perception.awaited(), *self._hands.awaited()]
 
     # Power

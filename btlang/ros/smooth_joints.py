@@ -103,7 +103,7 @@ class RosSmoothJoints:
         self._commanded: tuple[int, ...] = ()
         self._sent: Sent | None = None
         self._way = self._smooth.timeline.plan[1]  # what was sent, or needs not be
-        self._braked: tuple[float, Piece] | None = None  # by `freeze`, of which the timeline doesn't know yet
+        self._braked: tuple[float, Piece] | None = None  # by `freeze`; the timeline doesn't know it yet
         self._played: list[Played] = []
         self._near = inf  # when all joints were last near to the plan
         self._publisher = node.create_publisher(JointTrajectory, TRAJECTORY, 10)

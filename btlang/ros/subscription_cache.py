@@ -86,7 +86,7 @@ class SubscriptionCache:
         return self._latest[topic].named
 
     def get(self, topic: str, limit: float | None = None) -> Any:
-        """The latest message. Raises SensorSilent where there is none, or none for `limit` seconds."""
+        """The latest message. Raises SensorSilent if there is none, or none for `limit` seconds."""
         what, latest = self._what[topic], self._latest[topic]
         if topic not in self._read:
             raise SensorSilent(f"no {what}: {latest.refused or f'nothing has arrived on {latest.named}'}")

@@ -22,7 +22,7 @@ from btlang.ros.subscription_cache import SubscriptionCache
 PLAN, SPEED_LIMIT = "plan", "speed_limit"
 _STEP = 0.1  # metres between two points of a plan that are looked at
 _SAME_GOAL = 1.0  # metres from the goal at which a plan to it ends
-_NEW_PLAN = 1.0  # seconds of the mission in which the robot plans anew when a zone was closed or opened
+_NEW_PLAN = 1.0  # seconds of the mission in which the robot plans again when a zone was closed or opened
 _REPEAT = 1.0  # seconds after which a limit is published again
 _LONGEST = 100_000  # points of a plan
 _NO_LIMIT = False, 0.0  # in the message of Nav2: whether it is a percentage, and how much
@@ -95,7 +95,7 @@ class RosZones:
         return f"the way to {said(self._goal[0])} leads through the {zone.name}, where the robot may not go"
 
     def limit(self, pose: Pose | None) -> float:
-        """Metres a second that the slow zones at a pose allow; infinite where there is none."""
+        """Metres a second that the slow zones at a pose allow; infinite if there is none."""
         if pose is None:
             return inf
         return min((zone.speed for zone in self.zones.slow if zone.contains((pose.x, pose.y))), default=inf)

@@ -39,7 +39,7 @@ class SlowSink(Record):
 
 
 class Bus:
-    """The stream of one run, whose id and clock it has. Unless it is `queued` all sinks are called in the thread of the
+    """The stream of one run, with its id and clock. Unless it is `queued` all sinks are called in the thread of the
     run: for runs that keep step with nothing, as with `speed="max"`.
 
     A sink that raises is dropped and its exception kept in `errors`: what watches a mission must not stop it.

@@ -46,7 +46,7 @@ class Controls:
         self.wake()
 
     def resume(self) -> None:
-        """Goes on where the pause began: the commands that it interrupted start anew."""
+        """Goes on where the pause began: the commands that it interrupted start again."""
         self.paused = False
         self._steps = 0
         self.wake()

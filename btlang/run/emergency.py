@@ -13,7 +13,7 @@ from contextlib import contextmanager
 def emergency_signal(stop: Callable[[], object]) -> Iterator[None]:
     r"""For as long as it lasts, the signal of Ctrl-\ (SIGQUIT) calls `stop`, in a thread of its own.
 
-    So it does where the main thread is busy in code that is not Python's, in which no handler of a signal runs. It does
+    This works even if the main thread is busy in code that isn't Python's, where no handler of a signal runs. It does
     nothing where there is no such signal, where another thread than the main one asks, or where the signal is taken.
     """
     number = getattr(signal, "SIGQUIT", None)

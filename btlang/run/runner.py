@@ -179,7 +179,7 @@ class Runner:
         engine.on_wake = self._pace.wake
 
     def halt(self) -> None:
-        """Halts the tree and stops the robot, outside of run(); the next tick starts the tree anew."""
+        """Halts the tree and stops the robot, outside of run(); the next tick starts the tree again."""
         self._end()
 
     def tick(self) -> int:

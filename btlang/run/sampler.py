@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Sampler:
-    """A sink in the thread of the run, on whose bus it publishes what it finds at the end of each period.
+    """A sink in the thread of the run. It publishes what it finds on the run's bus, at the end of each period.
 
     `values` is the outermost scope of the blackboard. `scans` is how many there are in a second of mission time.
     """

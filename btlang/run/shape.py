@@ -41,6 +41,6 @@ class Shape:
             child = self.ends[child]
 
     def after(self, node: int) -> int:
-        """The sibling behind a node, -1 where there is none."""
+        """The sibling behind a node, -1 if there is none."""
         parent, end = self.parents[node], self.ends[node]
         return end if parent >= 0 and end < self.ends[parent] else -1

@@ -105,7 +105,7 @@ class State:
         if status == RUNNING:
             if before in (SUCCESS, FAILURE, SKIPPED):
                 self._clear_older(index, t)
-            if before != SUSPENDED or not self._has_children(index):  # a command starts anew, what is above goes on
+            if before != SUSPENDED or not self._has_children(index):  # a command starts again, what is above goes on
                 self.started[index] = t
             self.statuses[index] = RUNNING
             if index == 0:

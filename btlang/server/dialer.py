@@ -51,7 +51,7 @@ class Settings(Record):
 
 
 class Key(Record):
-    """What makes a robot known to a server: `pin` is in hexadecimal digits, `code` that with which it was made."""
+    """What makes a robot known to a server: `pin` is in hexadecimal digits, `code` the one it was made with."""
 
     pin: str
     key: str

@@ -67,7 +67,7 @@ async def listed(read: Read) -> list[dict[str, Any]]:
 
 
 async def fetched(read: Read, name: str) -> Fetched:
-    """One, of which the first piece is here. Raises AccessError (404, 503)."""
+    """A recording, once its first piece is here. Raises AccessError (404, 503)."""
     if not NAME.fullmatch(name):
         raise AccessError(404, "There's no such recording.")
     try:

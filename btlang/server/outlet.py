@@ -89,7 +89,7 @@ class Outlet:
         self._answers.set()
 
     def keep(self, topic: str, text: str, most: int) -> None:
-        """Adds a text of a topic, of which the newest `most` wait; fewer, but one, where much waits already."""
+        """Adds a text of a topic. Its newest `most` texts wait; fewer, but at least one, if much waits already."""
         waiting = self._topics.setdefault(topic, deque())
         while waiting and (len(waiting) >= most or self._length > _MUCH):
             self._length -= len(waiting.popleft())

@@ -40,7 +40,7 @@ class Throttle:
             self._wrong.popitem(last=False)
 
     def right(self, key: str) -> None:
-        """Somebody was right: it begins anew."""
+        """Somebody was right: counting starts again."""
         self._wrong.pop(key, None)
 
     def _known(self, key: str) -> tuple[int, float]:

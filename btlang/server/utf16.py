@@ -1,4 +1,4 @@
-"""Places in a text as pages count them: in UTF-16 units, of which a character beyond the first 65,536 has two."""
+"""Places in a text as pages count them: in UTF-16 units. A character beyond the first 65,536 is two."""
 
 from __future__ import annotations
 

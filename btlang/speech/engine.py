@@ -80,7 +80,7 @@ class Utterance(Record):
 def words_at(text: str, starts: Sequence[tuple[int, float]], seconds: float) -> tuple[Word, ...]:
     """The words of a text. `starts` are indices and times at which something is spoken, in order.
 
-    A word in which nothing is begins with the next one.
+    A word without a start begins with the next one.
     """
     found, at = [], 0
     for match in WORD.finditer(text):

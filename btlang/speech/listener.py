@@ -57,7 +57,7 @@ class Listener:
         self._put(self._recogniser.forget)
 
     def understood(self) -> Understood | None:
-        """The next sentence that was said, each once; None where there is none."""
+        """The next sentence that was said, each once; None if there is none."""
         return self._found.popleft() if self._found else None
 
     def close(self) -> None:

@@ -12,7 +12,7 @@ _HUGS = ",.;:!?…)]}”»%"
 
 
 class Mark(Record):
-    """The words in a mark, and the index in the plain text from which the word is looked for that it meets."""
+    """The words in a mark, and the index in the plain text where the search for the word that it meets begins."""
 
     words: str
     index: int

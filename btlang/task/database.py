@@ -28,7 +28,7 @@ PATIENCE = 10.0
 """Seconds of waiting for another process, after which a call gives up."""
 _MOST_IDLE = 4  # connections
 OWNED: set[int] = set()
-"""The open files (on a server: the connections) whose end is the end of an ownership."""
+"""The open files (on a server: the connections) that end an ownership when they are closed."""
 
 
 class Mode(Enum):

@@ -109,7 +109,7 @@ def _reason(person: str, reason: str) -> str:
 
 
 def _changed_at(path: str) -> int:
-    """When the file was written last, 0 where there is none."""
+    """When the file was written last, 0 if there is none."""
     try:
         return os.lstat(path).st_mtime_ns
     except OSError:

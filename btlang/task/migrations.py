@@ -114,7 +114,7 @@ def migrate(database: Database, steps: Sequence[Step] | None = None) -> None:
 
 
 def stored_version(database: Database, execute: Execute, steps: Sequence[Step] | None = None) -> int:
-    """The version of a store that may be used, 0 where there is none yet. Raises MissionError (BT195, BT196)."""
+    """The version of a store that may be used, 0 if there is none yet. Raises MissionError (BT195, BT196)."""
     steps = MIGRATIONS if steps is None else steps
     found = database.tables(execute)
     if "version" not in found:

@@ -192,7 +192,7 @@ class _Moment:
         return moment
 
     def _day(self) -> Days:
-        """One day, or days of which the nearest one is meant."""
+        """One day, or several that mean the nearest of them."""
         words = self.words
         words.takes(*self.openers)
         first, named = words.at, words.takes(*self.named)

@@ -320,7 +320,7 @@ class ScheduleWords:
         if self.is_over:
             return self.incomplete("isn't complete")
         farthest = max((at for at in self._asked if at < self._last), default=self.at)
-        at = max(self.at, farthest)  # `of evry month` is no words in which `of` is the mistake
+        at = max(self.at, farthest)  # in `of evry month` the mistake isn't `of`
         unread = Unread(self._text.span(at, at + 1), _UNKNOWN, at, example)
         if self._text.words[at] not in self._value_words:  # `every hundred hours` has no misspelt word
             unread.expected = self._asked.get(at, ())

@@ -86,7 +86,7 @@ class SocketServer:
             os.close(self._lock)
 
     def _accept(self, which: int, take: Callable[[socket.socket], object]) -> None:
-        """Hands on who connects. A socket that somebody took away is made anew: the robot can always be reached."""
+        """Hands on who connects. A socket that somebody took away is made again: the robot can always be reached."""
         while not self._closed:
             try:
                 connection, _ = self._sockets[which].accept()
@@ -101,7 +101,7 @@ class SocketServer:
             take(connection)
 
     def _look(self, which: int) -> None:
-        with self._answered:  # so that nothing is made anew once it is closed
+        with self._answered:  # so that nothing is made again once it is closed
             if not self._closed and not os.path.exists(self._paths[which]):
                 with suppress(OSError, MissionError):
                     socket_folder()

@@ -28,7 +28,7 @@ class Store:
     """A store of tasks, to be used from any thread, and by several processes at once. Made by `open_store`.
 
     Each method is one transaction. Times are seconds since 1970 and come from the caller. Any method may raise
-    StoreError (BT195), which says why the database refuses; then the store is as it was before.
+    StoreError (BT195), which says why the database refuses; then the store is unchanged.
     """
 
     def __init__(self, database: Database) -> None:
@@ -211,7 +211,7 @@ class Store:
         self, name: str, text: str, person: str, time: float, base: int | None = None, kind: Kind = Kind.MISSION
     ) -> Revision | None:
         """The revision that has this text: the latest one of that name, or else a new one. None, and no change, if it
-        was made from another one, `base`, than the latest, 0 where there is none.
+        was made from another one, `base`, than the latest, 0 if there is none.
         """
         with self._database.transaction(Mode.ALONE) as execute:
             latest = self._latest(execute, name, kind)

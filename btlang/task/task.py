@@ -88,7 +88,7 @@ class MissionText(Record):
 
 
 class Task(Record):
-    """A mission that the robot is to do. Times are in seconds since 1970, None where there is none.
+    """A mission that the robot is to do. Times are in seconds since 1970, None if there is none.
 
     `id` is positive and unique in its store, 0 before it is in one. Higher `priority` comes first, then lower
     `position`, then the lower id. It isn't begun before `earliest`, and not after `deadline`. `needs` are capabilities

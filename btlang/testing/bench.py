@@ -86,7 +86,7 @@ class DeviceBench:
         self._loop.write(self._device.name, command)
 
     def wait(self, expected: Callable[[Any], bool] = lambda reading: True, seconds: float = _PATIENCE) -> Reading:
-        """The first reading that is as expected. Raises AssertionError where there is none in so many seconds."""
+        """The first reading that is as expected. Raises AssertionError if none comes in so many seconds."""
 
         def look() -> Reading | None:
             try:

@@ -60,7 +60,7 @@ class Result(Record):
 
 
 class _Connect(Record):
-    """Connects to the simulated robot of a test, some of whose words fakes stand in for."""
+    """Connects to the simulated robot of a test; fakes stand in for some of its words."""
 
     body: Body
     fakes: Fakes

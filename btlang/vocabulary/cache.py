@@ -33,14 +33,14 @@ _MOST_IN_PROCESS = 16
 _in_process: dict[tuple[Any, ...], Any] = {}
 MOST_FILES = 20  # older ones are deleted
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-_CODE = ("", "diagnostics", "robots", "text", "vocabulary")  # whose modules make what is kept; "" holds the version
+_CODE = ("", "diagnostics", "robots", "text", "vocabulary")  # their modules make what is kept; "" holds the version
 _OTHERS_MAY_WRITE = stat.S_IWGRP | stat.S_IWOTH
 
 
 def cached(kind: str, files: Sequence[str], make: Callable[[], Made]) -> Made:
     """What `make` gives, from the cache where it was made before of the same files by the same code.
 
-    `kind` and `files` tell it from other things that are kept. What `make` raises comes through, and nothing is kept.
+    `kind` and `files` distinguish it from other entries. What `make` raises comes through, and nothing is kept.
     Within a process it is the same object each time, so it must not be changed.
     """
     identity = (kind, _PACKAGE, sys.version, *files)
@@ -78,7 +78,7 @@ def _from_folder(state: tuple[Any, ...], make: Callable[[], Made]) -> Made:
 
 
 def own_folder() -> str:
-    """The folder of the cache. Raises OSError where there is none that only the user can write to."""
+    """The folder of the cache. Raises OSError if there is none that only the user can write to."""
     folder = user_dir("cache")
     if not os.path.isabs(folder):  # a user without a home
         raise FileNotFoundError(folder)

@@ -83,7 +83,7 @@ def meanings(node: TrieNode) -> Iterator[Meaning]:
 
 
 def values_on(kind: str, values: Values, written: Sequence[str], start: str) -> Iterator[str]:
-    """What goes on a value of a type of which some words are written; the next word begins with `start`.
+    """What can follow the `written` words of a value of a type; the next word begins with `start`.
 
     A number that is written in full is followed by units; where nothing is written an example is given.
     """

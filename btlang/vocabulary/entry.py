@@ -86,7 +86,7 @@ class Entry(Record, uncompared=("span",)):
 
 
 class About(Record):
-    """What people are told of a role: the topic it is listed under, what it does, and an example that runs."""
+    """How a role is described to people: the topic it is listed under, what it does, and an example that runs."""
 
     topic: str = ""
     help: str = ""

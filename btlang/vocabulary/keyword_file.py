@@ -42,7 +42,7 @@ class KeywordFile(Record):
     """What a file declares. `language` holds the tables of a connective file, empty in a pack of phrases.
 
     `names` are (type, words, name) of the values of enumerated types. Where it is not for the `shipped` words, these
-    are not loaded beside it. `nouns` are those of which the robot chooses a name.
+    are not loaded beside it. `nouns` are those for which the robot chooses a name.
     """
 
     source: Source
@@ -157,7 +157,7 @@ class _Reader:
                 self.nouns.append(_Noun(kind, phrase, slots))
 
     def described_noun(self, noun: Noun) -> None:
-        """A noun of which the robot chooses a name."""
+        """A noun for which the robot chooses a name."""
         if noun.slots.keys() - set(PARTS):
             self.wrong(f"the noun '{noun.phrase}' with how takes the slots {', '.join(PARTS)}", noun.phrase)
             return

@@ -22,7 +22,7 @@ GOES_ON = frozenset((
     "otherwise", "or", "meanwhile", "in_parallel", "if_works", "if_it_works", "in_any_case",
     "do_that", "repeat_that", "again",
 ))  # fmt: skip
-"""The roles that begin no statement of their own: what they begin goes on with the statement before it."""
+"""The roles that don't begin a new statement: what they begin continues the statement before it."""
 
 NO_PHRASES = frozenset((
     "define_strong", "define", "fact", "facing", "set_to", "by", "remember_as", "each_in",
@@ -32,7 +32,7 @@ NO_PHRASES = frozenset((
 """Roles whose words are looked for where definitions, facts and nodes are, and nowhere else."""
 
 CHANGING = ("increase", "decrease")
-"""Roles whose words change the value whose name is behind them, wherever they are found."""
+"""Roles whose words change the value that is named behind them, wherever they are found."""
 
 NOT_ALONE = frozenset(("ordinal", "keep", "fails"))
 """The roles whose words are ordinary words everywhere but in one place."""
@@ -61,7 +61,7 @@ COMPARING = {**dict.fromkeys(COMPARISONS, "value"), "between": "low high"}
 """The ways to compare a quantity, each with the slots that its phrases hold."""
 
 EXPLAINED = (*(role for role in ROLES if role != "never"), "compare", "politeness")
-"""What the table `about` tells of: all that can be said."""
+"""The roles that the table `about` describes: all that can be said."""
 
 SWITCHES = frozenset(("decimal_comma",))
 
@@ -213,15 +213,15 @@ def _changed(phrases: list[str], words: list[str] | dict[str, list[str]]) -> lis
 
 def about_roles(tables: Iterable[Mapping[str, Any]], known: Mapping[str, About]) -> dict[str, About]:
     """What the tables say of the roles, the latest of each; a role with new words loses its example in old ones."""
-    about: dict[str, About] = {role: told.replace(example="") for role, told in known.items()}
+    about: dict[str, About] = {role: each.replace(example="") for role, each in known.items()}
     for table in tables:
-        told = table.get("about", {})
+        described = table.get("about", {})
         others = (
             role for role, words in table.get("roles", {}).items() if isinstance(words, list) or "remove" in words
         )
-        replaced = [role for role in others if role in about and role not in told]
+        replaced = [role for role in others if role in about and role not in described]
         about |= {role: about[role].replace(example="") for role in replaced}
-        about |= {role: About(**keys) for role, keys in told.items()}
+        about |= {role: About(**keys) for role, keys in described.items()}
     return about | {role: About() for role in EXPLAINED if role not in about}
 
 

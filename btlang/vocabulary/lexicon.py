@@ -69,7 +69,7 @@ class Lexicon:
                 if self.types[kind].kind == "names":
                     self.values.add_name(kind, self._bare(words), name)
         self.context = ReadingContext(self.values)
-        """What is known without a mission; whoever reads one has a context of its own."""
+        """What is known without a mission; each reader of one has its own context."""
         self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
         name = language["language"]
         self.word_list = os.path.join(folder, f"{name}.words") if folder and name.isalpha() else ""
@@ -194,7 +194,7 @@ class Lexicon:
         return frozenset(word for word in words if word.isalpha())
 
     def _types_of(self, files: Iterable[KeywordFile], english: Lexicon | None) -> dict[str, ValueType]:
-        """The types by name; a file may declare one anew, but not of another kind. Its least number stays."""
+        """The types by name; a file may redeclare one, but not with another kind. Its least number stays."""
         types: dict[str, ValueType] = dict(english.types) if english is not None else {}
         for file in files:
             for kind in file.types:
@@ -279,7 +279,7 @@ class Lexicon:
                 self._wrong(entry, str(error))
 
     def _replaced_id(self, entry: Entry) -> str:
-        """That of the word whose phrase it has."""
+        """The id of the known word that has its phrase."""
         own = self._forms_of(entry)
         for node_id, known in self.entries.items():
             if any(not own.isdisjoint(self._forms_of(other)) for other in known):
@@ -307,7 +307,7 @@ class Lexicon:
                 for form in self._forms(pattern):
                     add(self.quantities, form, {s.name: s.type for s in entry.slots}, Meaning("quantity", entry))
             except PatternError:
-                return entry  # the keyword file has told
+                return entry  # reading the keyword file has reported it
         ways = [way for name, patterns in self.comparisons.items() for way in comparing_phrases(name, patterns)]
         phrases = tuple(f"{quantity} {way}" for way in ways for quantity in entry.quantity)
         compared = tuple(SlotSpec(name, entry.measures) for name in COMPARISONS)

@@ -14,7 +14,7 @@ from btlang.vocabulary.pattern import Form, forms
 from btlang.vocabulary.trie import longest
 
 _WIDTH = 80  # columns, of a text that is for no terminal
-_FEW = 3  # of so few found, all is told
+_FEW = 3  # if so few are found, all about them is shown
 _KEY = (
     "[...] is optional, {{...}} takes a value (see the end), a/b is a choice,",
     "time(s) is time or times. A condition isn't a command: it needs a word such as",
@@ -40,7 +40,7 @@ def listing(vocabulary: Lexicon, search: str = "", width: int = _WIDTH) -> list[
     """Everything that can be said, by topic, each with what it does and an example.
 
     With `search` only the topic or sort of that name ("conditions"), else what is said with all of its words, else
-    what is explained with them; all is told of it where that is little. Where nothing is found, the nearest words.
+    what is explained with them. A few finds are shown in full; if nothing is found, similar words are listed.
     """
     known = items(vocabulary)
     if not search.strip():
@@ -138,10 +138,10 @@ def _brief(item: Item, width: int) -> list[str]:
     lines[-1] += mark
     block = _block(item.example, 8) if "\n" in item.example else []
     example = f"For example: {item.example}" if item.example not in ("", item.ways[0]) and not block else ""
-    told = [text for text in (item.help, example) if text]
-    if len(" ".join(told)) <= width - 6:
-        told = [" ".join(told)] if told else []
-    lines += [line for text in told for line in _wrapped(text, "      ", "      ", width)]
+    texts = [text for text in (item.help, example) if text]
+    if len(" ".join(texts)) <= width - 6:
+        texts = [" ".join(texts)] if texts else []
+    lines += [line for text in texts for line in _wrapped(text, "      ", "      ", width)]
     return [*lines, *(["      For example:", *block] if block else [])]
 
 

@@ -34,8 +34,8 @@ def load_vocabulary(
     functions that carry one (see `btlang.action`). `names` adds values of types, such as the places of a world, and
     `features` says what they are like.
 
-    A pack is an entry point of the group `btlang.keywords` whose value is a module beside which, or a function that
-    returns the path at which, its keyword file lies. `language` is one that ships or the path of a folder like theirs.
+    A pack is an entry point of the group `btlang.keywords`: a module with its keyword file beside it, or a function
+    that returns the path of that file. `language` is one that ships or the path of a folder like theirs.
     Raises MissionError (BT001, BT002, BT060 to BT065).
     """
     vocabulary = _words(_folder(language), *_items(keywords))

@@ -149,7 +149,7 @@ def _phrases(vocabulary: Lexicon) -> tuple[frozenset[str], frozenset[str], froze
 
 @lru_cache(maxsize=16)
 def _one(known: frozenset[str]) -> frozenset[str]:
-    """The same object for equal sets, of which a cache would compare all words at each look-up."""
+    """The same object for equal sets: else a cache would compare all their words at each look-up."""
     return known
 
 

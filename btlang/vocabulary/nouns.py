@@ -23,7 +23,7 @@ _PLURALS = {"kind": "kinds"}
 
 
 class Noun(Record):
-    """A noun phrase as a keyword file declares it: `[{color}] {kind}`, of which the robot chooses one by `how`."""
+    """A noun phrase as a keyword file declares it: `[{color}] {kind}`; the robot chooses one by `how`."""
 
     type: str
     how: str
@@ -100,7 +100,7 @@ class Nouns:
         return frozenset((*self.tree, *slots)) - {END, SLOTS}
 
     def words(self, meant: Description, spoken: Mapping[tuple[str, str], str]) -> str:
-        """The first way to say what has these parts, "" where there is none. `spoken` are the words of their names."""
+        """The first way to say what has these parts, "" if there is none. `spoken` are the words of their names."""
         parts = dict(meant.parts)
         form = self._said.get((meant.type, meant.how, tuple(sorted(parts))), ())
         pieces = ((part, "") if isinstance(part, str) else (part.name, parts[part.name]) for part in form)

@@ -16,7 +16,7 @@ from btlang.vocabulary.word_tree import find
 class Known(Record):
     """A value that the mission names itself: its key on the blackboard, and the types that it can be used as.
 
-    Without types it can be used as any: nothing has told yet. One `is_chosen` by the robot gives way to others.
+    Without types it can be used as any: they aren't known yet. One `is_chosen` by the robot gives way to others.
     """
 
     key: str
@@ -29,7 +29,7 @@ class ReadingContext:
     """Reads values at a place in a text, those too that only the mission knows.
 
     `known` are the values that it names, by key; None where any name in braces is one. `latest` are the values that
-    pronouns stand for, by type; whoever reads a text sets them, on a context of its own. `lacked` tells that a pronoun
+    pronouns stand for, by type; each reader of a text sets them, on its own context. `lacked` says that a pronoun
     stood for nothing: behind other values it might stand for one. `keys` are those for what is chosen, by type, where
     they aren't the names of the types; `met` are those that have been chosen by now.
     """
@@ -68,7 +68,7 @@ class ReadingContext:
         return made
 
     def read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
-        """The port text of a value of the type and where it ends, or None where there is none."""
+        """The port text of a value of the type and where it ends, or None if there is none."""
         if self.known != {}:
             known = self._known(kind, text, at)
             if known is not None:

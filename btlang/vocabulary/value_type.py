@@ -8,10 +8,10 @@ from btlang.record import Record
 
 TEXT = "text"
 PLACE = "place"
-"""The type of which a point is a value, too."""
+"""The type whose values can be points, too."""
 OBJECT = "object"
 WORLD = (PLACE, "person", OBJECT, "zone", "door")
-"""The types of which robots know where each name is."""
+"""The types of names that have a place: robots know where each one is."""
 
 
 class Unit(Record):

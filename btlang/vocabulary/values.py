@@ -99,7 +99,7 @@ class Values:
 
     @property
     def openers(self) -> Mapping[str, frozenset[str]]:
-        """The words of letters alone, and the marks, at which a value of a type may begin: at no other one does it.
+        """The words of letters alone, and the marks, that a value of a type may begin with; no others begin one.
 
         A type that is not in it may begin at any.
         """
@@ -200,7 +200,7 @@ class Values:
         return tuple(name for name, parts in self._features.get(meant.type, ()) if set(meant.parts) <= set(parts))
 
     def exception(self, text: Words, at: int) -> int:
-        """Where a word such as `except` ends, 0 where there is none."""
+        """Where a word such as `except` ends, 0 if there is none."""
         found = find(self._exceptions, text.words, at)
         return found[1] if found is not None else 0
 
@@ -214,7 +214,7 @@ class Values:
         return value_type.kind == "text" or (value_type.kind == "number" and word in self._numbers)
 
     def read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
-        """The port text of a value of the type and where it ends, or None where there is none."""
+        """The port text of a value of the type and where it ends, or None if there is none."""
         value_type = self.types[kind]
         if value_type.kind == "quantity":
             quantity = self.quantity(text, at)

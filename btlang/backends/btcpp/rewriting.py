@@ -52,7 +52,7 @@ class _Element(Record):
 
 
 class Rewriter:
-    """Puts the text together anew. `known` gives the number of the element that a node is already, `spell` how a node
+    """Rebuilds the text. `known` gives the number of the element that a node is already, `spell` how a node
     is written. Changes of single places (`change`) come first, then `write`.
     """
 
@@ -358,7 +358,7 @@ class Rewriter:
         return [lead, *comments, f"{head}>", *work, f"{self.line_end}{item.margin}</{tag}>"]
 
     def _comments(self, item: _Element, lead: str, notes: Sequence[Work] = ()) -> list[Work]:
-        """Comments that come before a node, on lines of their own: behind what is on the line they'd belong to that."""
+        """Comments before a node, on their own lines: behind something else on a line they'd belong to that."""
         margin = self.line_end + item.margin
         texts = [*notes, *(f"{text}{margin}" for text in self._leads.get(id(item.node), ()))]
         return [margin, *texts] if texts and "\n" not in lead else texts

@@ -53,7 +53,7 @@ class Checked:
         self.scope = scope
         self.around = around
         self.texts: Mapping[str, str] = {}
-        self._lowered: dict[int, tuple[ast.Ast, Lowered]] = {}  # with its syntax, whose id is then that of no other
+        self._lowered: dict[int, tuple[ast.Ast, Lowered]] = {}  # with its syntax, so that no other one gets its id
 
     def lowered(self, item: ast.Ast) -> Lowered:
         """What a piece of syntax means. Few are around pieces that are known."""

@@ -1,6 +1,6 @@
 """The code of scripts as what it was made of: the statement, comparison or text behind it.
 
-Only the ways are known in which btlang/passes/scripts.py lowers them; None stands for any other code.
+Only the ways in which btlang/passes/scripts.py lowers them are known; None stands for any other code.
 """
 
 from __future__ import annotations

@@ -70,7 +70,7 @@ def _is_plain(node: Node, node_id: str) -> bool:
 
 
 def _otherwise(last: Candidate, *ports: tuple[str, str]) -> ast.Ast | None:
-    """The branch behind `otherwise`; None where there is none to be said."""
+    """The branch behind `otherwise`; None if there is none to be said."""
     node = last.node
     return None if node.id == "AlwaysSuccess" and node.ports == ports and not node.name else last.part
 
@@ -200,7 +200,7 @@ def _parallel(node: Node, children: tuple[Candidate, ...], checked: Checked) -> 
 
 
 def _fallback(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
-    """Two of which one is a sequence in lines of its own are said as blocks."""
+    """Two children are said as blocks if one of them is a sequence that needs its own lines."""
     if len(children) == 2 and any(child.part is not child.command for child in children):
         yield ast.Try(children[0].part, children[1].part, NOWHERE)
     yield from _chain("fallback")(node, children, checked)

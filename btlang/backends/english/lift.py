@@ -1,4 +1,4 @@
-"""Tree to AST: each node in the most natural form that means just it, and by its id where there is none."""
+"""Tree to AST: each node in the most natural form that means just it, and by its id if there is none."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ class Lifter:
         return made
 
     def _loop(self, node: Node, loop: Loop, body: Candidate) -> Candidate:
-        """One that does not mean the node is refused, and then all is said anew. One may stand twice (ast.Apart)."""
+        """A loop that doesn't mean the node is refused; then all is said again. One may stand twice (ast.Apart)."""
         if loop.name in self._loops:
             return self._loops[loop.name]
         kind = self._known.kind(loop.name, loop.key)

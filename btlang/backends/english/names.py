@@ -22,7 +22,7 @@ from btlang.vocabulary.references import keys_set_in
 class Refused(Record):
     """What turned out not to be said naturally: names of subtrees, and keys of values of the whole mission.
 
-    `unset` are keys of which nothing that is said sets a value, though a node does.
+    `unset` are keys that a node sets, but nothing that is said.
     """
 
     names: Set[str] = frozenset()
@@ -34,7 +34,7 @@ class Names:
     """`names` are the subtrees that are said as phrases, `loops` those that are bodies of `for each`.
 
     With `values` False there are no loops and no parameters, and values are only given to the mission; without `given`
-    no value has a name, either. With `sure` no name has a parameter whose type hangs on where it is used first.
+    no value has a name, either. With `sure` no name has a parameter whose type depends on its first use.
     """
 
     def __init__(
@@ -106,8 +106,8 @@ def given_keys(mission: ast.Program) -> tuple[str, ...]:
 class _Said:
     """The keys of values of the whole mission: those that are `set`, `chosen` or `outputs` of nodes, and those `used`.
 
-    These have the names of the subtrees in quotes in which they are used, "" for anywhere else; `arguments` are what
-    such subtrees get.
+    `used` has the names of the subtrees in quotes that use a key, "" for anywhere else; `arguments` are what such
+    subtrees get.
     """
 
     def __init__(self, mission: ast.Program) -> None:

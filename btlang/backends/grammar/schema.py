@@ -52,7 +52,7 @@ def to_schema(vocabulary: Lexicon) -> str:
 
 
 def _node(node_id: str, ports: dict[str, Any], needed: list[str], own: dict[str, Any], about: str) -> dict[str, Any]:
-    """An object of a node with this id and these ports, of which some are needed."""
+    """An object of a node with this id and these ports, some of them needed."""
     taken = {
         "type": "object",
         "properties": ports,

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import serial
 
 HELLO_WAIT = 3.0
-"""Seconds for a board to say hello; some start anew when their port is opened, which takes two."""
+"""Seconds for a board to say hello; some restart when their port is opened, which takes two."""
 _ASKED_EVERY = 0.1
 _LOOK = 0.01  # seconds that a read blocks at most
 _MOST_BYTES = 4096  # between two messages to a board, which answers each with one frame

@@ -38,7 +38,7 @@ class SimulatedLine:
     """A board on a pty at `path`, while it is entered. Its faults can be changed at any time:
 
     `flipped`: the share of bytes that change on their way; `baud`: bits a second that it carries (0: no limit); `echo`:
-    what is sent comes back too; `cut`: the share of answers of which only a half comes; `deaf`: nothing reaches the
+    what is sent comes back too; `cut`: the share of answers that are cut in half; `deaf`: nothing reaches the
     board; `noise`: what comes besides, at each turn; `still_since`: when the wheels came to rest, None while they turn.
     """
 

@@ -188,7 +188,7 @@ def class_leaf(instance: NodeInstance, leaf: Any, start: Callable[..., Any], sto
 
 
 def _trace_of(instance: NodeInstance) -> LeafTrace | None:
-    """Its trace, to which the leaf itself tells how it ended unless conditions around it may change that."""
+    """Its trace; the leaf itself reports how it ended, unless conditions around it may change that."""
     trace = instance.state.node_trace
     if trace is not None and trace.index and not any(port[:1] == "_" for port, _ in instance.node.ports):
         trace.reported_by_leaf = True

@@ -30,7 +30,7 @@ class EventLoop:
         self._thread.start()
 
     def start(self, call: Callable[[], Any], work: Work, over: Callable[[Work], object]) -> None:
-        """Awaits what `call` gives, and tells `over` when it has ended. Cancelling the work cancels the task."""
+        """Awaits what `call` gives, and calls `over` when it has ended. Cancelling the work cancels the task."""
         loop = self._loop
         tasks: list[asyncio.Task[None]] = []
 

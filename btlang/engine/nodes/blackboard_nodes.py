@@ -1,7 +1,7 @@
 """Leaves that write to the blackboard: set_blackboard_node.h and unset_blackboard_node.h of BehaviorTree.CPP 4.10.
 
 One difference: a port `{name}` that names an entry means the entry `name`. There it means the entry whose name is the
-text under `name`, and raises an exception where there is none.
+text under `name`, and raises an exception if there is none.
 """
 
 from __future__ import annotations

@@ -76,7 +76,7 @@ def _in_order(children: Sequence[Compiled], passes: int) -> Compiled:
 
 
 def _breathing(instance: NodeInstance, children: Sequence[Compiled], passes: int, remember: bool = False) -> Compiled:
-    """As `_in_order`, but RUNNING between two children of which the first took no longer than its tick.
+    """As `_in_order`, but RUNNING between two children if the first took no longer than its tick.
 
     The next tick comes at once then; but not in a second run at the same time, so that no loop holds the time.
     """

@@ -60,7 +60,7 @@ def _loop(instance: NodeInstance, children: Sequence[Compiled], convert: Callabl
     key = blackboard_key("queue", text)
     values = [] if key is not None else _constants(instance, text, convert, sort)
     stays = instance.parent_keeps_completed  # it does not reset a child that has completed
-    queue = deque(values)  # of its own, where there is none on the blackboard
+    queue = deque(values)  # its own, if there is none on the blackboard
     running = False  # whether the child was RUNNING at the last tick
 
     def reset() -> None:

@@ -1,7 +1,7 @@
 """Nodes that wait for the clock: timeout_node.cpp, delay_node.cpp and sleep_node.cpp of BehaviorTree.CPP 4.10.
 
 The clock is read when they are ticked, and asked for a tick when their time is over; C++ has a timer thread instead. A
-Timeout whose child is SKIPPED starts its time anew; in C++ it goes on, or ends, by chance.
+Timeout whose child is SKIPPED restarts its time; in C++ it goes on, or ends, by chance.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Nodes that ask whether a blackboard entry was set anew: updated_decorator.cpp and updated_action.cpp of 4.10.
+"""Nodes that ask whether a blackboard entry was updated: updated_decorator.cpp and updated_action.cpp of 4.10.
 
 The first time they ask, an entry that has a value counts as new; setting the value that it has counts too. No halt
 makes them forget what they have seen. One difference: halting a decorator halts its child; there the child is left

@@ -46,7 +46,7 @@ class _Waiting:
 
 
 def parse(text: str, enums: Enums) -> list[Run]:
-    """The statements. Raises ScriptError where there is none, or where they cannot be read."""
+    """The statements. Raises ScriptError if there is none, or where they cannot be read."""
     statements = []
     tokens = Tokens(text)
     while tokens.kind != "end":

@@ -4,7 +4,7 @@
 
 Statements are separated by `;`, which may be left out, as there; the value is that of the last. From loose to tight:
 
-    :=  =  +=  -=  *=  /=    `:=` makes the entry where there is none, the others need one; from right to left
+    :=  =  +=  -=  *=  /=    `:=` makes the entry if there is none, the others need one; from right to left
     ? :                      from right to left
     ||    then &&            both sides are evaluated
     == != < <= > >=          `a < b < c` is `a < b` and `b < c`; numbers no further apart than 2**-23 are equal

@@ -162,7 +162,7 @@ def _same(left: Any, right: Any) -> bool:
     return bool(left == right) if left.__class__ is str else abs(left - right) <= _SAME
 
 
-# Written as there, which tells for nan: less, for one, fails only where left >= right.
+# Written as there, which matters for nan: less, for one, fails only if left >= right.
 COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
     "==": _same,
     "!=": lambda left, right: not _same(left, right),

@@ -65,7 +65,7 @@ class XmlFiles:
         return {node.port("ID") for file in self.files for nodes in file.uses.values() for node in nodes}
 
     def read_trees(self, models: Mapping[str, NodeModel]) -> None:
-        """Reads the trees of all files that are sound; in each, an ID means a tree of its own before others."""
+        """Reads the trees of all sound files; in each, an ID means the file's own tree before others."""
         kinds = self._kinds = {node_id: model.kind for node_id, model in models.items() if model.kind != SUBTREE}
         names, defaults = self.names, subtree_defaults(models.values())
         for file in self._sound:

@@ -72,7 +72,7 @@ def _once(warnings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
 
 
 def _named(files: list[XmlFile]) -> tuple[dict[str, TreeHead], dict[str, str]]:
-    """The heads of all trees, each under a name of its own; and of those whose ID was taken, the name that has it."""
+    """The heads of all trees by unique names; and for those whose ID was taken, that ID by their new name."""
     heads: dict[str, TreeHead] = {}
     again: dict[str, str] = {}
     for file in files:

@@ -66,7 +66,7 @@ def without_dollar(text: str) -> str:
 
 
 def spelled_4(node: Node, kind: Callable[[str], str], written: Mapping[str, str]) -> Spelling:
-    """In format 4. `kind` is that of a node by its id, `written` has the IDs of trees whose names cannot be IDs."""
+    """A node in format 4. `kind` gives the kind of an id, `written` the IDs of trees whose names cannot be IDs."""
     named = (("name", node.name),) if node.name else ()
     if node.id == SUBTREE:
         return SUBTREE, _subtree(node, named, node.ports, written)

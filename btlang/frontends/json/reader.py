@@ -43,8 +43,8 @@ def read_json(text: str | Source, main: str = "") -> Tree:
 
 
 def _chosen(tree: Tree, main: str, source: Source) -> Tree:
-    """The same trees, of which this one is the main one; where none is asked for, the first. Nothing can use an
-    unnamed one, so it is dropped where another is chosen."""
+    """The same trees with this one as the main one; if none is asked for, the first. Nothing can use an
+    unnamed one, so it is dropped if another is chosen."""
     if main in ("", tree.name):
         return tree
     trees = dict((*([(tree.name, tree.root)] if tree.name else []), *tree.subtrees))

@@ -1,10 +1,10 @@
 """The one gate for corrections: a change is proposed for a problem only if it passes here, wherever it was made.
 
 The whole sentence then reads without an error, its words differ by spelling alone (`spelling_rule.py`), and no other
-change that is as small does that with another meaning. Where nothing is proposed that passes, other spellings of the
-words of the statement are tried.
+change that is as small does that with another meaning. If no proposal passes, other spellings of the words of
+the statement are tried.
 
-Tried is the statement in which a problem is, with the statements beside it and those that give names. All tries
+The statement with the problem is tried, with the statements beside it and those that give names. All tries
 together read a limited number of words, so that a text full of mistakes takes hardly longer than before. What could
 not be tried is not proposed.
 """
@@ -153,7 +153,7 @@ class _Corrections:
     # -- tries
 
     def _cure(self, problem: Diagnostic) -> Change | None:
-        """The smallest change that passes the gate, None where there is none or another one is as small."""
+        """The smallest change that passes the gate, None if there is none or another one is as small."""
         self._budget -= _LEAST_COST
         trial = self._trial(problem)
         if trial is None:
@@ -376,12 +376,12 @@ def _proposed(problem: Diagnostic) -> Change | None:
 
 
 def _with_fix(problem: Diagnostic, change: Change) -> Diagnostic:
-    """The problem with the change as its fix, and as the nearest that is known where it tells of that."""
+    """The problem with the change as its fix; the help on unknown words names the change too."""
     start, end, words = change
     arguments = dict(problem.arguments)
-    told = arguments.get("help", "")
+    hint = arguments.get("help", "")
     is_within = problem.span.start <= start <= end <= problem.span.end
-    if problem.code in _UNKNOWN and is_within and not re.search(rf"\b{re.escape(words)}\b", told) and '"' not in told:
+    if problem.code in _UNKNOWN and is_within and not re.search(rf"\b{re.escape(words)}\b", hint) and '"' not in hint:
         arguments["help"] = nearest_known([words])
     fix = Span(problem.span.source, start, end), words
     return Diagnostic(problem.code, problem.span, tuple(arguments.items()), problem.notes, fix)

@@ -10,7 +10,7 @@ grouped tokens, which need no look-ahead any more:
     BLOCK_CHILD                            the same between the children of a node that is said by its id
     COND_OR_ELSE COND_WIDE_AND COND_OR COND_AND NOT    between and before conditions
     OPEN CLOSE COND_OPEN COND_CLOSE        brackets; a block is a bracket too
-    COND_OF items COND_CLOSE               `neither`, `any of` ...; its role tells, COND_OR stands between the items
+    COND_OF items COND_CLOSE               `neither`, `any of` ...; its role says which; COND_OR between the items
     POSTFIX                                after one command: `twice`, `within 10 s`, ...
     IF_WORKS body [ELSE body] END          after a whole chain: `A. If that works, B`
     FORM cond DO body [ELSE body] END      if, unless, while, until before a command

@@ -1,7 +1,7 @@
 """BT054: actions that say that they should not be halted half-way, in a form that will halt them.
 
-A standing rule halts too, but what it interrupts starts anew, so nothing is told of it; nor of a parallel, which
-halts a part only where another one fails.
+A standing rule isn't reported, since what it halts starts again; nor is a parallel, which halts a part only if
+another one fails.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Exposed(Record):
-    """An action that no form has been told for, and the leaf or name that stands for it in this tree."""
+    """An action that isn't reported for a form yet, and the leaf or name that stands for it in this tree."""
 
     leaf: Node
     place: Node
@@ -60,7 +60,7 @@ def cut_off(compilation: Compilation) -> list[Diagnostic]:
                 return exposed
         if exposed is None or not when:
             return exposed
-        found.extend(_told(exposed, when, compilation))
+        found.extend(_warnings(exposed, when, compilation))
         return None
 
     if whole:
@@ -84,7 +84,7 @@ _TIME = "when the time is over"
 _WHEN = {ON_SUCCESS: "as soon as the condition is false", ON_FAILURE: "as soon as the condition is true"}
 
 
-def _told(exposed: Exposed, when: str, compilation: Compilation) -> list[Diagnostic]:
+def _warnings(exposed: Exposed, when: str, compilation: Compilation) -> list[Diagnostic]:
     leaf, place = exposed.leaf.span, exposed.place.span
     if leaf is None or place is None:
         return []

@@ -1,4 +1,4 @@
-"""How a node can end, as far as its kind tells. What is not known is taken to be able to end in every way."""
+"""How a node can end, as far as its kind shows. An unknown kind is taken to end in every way."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def ends_of(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> End
         return named.get(node.port("ID"), ANY)
     kind = CATALOGUE.get(node.id)
     if kind is None or len(children) < kind.least:
-        return ANY if children else EITHER  # with too few children no mission runs, which is told elsewhere
+        return ANY if children else EITHER  # with too few children no mission runs, which is reported elsewhere
     if not children:
         return _sum(kind.ends) if kind.ends else EITHER
     if kind.goes_on and not kind.rotates:

@@ -24,7 +24,7 @@ def only_rules(compilation: Compilation) -> Iterator[Diagnostic]:
                 for at, item in enumerate(items):
                     if type(item) is ast.Name and item.name in names:
                         beside = items[at + 1] if at + 1 < len(items) else items[at - 1]
-                        yield _told(item, beside, compilation.vocabulary)
+                        yield _warning(item, beside, compilation.vocabulary)
 
 
 def _is_only_rules(body: ast.Ast) -> bool:
@@ -32,7 +32,7 @@ def _is_only_rules(body: ast.Ast) -> bool:
     return all(type(item) is ast.Whenever for item in items)
 
 
-def _told(rules: ast.Name, beside: ast.Ast, vocabulary: Lexicon) -> Diagnostic:
+def _warning(rules: ast.Name, beside: ast.Ast, vocabulary: Lexicon) -> Diagnostic:
     words, other = rules.span.text, beside.span.text
     is_block = "\n" in other
     fixed = f"{'...' if is_block else other}, {vocabulary.word('meanwhile')} {words}"

@@ -36,7 +36,7 @@ class Readings(Record):
 
 
 class Attachment(Record):
-    """A place of one of the kinds above. Its readings are made when they are asked for: most are never told."""
+    """A place of one of the kinds above. Its readings are made when they are asked for: most are never reported."""
 
     kind: str
     start: int

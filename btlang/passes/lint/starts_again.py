@@ -18,7 +18,7 @@ def starts_again(compilation: Compilation) -> Iterator[Diagnostic]:
     for body in ast.bodies(compilation.mission):
         for node in compilation.syntax(body):
             if type(node) is ast.While and node.otherwise is None and _has_an_end(node.body):
-                yield from _told(node, compilation.vocabulary)
+                yield from _warning(node, compilation.vocabulary)
 
 
 def _has_an_end(command: ast.Ast) -> bool:
@@ -28,7 +28,7 @@ def _has_an_end(command: ast.Ast) -> bool:
     return any(slot.name in said and slot.type in _ENDS for slot in command.entry.slots)
 
 
-def _told(node: ast.While, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+def _warning(node: ast.While, vocabulary: Lexicon) -> Iterator[Diagnostic]:
     text, command = node.span.source.text, node.body.span
     between = text[command.end : node.condition.span.start]
     words = vocabulary.orthography.words(between.strip(" \t,("))

@@ -31,7 +31,7 @@ _SENTENCE_END = re.compile(r"[\n;]|[.!?](?=\s)")
 
 def two_readings(compilation: Compilation) -> Iterator[Diagnostic]:
     """At most one of each kind for each sentence: the first."""
-    mission, told = compilation.mission, set[tuple[str, int, str]]()
+    mission, reported = compilation.mission, set[tuple[str, int, str]]()
     printer: Printer | None = None
     ends: dict[str, list[int]] = {}
     for root in (*mission.definitions, *([mission.body] if mission.body is not None else [])):
@@ -40,13 +40,13 @@ def two_readings(compilation: Compilation) -> Iterator[Diagnostic]:
             if source.name not in ends:
                 ends[source.name] = _sentence_ends(source)
             key = source.name, bisect(ends[source.name], found.start), found.kind
-            if key in told:
+            if key in reported:
                 continue
-            told.add(key)
+            reported.add(key)
             printer = printer or _printer(compilation)
             readings = found.readings()
             if not printer.say(readings.taken).in_lines:
-                yield _told(readings, printer)
+                yield _warning(readings, printer)
 
 
 def _attachments(root: ast.Ast, compilation: Compilation) -> Iterator[Attachment]:
@@ -80,18 +80,18 @@ def _sentence_ends(source: Source) -> list[int]:
 
 
 def _printer(compilation: Compilation) -> Printer:
-    from btlang.printer.mission import printer_of  # most missions have nothing to tell
+    from btlang.printer.mission import printer_of  # most missions have nothing to report
 
     return printer_of(compilation.mission, compilation.vocabulary, "all")
 
 
-def _told(found: Readings, printer: Printer) -> Diagnostic:
+def _warning(found: Readings, printer: Printer) -> Diagnostic:
     taken, other = printer.statement(found.taken), printer.statement(found.other)
     fix = None if "\n" in found.fix[0].text else found.fix
     fixed = taken if fix is None or "\n" in found.span.text else _changed(found.span, *found.fix)
     readings = () if "\n" in found.span.text else ((found.span, fixed), (found.span, other))
-    told = diagnostic("BT050", found.span, (), fix, taken=taken, other=other, fixed=fixed)
-    return told.replace(readings=readings)  # type: ignore[no-any-return]
+    problem = diagnostic("BT050", found.span, (), fix, taken=taken, other=other, fixed=fixed)
+    return problem.replace(readings=readings)  # type: ignore[no-any-return]
 
 
 def _changed(span: Span, part: Span, words: str) -> str:

@@ -22,7 +22,7 @@ def never_runs(compilation: Compilation) -> list[Diagnostic]:
             wanted = going_on(kind)
             for at in range(len(children) - 1):
                 if not children[at] & wanted:
-                    found.extend(_told(kind, node.children[at], children[at], node.children[at + 1]))
+                    found.extend(_warnings(kind, node.children[at], children[at], node.children[at + 1]))
                     break
         return ends_of(node, children, named)
 
@@ -30,7 +30,7 @@ def never_runs(compilation: Compilation) -> list[Diagnostic]:
     return found
 
 
-def _told(parent: NodeKind, before: Node, ends: Ends, behind: Node) -> list[Diagnostic]:
+def _warnings(parent: NodeKind, before: Node, ends: Ends, behind: Node) -> list[Diagnostic]:
     """Nothing where both stand for the same words: then a form has put one of them there."""
     if before.span is None or behind.span is None or _overlap(before.span, behind.span):
         return []

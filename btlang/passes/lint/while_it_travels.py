@@ -21,10 +21,10 @@ def while_it_travels(compilation: Compilation) -> Iterator[Diagnostic]:
             if type(node) is ast.Chain and node.operator == "parallel" and not is_list(node):
                 for left, right in pairwise(in_order(node.items)):
                     if takes_its_time(left):
-                        yield from _told(left.span, right.span, compilation.vocabulary)
+                        yield from _warning(left.span, right.span, compilation.vocabulary)
 
 
-def _told(left: Span, right: Span, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+def _warning(left: Span, right: Span, vocabulary: Lexicon) -> Iterator[Diagnostic]:
     source, joint = left.source, vocabulary.word("and")
     gap = source.text[left.end : right.start]
     if gap.strip(" \t,").lower() != joint or "\n" in gap:

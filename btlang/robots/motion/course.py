@@ -98,7 +98,7 @@ def on_quintic(start: State, end: State, seconds: float | Array, times: Array) -
 
 
 def to_state(start: State, end: State, limits: Limits, least: float = 0.0) -> Piece | None:
-    """The quickest way from one state to another, in at least so many seconds; None where there is none."""
+    """The quickest way from one state to another, in at least so many seconds; None if there is none."""
     import ruckig  # only bodies whose joints have an acceleration need it
 
     count = len(start.position)

@@ -28,7 +28,7 @@ class Guard:
         self._collisions = Collisions(body, kinematics)
 
     def problem(self, way: State, joints: list[int]) -> str:
-        """Why the body may not go a way, samples of all joints of which these ones are new; "" where it may."""
+        """Why the body may not go a way, "" if it may. The way samples all joints; it is new for `joints`."""
         return self._beyond(way.of(joints), joints) or self._touching(way)
 
     def _beyond(self, way: State, joints: list[int]) -> str:

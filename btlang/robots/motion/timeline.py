@@ -114,7 +114,7 @@ class Timeline:
     def play(self, courses: Callable[[Planner, Callable[[int], State], float], Iterator[Course]]) -> Play:
         """Sets off on the first course that may be gone; it gets the states after ticks, and seconds until the first.
 
-        Raises RobotError where there is none.
+        Raises RobotError if there is none.
         """
         with self._lock:
             self._begin_halt()

@@ -29,8 +29,8 @@ _FEEDBACK = 10  # messages that wait for a client
 class Bridge:
     """Does what clients ask for. Used by the thread that spins `node`.
 
-    `write` gets whom a text is for (`client`), the `topic` of which only the newest `most` count, "" for an answer,
-    and the text.
+    `write` gets the `client` that a text is for, its `topic` ("" for an answer), how many texts of that count (`most`,
+    the newest), and the text.
     """
 
     def __init__(self, node: Node, write: Write) -> None:

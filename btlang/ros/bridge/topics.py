@@ -78,7 +78,7 @@ class Subscription:
         return not self._wanted
 
     def look(self) -> None:
-        """Subscribes as its publishers, of which there may be none yet, can be heard. Raises BridgeError."""
+        """Subscribes so that its publishers can be heard, if there are any yet. Raises BridgeError."""
         publishers = self._node.get_publishers_info_by_topic(self._name)
         types = {each.topic_type for each in publishers}
         if self._cls is None and types:

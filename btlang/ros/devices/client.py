@@ -42,7 +42,7 @@ class Freshness:
         if stamp == 0.0:
             return ""
         behind, before, self._before = time.monotonic() - stamp, self._before, stamp
-        if stamp < before:  # its clock was set, or it began anew: what follows counts
+        if stamp < before:  # its clock was set, or it restarted: what follows counts
             self._least = math.inf
             return "sends an older message than before"
         if stamp == before:

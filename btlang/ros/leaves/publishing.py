@@ -21,7 +21,7 @@ RATE = 10.0
 
 
 def publish_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
-    """A generator leaf that publishes a message once there is a listener; FAILURE where there is none.
+    """A generator leaf that publishes a message once there is a listener; FAILURE if there is none.
 
     With `for` it goes on for a time, with `rate` alone until it is halted: at most one message a tick, and after the
     last one the message of `finally`, also when it is halted.

@@ -85,4 +85,4 @@ class Presence:
 
 
 def nothing() -> None:
-    """In place of the `wake` of a run, where there is none."""
+    """In place of the `wake` of a run, if there is none."""

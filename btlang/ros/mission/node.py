@@ -168,7 +168,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         return layer.handle(command, person)
 
     def watch(self, *wanted: Any) -> Generator[dict[str, Any]]:
-        """What happens on the robot (see `btlang.task.feed.Feed.watch`); nothing where there is none."""
+        """What happens on the robot (see `btlang.task.feed.Feed.watch`); nothing if there is none."""
         if self._layer is not None:
             yield from self._layer.feed.watch(*wanted)
 

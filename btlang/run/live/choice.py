@@ -9,7 +9,7 @@ from btlang.run.shape import Shape
 
 
 def hidden_from(shape: Shape, before: int, following: int) -> int:
-    """The first node that a row of its own must stand for; what is below a node that is folded up needs none."""
+    """The first node that needs a row of its own; what is below a folded node needs none."""
     if before < 0:
         return 0
     end = shape.ends[before]

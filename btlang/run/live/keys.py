@@ -56,13 +56,13 @@ class Keys:
             self._thread.start()
 
     def restore(self) -> None:
-        """The terminal is as it was before."""
+        """Restores the modes of the terminal."""
         if self.in_front:
             with suppress(termios.error):
                 termios.tcsetattr(self._descriptor, termios.TCSANOW, self._modes)
 
     def end(self) -> None:
-        """The terminal is as it was, and no further key is read."""
+        """Restores the terminal, and reads no further key."""
         self._ended = True
         try:
             self.restore()

@@ -1,4 +1,4 @@
-"""A part of the terminal that is drawn anew in place, below lines that stay."""
+"""A part of the terminal that is redrawn in place, below lines that stay."""
 
 from __future__ import annotations
 
@@ -58,12 +58,12 @@ class Screen:
             drawn = known.get((line, width)) or self._rendered(line, width)
             self._known[line, width] = drawn
             lines.append(drawn)
-        anew = bool(above) or width != self._width
-        if lines == self._drawn and not anew:
+        redraw = bool(above) or width != self._width
+        if lines == self._drawn and not redraw:
             return
         parts = [_BEGIN, self._to_the_top(width)]
         parts += [_staying(part.expandtabs(), width + 1) for line in above for part in line.split("\n")]
-        parts += self._changes(lines, anew)
+        parts += self._changes(lines, redraw)
         parts.append(_END)
         self._drawn, self._width = lines, width
         self._write("".join(parts))
@@ -79,14 +79,14 @@ class Screen:
         with suppress(OSError, ValueError):
             self._write(_SHOW_CURSOR)
 
-    def _changes(self, lines: list[str], anew: bool) -> Iterator[str]:
+    def _changes(self, lines: list[str], redraw: bool) -> Iterator[str]:
         """From the first line of the frame to its last; what is as before is passed over."""
         for at, line in enumerate(lines):
             if at:
                 yield "\r\n"
-            if anew or at >= len(self._drawn) or line != self._drawn[at]:
+            if redraw or at >= len(self._drawn) or line != self._drawn[at]:
                 yield line + _ERASE_LINE
-        if anew or len(lines) < len(self._drawn):
+        if redraw or len(lines) < len(self._drawn):
             yield _ERASE_BELOW
 
     def _to_the_top(self, width: int) -> str:

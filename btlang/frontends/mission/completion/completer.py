@@ -49,7 +49,7 @@ _LINE_STARTS = frozenset(("newline", "semi", "indent", "dedent"))
 class Completion(Record):
     """A way to go on: `text` takes the place of the characters from `start` on.
 
-    `kind` is "command", "condition", "name", "value" or "connective"; `help` is a line about it. `spelling` tells that
+    `kind` is "command", "condition", "name", "value" or "connective"; `help` is a line about it. `spelling` says that
     it corrects the word being written and does not go on from it.
     """
 

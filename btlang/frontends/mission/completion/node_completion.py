@@ -20,7 +20,7 @@ def node_options(
     tokens: Sequence[Token],
     tokens_of: Callable[[str], Sequence[Token]],
 ) -> Iterator[tuple[str, str]]:
-    """(words, kind) that may follow the words before `last`, the next of which begins with `start`.
+    """(words, kind) that may follow the words before `last`; the next word begins with `start`.
 
     `tokens` are those of the text, `tokens_of` reads another one.
     """

@@ -16,7 +16,7 @@ from btlang.vocabulary.word_tree import END
 def value_options(
     text: Words, last: int, start: str, vocabulary: Lexicon, context: ReadingContext
 ) -> Iterator[tuple[str, str]]:
-    """(words, kind) that may follow the words before `last`, the next of which begins with `start`."""
+    """(words, kind) that may follow the words before `last`; the next word begins with `start`."""
     known: Mapping[str, Known] = context.known or {}
     names = [" ".join(value.words) for value in known.values() if value.words]
     if text.words[last - 1] == "{":
@@ -35,7 +35,7 @@ def value_options(
 def _inside(
     role: str, text: Words, first: int, last: int, start: str, vocabulary: Lexicon, names: list[str]
 ) -> Iterator[tuple[str, str]]:
-    """What may follow behind `set`, `remember`, ..., of which the words from `first` on are written."""
+    """What may follow `set`, `remember`, ... and the words behind it, which are written from `first` on."""
     separators = vocabulary.roles[SEPARATORS[role]]
     written = text.words[first:last]
     if any(joint.split()[0] in written for joint in separators):

@@ -22,7 +22,7 @@ def explained(text: Words, value: SlotValue, vocabulary: Lexicon, context: Readi
     span = text.span(value.first, value.last)
     if not names:
         reason = f"this world has no {kind} with a name"
-        return _told(text, value, reason, "Name one in the world file, or choose another world with --world.")
+        return _misfit(text, value, reason, "Name one in the world file, or choose another world with --world.")
     chosen = context.choice(text, value.first) or context.values.noun(text, value.first)
     at = chosen[1] if chosen is not None else value.last
     after = context.values.exception(text, at)
@@ -34,14 +34,14 @@ def explained(text: Words, value: SlotValue, vocabulary: Lexicon, context: Readi
             advice=f"Known: {', '.join(near)}",
         )  # fmt: skip
     if after:
-        return _told(text, value, f"it leaves out every {kind} that there is", "Leave out fewer.")
+        return _misfit(text, value, f"it leaves out every {kind} that there is", "Leave out fewer.")
     if chosen is not None and chosen[0].parts:
-        return _told(text, value, f"this world has no such {kind}", f"Write for example: {names[0]}")
+        return _misfit(text, value, f"this world has no such {kind}", f"Write for example: {names[0]}")
     words = " ".join(text.words[value.first : at])
     reason = f"one {kind} is needed" if chosen is not None and chosen[0].how == ALL else f"'{words}' isn't a {kind}"
-    return _told(text, value, reason, f"Write for example: {names[0]}")
+    return _misfit(text, value, reason, f"Write for example: {names[0]}")
 
 
-def _told(text: Words, value: SlotValue, reason: str, advice: str) -> Diagnostic:
+def _misfit(text: Words, value: SlotValue, reason: str, advice: str) -> Diagnostic:
     span = text.span(value.first, value.last)
     return diagnostic("BT152", span, words=span.text, reason=reason, advice=advice)

@@ -15,7 +15,7 @@ def negated_twice(text: Words, first: int, last: int, vocabulary: Lexicon, _befo
     words = _written(text, first, last)
     once = _positive(words, vocabulary.negations)
     never = _positive(once, vocabulary.negative_subjects)
-    return _told(text, first, last, " ".join(once), " ".join(never))
+    return _unclear(text, first, last, " ".join(once), " ".join(never))
 
 
 def negated_list(text: Words, first: int, last: int, vocabulary: Lexicon, before: Token | None) -> Diagnostic:
@@ -25,10 +25,10 @@ def negated_list(text: Words, first: int, last: int, vocabulary: Lexicon, before
         positive = none = f"{text.source.text[before.start : before.end]} {positive}"
     else:
         none = f"{vocabulary.word('none_of')} {positive}"
-    return _told(text, first, last, none, f"{vocabulary.word('not')} ({positive})")
+    return _unclear(text, first, last, none, f"{vocabulary.word('not')} ({positive})")
 
 
-def _told(text: Words, first: int, last: int, one: str, other: str) -> Diagnostic:
+def _unclear(text: Words, first: int, last: int, one: str, other: str) -> Diagnostic:
     span = text.span(first, last)
     return diagnostic("BT151", span, words=span.text, one=one, other=other)
 
@@ -58,4 +58,4 @@ def shared_negation(
     plain = _positive(written, vocabulary.negative_subjects)
     no = vocabulary.word("not")
     negated = " ".join([*written, verb]) if plain != written else no
-    return _told(text, first, last, f"{before} {negated} {behind}", f"{before} {' '.join([*plain, verb])} {behind}")
+    return _unclear(text, first, last, f"{before} {negated} {behind}", f"{before} {' '.join([*plain, verb])} {behind}")

@@ -18,7 +18,7 @@ def separator(scan: Scan) -> None:
             if block.kind == "indent":
                 scan.open_block()
             elif block.kind in ("newline", "dedent", "end"):
-                scan.skip_statement()  # the lexer has told that the block is missing
+                scan.skip_statement()  # the lexer has reported that the block is missing
         elif token.kind == "comma" and scan.raw[scan.at].kind == "then":
             scan.next(scan.raw[scan.at], True)
 

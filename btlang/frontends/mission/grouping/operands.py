@@ -187,7 +187,7 @@ def joined_block(scan: Scan, token: Token) -> None:
     if scan.raw[scan.at].kind == "indent":
         scan.open_block(SEPARATORS[token.kind])
     else:
-        scan.skip_statement()  # the lexer has told that the block is missing
+        scan.skip_statement()  # the lexer has reported that the block is missing
 
 
 def do_block(scan: Scan, token: Token) -> None:

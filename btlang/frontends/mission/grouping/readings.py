@@ -40,7 +40,7 @@ def otherwise_of_another(scan: Scan, otherwise: Token) -> None:
 
 
 def waits_first(scan: Scan, entry: StackEntry) -> None:
-    """BT171 where the second statement of a group ends, and the first is `as soon as C, A`, for which it has to wait.
+    """BT171 at the end of the second statement of a group, if it has to wait for the first, `as soon as C, A`.
 
     Where it begins with `then`, that is what people mean.
     """
@@ -97,10 +97,10 @@ def repeated(scan: Scan, token: Token) -> None:
         what, other = "only the statement before it", (words, f"{scan.word('everything')} {amount}")
     else:
         return
-    _tell_repeated(scan, words, what, taken, other)
+    _report_repeated(scan, words, what, taken, other)
 
 
-def _tell_repeated(scan: Scan, words: Span, what: str, taken: tuple[Span, str], other: tuple[Span, str]) -> None:
+def _report_repeated(scan: Scan, words: Span, what: str, taken: tuple[Span, str], other: tuple[Span, str]) -> None:
     problem = diagnostic("BT172", words, words=words.text, what=what, taken=taken[1], other=other[1])
     scan.problems.append(problem.replace(readings=(taken, other)))
 
@@ -111,7 +111,7 @@ def twice_more(scan: Scan, first: Token, amount: Token) -> None:
     that = scan.word("do_that")
     taken, other = f"{that} {rounds} {scan.word('more')}", f"{that} {scan.words(amount)}"
     what = f"what comes before it {rounds} times more, {int(rounds) + 1} times in all"
-    _tell_repeated(scan, words, what, (words, taken), (words, other))
+    _report_repeated(scan, words, what, (words, taken), (words, other))
 
 
 def started_over(scan: Scan, token: Token, entry: StackEntry) -> None:
@@ -124,4 +124,4 @@ def started_over(scan: Scan, token: Token, entry: StackEntry) -> None:
         return
     taken = words, scan.word("everything")
     other = Span(scan.source, start, words.end), f"{scan.word('repeat')} {statement}"
-    _tell_repeated(scan, words, "all commands before it", taken, other)
+    _report_repeated(scan, words, "all commands before it", taken, other)

@@ -26,7 +26,7 @@ class Unit(Record):
 class Scan:
     """One pass over raw tokens: `at` is the next of them, `out` what was made, `stack` what is open.
 
-    `operand_due` says that an operand must come. One problem is told for each statement; `failed_at` has the raw token
+    `operand_due` says that an operand must come. One problem a statement is reported; `failed_at` has the raw token
     (the end is one too) at which each showed. `main` are `out` and `stack` outside of definitions, `header` is that of
     the definition that is being read.
     """
@@ -139,7 +139,7 @@ class Scan:
         self.skip_statement()
 
     def skip_statement(self) -> None:
-        """One message a statement: goes on after it, so that all broken statements of a file are told at once."""
+        """One message a statement: goes on after it, so that all broken statements are reported at once."""
         depth = sum(entry.kind in ("bracket", "condition bracket") for entry in self.stack)
         while not self.stack[-1].is_group or self.stack[-1].kind == "bracket":
             self.stack.pop()

@@ -11,9 +11,9 @@ class StackEntry:
 
     The owners are the nearest open forms of the same bracket that a count, an `until` (or `while`, `for`) or an
     `otherwise` would belong to; `after` says what follows the end of a condition, of a head how its verbs are written.
-    `commas` are those whose meaning the next connective will tell; `last` is the latest connective. `statement` of a
-    group is "", "open" or "ended", the latest one `begins` at that place of what was made, and the `latest` that has
-    ended at that; `separator` is the token between them. The latest operand begins at `operand`. `joints` are the words
+    The next connective decides what the `commas` mean; `last` is the latest connective. `statement` of a group is "",
+    "open" or "ended": its newest statement begins in the output at the index `begins`, the newest one that has ended
+    at `latest`; `separator` is the token between them. The latest operand begins at `operand`. `joints` are the words
     "and" of the chain that is not over. `is_group`: it holds statements; `is_condition`: operands in it are conditions.
     `commands` is where those of a group begin that no rule follows; `mixed`: rules stand among them. A list
     `begins` at a raw token and has so many `items` so far.
@@ -93,7 +93,7 @@ class StackEntry:
         self._settle("")
 
     def close_chain(self) -> None:
-        """The chain of operands ends here: what no connective told the commas, they mean `then` (or `and`)."""
+        """The chain of operands ends here: commas that no connective has decided mean `then` (or `and`)."""
         if self.commas:
             self._settle("")
         self.last = None

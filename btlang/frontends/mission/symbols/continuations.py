@@ -27,7 +27,7 @@ def find_continuations(phrases: Phrases) -> set[int]:
 
 
 def named_at(names: TrieNode, phrases: Phrases, words: Iterable[int]) -> set[int]:
-    """Those of some words at which a name begins that is at least as long as the phrase there: `once more is wave`."""
+    """The words, of these, where a name begins that is at least as long as the phrase there: `once more is wave`."""
     found: set[int] = set()
     for at in words if names else ():
         name, phrase = longest(names, phrases.text, at, phrases.vocabulary.context), phrases.at(at)

@@ -36,7 +36,7 @@ class Names:
     """The names of one text. `load` reads what it includes, `shared` are values that are named elsewhere and hold here.
 
     `vocabulary` has the places of its facts; `phrases` are those that were looked up on the way; `known` are the
-    values that hold in the whole text, by key; `others` are the words at which something stands that is no phrase:
+    values that hold in the whole text, by key; `others` are the words where something other than a phrase begins:
     `prefixes`, headers of `definitions`, and statements that end at `ends`. `bounds` are the words at which other
     values begin to be known.
     """
@@ -105,7 +105,7 @@ class Names:
             self._name_values(text)
 
     def _chosen_types(self, text: Words) -> list[str]:
-        """The types of which the robot chooses a name; `someone is near` is a phrase that only begins so."""
+        """The types for which the robot chooses a name; `someone is near` is a phrase that only begins so."""
         values, starts = self.vocabulary.values, self.vocabulary.values.choice_starts
         if text.distinct.isdisjoint(starts):
             return []

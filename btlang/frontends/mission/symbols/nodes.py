@@ -238,7 +238,7 @@ class _Reader:
         raise Unreadable(at, "a text in quotes, a number or {name}")
 
     def quoted(self, at: int) -> tuple[str, int] | None:
-        """Pieces in quotes, new lines and characters; None where there is none."""
+        """Pieces in quotes, new lines and characters; None if there is none."""
         parts: list[str] = []
         while (found := self._piece(at)) is not None:
             parts.append(found[0])

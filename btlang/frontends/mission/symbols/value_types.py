@@ -64,13 +64,13 @@ class ValueTypes:
                         if prefix.role != "each":
                             scopes.give(prefix, kinds)
             scopes = self.scopes()
-            for header in self._headers:  # after `for each`, of whose values they may be used with
+            for header in self._headers:  # after `for each`: they may be used with its values
                 self._from_body(header, scopes)
                 if all((header.body, key) in self.types for key, _ in header.parameters):
                     self._add(header)
 
     def _default(self) -> None:
-        """What nothing has told of is a text, but what is given a value of any type is of any."""
+        """A value whose type nothing shows is a text, but one that is given a value of any type is of any."""
         scopes = self.scopes()
         for header in self._headers:
             for key, _ in header.parameters:
@@ -129,7 +129,7 @@ class ValueTypes:
             yield self._definitions.trie
 
     def _fitting(self, at: int, match: Match | None, key: str, known: Mapping[str, Known]) -> Iterator[str]:
-        """The types with which a phrase is read as far as without."""
+        """The types with which a phrase is read as far as without a type."""
         for kind in self._vocabulary.types:
             if kind != "text":
                 other = self._longest(at, {**known, key: known[key].replace(kinds=(kind,))})
@@ -137,7 +137,7 @@ class ValueTypes:
                     yield kind
 
     def _ask_uses(self) -> None:
-        """Where the body of a definition does not tell, its first use does."""
+        """If the body of a definition doesn't show the type of a parameter, its first use does."""
         scopes = self.scopes()
         for header in self._headers:
             open_keys = [key for key, _ in header.parameters if (header.body, key) not in self.types]

@@ -59,7 +59,7 @@ def _value(prefix: Prefix, known: Known, text: Words, vocabulary: Lexicon, conte
             return SlotValue("value", kind, value[0], prefix.value, value[1])
     other = (
         context.any(text, prefix.value) if prefix.value >= 0 and not numbers else None
-    )  # that it does not fit is told
+    )  # that it does not fit is reported
     if other is None or (prefix.role == "remember" and other[0] == ("text",) and text.words[prefix.value][0] != '"'):
         return None
     return SlotValue("value", other[0][0], other[1], prefix.value, other[2])

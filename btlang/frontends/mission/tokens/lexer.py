@@ -191,7 +191,7 @@ class Lexer:
                 end = self._unknown_end(at, last)
                 if role == INCLUDE:
                     end += words[end][0] == '"'
-                if self._explain and not self._is_told(starts[at], ends[end - 1]):
+                if self._explain and not self._is_reported(starts[at], ends[end - 1]):
                     self.problems.append(self._why(at, end, match if role not in NOT_ALONE else None))
                 tokens.append(Token("unknown", starts[at], ends[end - 1]))
                 at = end
@@ -250,7 +250,7 @@ class Lexer:
             return match.last
         return self._partial.add_doing(at, match) if at and may_be_doing(tokens) else 0
 
-    def _is_told(self, start: int, end: int) -> bool:
+    def _is_reported(self, start: int, end: int) -> bool:
         """Whether the latest problem is about these characters already."""
         latest = self.problems[-1].span if self.problems else None
         return latest is not None and latest.source is self.text.source and latest.start <= start and end <= latest.end
@@ -297,9 +297,9 @@ class Lexer:
         if is_list or match.meaning.role == "negated_twice":
             from btlang.frontends.mission.explanations import negations  # most missions have none
 
-            told = negations.negated_list if is_list else negations.negated_twice
+            explain = negations.negated_list if is_list else negations.negated_twice
             before = self.tokens[-2] if len(self.tokens) > 1 else None
-            self.problems.append(told(self.text, at, match.last, self.vocabulary, before))
+            self.problems.append(explain(self.text, at, match.last, self.vocabulary, before))
 
     def _politeness(self, match: Match, at: int) -> int:
         """Politeness is left out with the comma beside it: `Robot, go home, please`. Returns where to go on."""
@@ -319,7 +319,7 @@ class Lexer:
             span = span_of(self.text, at)
             if self._explain and (
                 prefix.role in ("each", "remember") or prefix.key in self.names.known
-            ):  # else that has been told
+            ):  # else it has been reported
                 self.problems.append(self._why(at, at, Match(Meaning(prefix.role), at)))
             self.tokens.append(Token("unknown", span.start, span.end))
             return bisect_right(self.text.starts, span.end - 1)

@@ -28,7 +28,7 @@ _MOST_WORDS = 60
 
 
 class PartialCommands:
-    """Those of one text, of which `tokens` are read; the functions return the word at which to go on, 0 for none."""
+    """Those of one text, while its `tokens` are read; the functions return the word at which to go on, 0 for none."""
 
     def __init__(
         self,
