@@ -81,7 +81,10 @@ def test_garbage_that_was_made_in_pauses_goes(monkeypatch: pytest.MonkeyPatch) -
     assert len(made) < 20_000
 
 
-def test_what_somebody_froze_stays_frozen() -> None:
+def test_what_somebody_froze_stays_frozen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And the collector works as it would without btlang."""
+    monkeypatch.setattr("btlang.gc_pause._LOOK_AFTER", 0)
+    monkeypatch.setattr(gc, "collect", lambda: pytest.fail("it looks through everything"))
     gc.freeze()
     before = gc.get_freeze_count()
     with gc_paused:
