@@ -29,13 +29,13 @@ class _Pause:
             self._users -= 1
             if self._users or not self._was_enabled:
                 return
+            is_due = False
             if not gc.get_freeze_count():  # else somebody's frozen objects would thaw
-                self._made += gc.get_count()[0]
+                made = self._made + gc.get_count()[0]
+                is_due = made > _LOOK_AFTER
+                self._made = 0 if is_due else made
                 gc.freeze()
                 gc.unfreeze()  # makes all objects old ones: else Python looks at once through what was made
-            is_due = self._made > _LOOK_AFTER
-            if is_due:
-                self._made = 0
             gc.enable()
         if is_due:
             gc.collect()
