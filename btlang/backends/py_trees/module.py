@@ -13,7 +13,8 @@ from btlang.tree.node import Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
 
-_MODULES = ("node", "in_order", "choosing", "decorating")  # whose text is copied
+# Their text is copied: imports would make a module some 200 lines shorter, but it would need btlang to run.
+_MODULES = ("node", "in_order", "choosing", "decorating")
 _HEAD = '''"""A behavior tree for py_trees 2.6; needs {needs}.
 
 `create_root` makes the tree. Its leaves are made by a function that you give: leaf(name, id, ports) returns a
