@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 from _thread import allocate_lock  # `threading` takes longer to import
 
+_MANY = 50_000  # objects that were made in a pause; of fewer the search is short, and counting frozen ones isn't
 _LOOK_AFTER = 1_000_000  # objects that were made in pauses: garbage in cycles among them has to go, too
 
 
@@ -29,11 +30,10 @@ class _Pause:
             self._users -= 1
             if self._users or not self._was_enabled:
                 return
-            is_due = False
-            if not gc.get_freeze_count():  # else somebody's frozen objects would thaw
-                made = self._made + gc.get_count()[0]
-                is_due = made > _LOOK_AFTER
-                self._made = 0 if is_due else made
+            is_due, made = False, gc.get_count()[0]
+            if made > _MANY and not gc.get_freeze_count():  # else somebody's frozen objects would thaw
+                is_due = self._made + made > _LOOK_AFTER
+                self._made = 0 if is_due else self._made + made
                 gc.freeze()
                 gc.unfreeze()  # makes all objects old ones: else Python looks at once through what was made
             gc.enable()

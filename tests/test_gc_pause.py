@@ -62,7 +62,7 @@ def thawed() -> Iterator[None]:
 @pytest.mark.usefixtures("thawed")
 def test_what_was_made_is_not_looked_through_behind_it() -> None:
     with gc_paused:
-        made = [[number] for number in range(2_000)]
+        made = [[number] for number in range(60_000)]
     young = {id(each) for generation in (0, 1) for each in gc.get_objects(generation)}
     assert not young & {id(each) for each in made}
 
@@ -73,6 +73,7 @@ def test_garbage_that_was_made_in_pauses_goes(monkeypatch: pytest.MonkeyPatch) -
         def __init__(self) -> None:
             self.itself = self
 
+    monkeypatch.setattr("btlang.gc_pause._MANY", 100)
     monkeypatch.setattr("btlang.gc_pause._LOOK_AFTER", 20_000)
     made = weakref.WeakSet[Node]()
     for _ in range(10):
@@ -83,6 +84,7 @@ def test_garbage_that_was_made_in_pauses_goes(monkeypatch: pytest.MonkeyPatch) -
 
 def test_what_somebody_froze_stays_frozen(monkeypatch: pytest.MonkeyPatch) -> None:
     """And the collector works as it would without btlang."""
+    monkeypatch.setattr("btlang.gc_pause._MANY", -1)
     monkeypatch.setattr("btlang.gc_pause._LOOK_AFTER", 0)
     monkeypatch.setattr(gc, "collect", lambda: pytest.fail("it looks through everything"))
     gc.freeze()

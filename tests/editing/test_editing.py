@@ -93,7 +93,7 @@ def test_nodes_are_those_of_the_tree(mission: Any) -> None:
 def test_messages_before_a_document_change_nothing_but_its_time(data: st.DataObject) -> None:
     texts = ("wave\n", "wavee\n", "<a/>", TEA)
     alone = {text: document(Source(text, roots=()), SHIPPED) for text in texts}
-    for text, first in data.draw(st.lists(st.tuples(st.sampled_from(texts), st.booleans()))):
+    for text, first in data.draw(st.lists(st.tuples(st.sampled_from(texts), st.booleans()), max_size=6)):
         source = Source(text, roots=())
         if first:
             assert text_messages(source, SHIPPED) == {key: alone[text][key] for key in ("ok", "sort", "messages")}
