@@ -55,10 +55,27 @@ def parsed_mission(source: Source, options: argparse.Namespace) -> Mission:
     """The mission that a text is with these options. Raises MissionError."""
     if is_test_file(source.name):
         raise MissionError([diagnostic("BT183", Span(source, 0, 0), file=source.name)])
-    return parse_tree(
-        source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main,
-        language=options.language,
-    )  # fmt: skip
+    try:
+        return parse_tree(
+            source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main,
+            language=options.language,
+        )  # fmt: skip
+    except MissionError:
+        options.report.advice = _advice_on_robot(source.name, options)
+        raise
+
+
+def _advice_on_robot(path: str, options: argparse.Namespace) -> str:
+    """For a mission beside or below the file of a robot that isn't chosen: its words and places may be that robot's."""
+    if getattr(options, "robot", None) not in ("", *ROBOTS) or options.world or not os.path.isfile(path):
+        return ""
+    folder = os.path.dirname(path)
+    for file in (os.path.join(folder, "robot.toml"), os.path.normpath(os.path.join(folder, "..", "robot.toml"))):
+        if os.path.isfile(file):
+            from shlex import quote
+
+            return f"If the mission is for the robot in {file}, add: --robot {quote(file)}"
+    return ""
 
 
 def _read_file(options: argparse.Namespace) -> Source:

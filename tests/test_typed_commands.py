@@ -123,6 +123,23 @@ def test_messages_end_with_where_to_read_more(mission: str, last: str, capsys: p
     assert "For more" not in "".join(capsys.readouterr())
 
 
+@pytest.mark.parametrize("verb", ["run", "check", "compile --to xml", "tree"])
+def test_a_mission_for_the_robot_beside_it(verb: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """One that is right needs none, and one that is chosen isn't named."""
+    (tmp_path / "missions").mkdir()
+    (tmp_path / "robot.toml").write_text('name = "guide"\nradius = 0.2\n', encoding="utf-8")
+    mission = tmp_path / "missions" / "tour.txt"
+    mission.write_text("approach the statue\n", encoding="utf-8")
+    robot, named = str(tmp_path / "robot.toml"), "If the mission is for the robot in"
+    assert typed(*verb.split(), str(mission)) == 2
+    assert f"\n{named} {robot}, add: --robot {robot}\n" in capsys.readouterr().err
+    assert typed(*verb.split(), str(mission), "--robot", robot) == 2
+    assert named not in capsys.readouterr().err
+    mission.write_text("say hi\n", encoding="utf-8")
+    assert typed("check", str(mission)) == 0
+    assert named not in "".join(capsys.readouterr())
+
+
 def test_explain_asks_for_a_mission_as_text(capsys: pytest.CaptureFixture[str]) -> None:
     assert typed("explain", "wave") == 2
     assert 'To give a mission as text: btc explain -c "wave"' in capsys.readouterr().err

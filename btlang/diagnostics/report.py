@@ -19,7 +19,8 @@ CHECK_FORMATS = (*FORMATS, "sarif", "github")
 class Report:
     """Text is printed as it is added, a document by `close`. After text, `close` points to pages.
 
-    `on_output` puts the document on standard output, for a command that prints nothing else there.
+    `on_output` puts the document on standard output, for a command that prints nothing else there. `advice` is a line
+    below the text of errors.
     """
 
     def __init__(self, form: str = "text", on_output: bool = False) -> None:
@@ -27,6 +28,7 @@ class Report:
         self.is_for_programs = form != "text"
         self._on_output = on_output
         self._held: list[Diagnostic] = []
+        self.advice = ""
 
     def add(self, problems: Iterable[Diagnostic]) -> None:
         """Shows these diagnostics, with an empty line between them where it is text; equal warnings there only once."""
@@ -54,9 +56,9 @@ class Report:
         if self._held and not self.is_for_programs:
             from btlang.diagnostics.explain import pointer
 
-            more = pointer(problem.code for problem in self._held)
-            if more:
-                show(f"\n{more}", stream=sys.stderr)
+            for more in (self.advice, pointer(problem.code for problem in self._held)):
+                if more:
+                    show(f"\n{more}", stream=sys.stderr)
         if self.is_for_programs:
             document = self._document()
             if document:
