@@ -173,11 +173,12 @@ def test_hands(sim, client: Client):
     assert client.call(SetBool, "/left_hand/close", data=False).success
 
 
-def test_speech(sim, client: Client):
+def test_speech(start_sim, client: Client):
+    sim = start_sim("--speed", "1")  # the topic keeps one message, which the next one must not replace unread
     speaking = client.hear(Bool, "/speaking", LATCHED)
     assert speaking.wait().data is False
     voice = client.publisher(String, "/speech")
-    voice.publish(String(data="hello"))
+    voice.publish(String(data="hello everybody"))
     speaking.wait(lambda message: message.data)
     speaking.wait(lambda message: not message.data)
     voice.publish(String(data="a long story " * 1000))
@@ -186,7 +187,7 @@ def test_speech(sim, client: Client):
     speaking.wait(lambda message: not message.data)
     client.publisher(String, "/print").publish(String(data="42 %"))
     sim.wait_for('prints "42 %"')
-    assert 'says "hello"' in sim.out
+    assert 'says "hello everybody"' in sim.out
 
 
 def test_its_own_emergency_stop(start_sim, client: Client):
