@@ -15,7 +15,7 @@ from unique_identifier_msgs.msg import UUID
 from btlang.ros.node import SpunNode
 from tests.ros.processes import LONG, wait_until
 
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)  # none is replaced before it is read
 
 _ALL_FOUND = 1.0  # seconds: nodes of tests announce themselves every 0.1 s
 _PATIENCE = 10.0  # seconds for one node, before the next one is asked
