@@ -32,7 +32,7 @@ class _Pause:
                 return
             is_due, made = False, gc.get_count()[0]
             if made > _MANY and not gc.get_freeze_count():  # else somebody's frozen objects would thaw
-                is_due = self._made + made > _LOOK_AFTER
+                is_due = self._made > max(_LOOK_AFTER, 2 * made)  # of what is just made little is garbage
                 self._made = 0 if is_due else self._made + made
                 gc.freeze()
                 gc.unfreeze()  # makes all objects old ones: else Python looks at once through what was made
