@@ -61,7 +61,7 @@ def parsed_mission(source: Source, options: argparse.Namespace) -> Mission:
             language=options.language,
         )  # fmt: skip
     except MissionError:
-        options.report.advice = _advice_on_robot(source.name, options)
+        options.report.advice = options.report.advice or _advice_on_robot(source.name, options)
         raise
 
 

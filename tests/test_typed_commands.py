@@ -135,6 +135,11 @@ def test_a_mission_for_the_robot_beside_it(verb: str, tmp_path: Path, capsys: py
     assert f"\n{named} {robot}, add: --robot {robot}\n" in capsys.readouterr().err
     assert typed(*verb.split(), str(mission), "--robot", robot) == 2
     assert named not in capsys.readouterr().err
+    other = tmp_path / "missions" / "elsewhere" / "tea.txt"
+    other.parent.mkdir()
+    other.write_text("approach the statue\n", encoding="utf-8")
+    assert typed("check", str(mission), str(other)) == 2
+    assert named in capsys.readouterr().err
     mission.write_text("say hi\n", encoding="utf-8")
     assert typed("check", str(mission)) == 0
     assert named not in "".join(capsys.readouterr())

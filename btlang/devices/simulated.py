@@ -149,12 +149,10 @@ class SimulatedDevice:
         return Distance(nearest if nearest <= float(self._option("range", 4.0)) else inf)
 
     def _scan(self) -> Scan:
-        from btlang.robots.scan import DEGREES, around  # brings numpy
+        from btlang.robots.scan import as_measured  # brings numpy
 
         scanner = self._robot.body.sensor("scanner")
-        ranges: Any = self._robot.scan()
-        if scanner is not None and scanner.pose != CENTRE:
-            ranges = around(ranges, DEGREES, scanner.pose.inverse)
+        ranges: Any = as_measured(self._robot.scan(), CENTRE if scanner is None else scanner.pose)
         return Scan(ranges)
 
     def _wheels(self) -> Wheels:

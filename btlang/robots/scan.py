@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from btlang.robots.geometry import Pose
+from btlang.robots.geometry import CENTRE, Pose
 from btlang.robots.obstacles import Obstacles
 
 Array = npt.NDArray[np.float64]
 
-DEGREES = np.radians(np.arange(360.0))
-"""The directions of a scan, in radians."""
+_DEGREES = np.radians(np.arange(360.0))
 
 
 class Scanner:
@@ -44,7 +43,7 @@ def scan(segments: Array, discs: Array, pose: Pose, reach: float) -> Array:
 
     A row of `segments` is x, y of one end and of the other, a row of `discs` is x, y and radius.
     """
-    angles = DEGREES + np.radians(pose.heading)
+    angles = _DEGREES + np.radians(pose.heading)
     beams = np.array((np.cos(angles), np.sin(angles)))
     ranges = np.full(360, np.inf)
     if len(segments):
@@ -60,7 +59,7 @@ def around(ranges: Array, angles: Array, at: Pose) -> Array:
     """360 distances from a robot's centre, index = degrees left of its heading; inf where nothing was measured.
 
     `ranges` are metres that a scanner measured, inf or NaN for none, at `angles` in radians left of its own front.
-    `at` is its pose as seen from the centre; with the inverse of that, a scan around the centre is one of the scanner.
+    `at` is its pose as seen from the centre.
     """
     seen = np.isfinite(ranges)
     ranges, angles = ranges[seen], angles[seen] + np.radians(at.heading)
@@ -70,6 +69,11 @@ def around(ranges: Array, angles: Array, at: Pose) -> Array:
     found = np.full(360, np.inf)
     np.minimum.at(found, np.rint(np.degrees(angles)).astype(int) % 360, ranges)
     return found
+
+
+def as_measured(ranges: Array, at: Pose) -> Array:
+    """A scan around the robot's centre as a scanner measures it that is at this pose of the robot."""
+    return ranges if at == CENTRE else around(ranges, _DEGREES, at.inverse)
 
 
 def _to_segments(segments: Array, pose: Pose, beams: Array) -> Array:

@@ -26,10 +26,15 @@ class View:
 
     def _has(self, point: Point, pose: Pose) -> bool:
         for sensor in self._sensors:
-            eye = Pose(*pose.ahead(sensor.ahead, sensor.left), pose.heading)
-            if eye.distance_to(point) <= sensor.recognizes and self._covers(sensor, eye.bearing_to(point)):
-                if not self._obstacles.wall_between((eye.x, eye.y), point):
-                    return True
+            eye = pose
+            if sensor.ahead or sensor.left:
+                eye = Pose(*pose.ahead(sensor.ahead, sensor.left), pose.heading)
+            if (
+                eye.distance_to(point) <= sensor.recognizes
+                and self._covers(sensor, eye.bearing_to(point))
+                and not self._obstacles.wall_between((eye.x, eye.y), point)
+            ):
+                return True
         return False
 
     def _covers(self, sensor: Sensor, bearing: float) -> bool:

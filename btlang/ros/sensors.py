@@ -73,7 +73,7 @@ class RosSensors:
 
     def _around(self, scan: Any) -> npt.NDArray[np.float64]:
         ranges, frame = echoes(scan), scan.header.frame_id.rpartition("/")[2]
-        if frame not in ("", BASE, self._scanner.frame, self._unknown_frame):
+        if frame not in ("", BASE, self._scanner.frame.rpartition("/")[2], self._unknown_frame):
             self._unknown_frame = frame
             wanted = f"the laser scan is in the frame '{frame}', but the robot file has '{self._scanner.frame}'"
             self._emit("warning", text=f"{wanted}: what it shows may be elsewhere")

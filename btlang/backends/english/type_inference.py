@@ -252,7 +252,7 @@ class TypeInference:
             return number
         names = [kind for kind, one in types.items() if one.kind == "names"]
         for kind in [*([] if sorts else [number]), *names] if texts else ():
-            if all(readable(text, kind, self._vocabulary) and self._is_said(text, kind) for text in texts):
+            if all(self._is_said(text, kind) and readable(text, kind, self._vocabulary) for text in texts):
                 return kind
         return "text"
 

@@ -13,7 +13,7 @@ from std_srvs.srv import Trigger
 
 from btlang.robots.geometry import CENTRE
 from btlang.robots.robot import RobotError
-from btlang.robots.scan import DEGREES, around
+from btlang.robots.scan import as_measured
 from btlang.robots.simulated import SimulatedRobot
 from btlang.ros.poses import BASE
 from btlang.ros.simulator.call_queue import CallQueue
@@ -61,8 +61,7 @@ class Sensors:
             ranges = self._robot.scan()
         except RobotError:
             return
-        if sensor.frame != BASE and sensor.pose != CENTRE:
-            ranges = around(ranges, DEGREES, sensor.pose.inverse)
+        ranges = as_measured(ranges, CENTRE if sensor.frame == BASE else sensor.pose)
         step = radians(1)
         scan = LaserScan(angle_min=0.0, angle_max=359 * step, angle_increment=step, scan_time=1 / _SCANS)
         scan.range_min, scan.range_max, scan.ranges = 0.0, sensor.range, array("f", ranges)
