@@ -53,7 +53,7 @@ def test_a_scanner_is_where_the_robot_file_has_it(
     frame = 'frame = "laser"\n'
     mounted, elsewhere = tmp_path / "mounted.toml", tmp_path / "elsewhere.toml"
     mounted.write_text(
-        small.replace(frame, f'frame = "cart/laser"\nahead = 0.1\nleft = -0.05\nangle = 90\n'), encoding="utf-8"
+        small.replace(frame, 'frame = "cart/laser"\nahead = 0.1\nleft = -0.05\nangle = 90\n'), encoding="utf-8"
     )
     elsewhere.write_text(small.replace(frame, 'frame = "lidar"\n'), encoding="utf-8")
     world = tmp_path / "wall.toml"
