@@ -225,7 +225,7 @@ _ALL = (
     Code("BT233", "'{text}' can't be the port {port} of {id}: {wanted} is needed."),
     Code("BT234", "The port {port} of {id} is missing.", "Give it, or give it a default in the model.",
          "warning", "missing port"),
-    Code("BT235", "Nothing reads '{key}', which the port {port} of {id} sets.", "Leave the port out, or use the value.",
+    Code("BT235", "Nothing reads '{key}', which the port {port} of {id} sets.", "Leave it out, or use the value.",
          "warning", "unread value"),
     Code("BT236", "No main tree uses the tree '{name}'.", "Use it or remove it.", "warning", "unused tree"),
     Code("BT237", "{port}=\"0\" means that the child of this {id} never runs.",

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 
 from btlang.engine.instance import blackboard_key
+from btlang.engine.script.names import READS, SETS, uses_of_names
 from btlang.frontends.btcpp.models import nav2_models
 from btlang.tree.catalogue import CATALOGUE, KEY, SCRIPT, SUBTREE, held
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
-
-READS, SETS = "reads", "sets"
-_TEXT = re.compile(r"'[^']*'")
-_NAME = re.compile(r"[^\W\d]\w*")
-_SET = re.compile(r"([^\W\d]\w*)\s*(:=|[-+*/]=|=(?!=))")
-_WORDS = ("true", "false")
 
 
 class KeyReader:
@@ -37,7 +31,7 @@ class KeyReader:
     def _of_port(self, node: Node, port: str, text: str) -> list[tuple[str, set[str]]]:
         holds = held(node.id, port)
         if holds == SCRIPT:
-            return _of_script(text)
+            return list(uses_of_names(text).items())
         if holds == KEY:
             return [(text.strip("{} "), {SETS})]
         key = blackboard_key(port, text)
@@ -56,10 +50,3 @@ class KeyReader:
         if declared:
             return declared
         return "output" if any(port in entry.outputs for entry in self._vocabulary.entries.get(id, ())) else "input"
-
-
-def _of_script(script: str) -> list[tuple[str, set[str]]]:
-    code = _TEXT.sub("''", script)
-    found = [(key, {SETS} if operator in (":=", "=") else {READS, SETS}) for key, operator in _SET.findall(code)]
-    others = _NAME.findall(_SET.sub("", code))
-    return [*found, *((key, {READS}) for key in others if key not in _WORDS)]

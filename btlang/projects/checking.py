@@ -15,7 +15,7 @@ from btlang.passes.compilation import Compilation
 from btlang.passes.lint.allow import not_allowed
 from btlang.projects.ports import port_problems, subtree_problems
 from btlang.projects.unknown import unknown_nodes
-from btlang.projects.unused import keys_read, unread_outputs, unread_subtree_ports, unused_trees
+from btlang.projects.unused import keys_read, unread_subtree_ports, unread_values, unused_trees
 from btlang.text.source import Span
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SEQUENCE, SUBTREE
 from btlang.tree.node import Node, Tree
@@ -53,7 +53,7 @@ class _Check:
         yield from unknown_nodes(self._nodes, self._described, self._words, self._project.dialects)
         yield from self._wrong_ports()
         yield from unused_trees(self._project)
-        yield from unread_outputs(self._nodes, self._models, keys_read(self._nodes, self._models))
+        yield from unread_values(self._nodes, self._models, keys_read(self._nodes, self._models))
         if self._project.is_round:
             return
         yield from unread_subtree_ports(self._nodes, self._project.trees)

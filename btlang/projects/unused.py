@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
+from btlang.engine.script.names import READS, SETS, uses_of_names
 from btlang.frontends.btcpp.project import XmlProject
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
 from btlang.projects.places import attribute_value
-from btlang.tree.catalogue import SCRIPT, SUBTREE, held
+from btlang.tree.catalogue import KEY, SCRIPT, SUBTREE, held
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import subtree_names, used_subtrees
@@ -25,25 +26,31 @@ def keys_read(nodes: Iterable[Node], models: Mapping[str, NodeModel]) -> frozens
         outputs = _outputs(node, models)
         for name, text in node.ports:
             if held(node.id, name) == SCRIPT:
-                read.update(_WORD.findall(text))
-            elif name not in outputs:
+                read.update(name.lstrip("@") for name, uses in uses_of_names(text).items() if READS in uses)
+            elif name not in outputs and held(node.id, name) != KEY:
                 key = blackboard_key(name, text)
-                read.update((key,) if key is not None else _WORD.findall(text))
+                read.update((key.lstrip("@"),) if key is not None else _WORD.findall(text))
             if node.id == SUBTREE:
                 read.add(name)
     return frozenset(read)
 
 
-def unread_outputs(
-    nodes: Iterable[Node], models: Mapping[str, NodeModel], read: frozenset[str]
-) -> Iterator[Diagnostic]:
-    """BT235 for the keys that only output ports name."""
+def unread_values(nodes: Iterable[Node], models: Mapping[str, NodeModel], read: frozenset[str]) -> Iterator[Diagnostic]:
+    """BT235 for the keys that only output ports name, and that scripts only assign to."""
     for node in nodes:
         outputs = _outputs(node, models)
-        for name, text in node.ports if outputs else ():
-            key = blackboard_key(name, text) if name in outputs else None
-            if key is not None and key not in read and key[:1] != "@":
-                yield diagnostic("BT235", attribute_value(node, name), key=key, port=name, id=node.id)
+        for name, text in node.ports:
+            for key in _keys_set(node.id, name, text, outputs):
+                if key not in read and key[:1] != "@":
+                    yield diagnostic("BT235", attribute_value(node, name), key=key, port=name, id=node.id)
+
+
+def _keys_set(node_id: str, port: str, text: str, outputs: Container[str]) -> Iterable[str]:
+    holds = held(node_id, port)
+    if holds == SCRIPT:
+        return [name for name, uses in uses_of_names(text).items() if SETS in uses]
+    key = blackboard_key(port, text) if port in outputs or holds == KEY else None
+    return (key,) if key is not None else (text,) if holds == KEY and _WORD.fullmatch(text) else ()
 
 
 def unread_subtree_ports(nodes: Iterable[Node], trees: Mapping[str, Node]) -> Iterator[Diagnostic]:

@@ -139,6 +139,24 @@ def test_a_tree_names_what_it_is_given(tmp_path: Path, capsys: pytest.CaptureFix
     assert found == ["Nothing reads 'volume', which the port volume of Talk sets."]
 
 
+def test_values_that_scripts_set(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    nodes = (
+        "<Script code=\"a := 1; b := c := a; d = 'a'; total += 1; e == 1 &amp;&amp; true; @g := 1\"/>"
+        '<SetBlackboard value="1" output_key="f"/><SetBlackboard value="{f}" output_key="{h}"/>'
+        '<SetBlackboard value="1" output_key="said"/><Say text="{said}" _onSuccess="i := @k; i != 1 ?"/>'
+        '<SetBlackboard value="1" output_key="k"/><AlwaysSuccess _onSuccess="last := i"/>'
+    )
+    tree = f'<BehaviorTree ID="Main"><Sequence>{nodes}</Sequence></BehaviorTree>'
+    (tmp_path / "scripts.xml").write_text(f'<root BTCPP_format="4">{tree}</root>')
+    found = [problem["message"] for problem in problems(capsys, str(tmp_path)) if problem["code"] == "BT235"]
+    by_key = {
+        **dict.fromkeys("bcd", "code of Script"),
+        "h": "output_key of SetBlackboard",
+        "last": "_onSuccess of AlwaysSuccess",
+    }
+    assert found == [f"Nothing reads '{key}', which the port {port} sets." for key, port in by_key.items()]
+
+
 def test_missions_beside_trees(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "good.txt").write_text("wave\n", "utf-8")
     (folder / "bad.txt").write_text("flarp\n", "utf-8")

@@ -6,7 +6,7 @@ Levels and associativity are those of script_parser.cpp of BehaviorTree.CPP 4.10
 from __future__ import annotations
 
 from btlang.engine.script import code
-from btlang.engine.script.tokens import ScriptError, Tokens
+from btlang.engine.script.tokens import ASSIGNMENTS, BOOLEANS, ScriptError, Tokens
 from btlang.engine.script.values import COMPARISONS
 
 TYPE_CHECKING = False
@@ -19,7 +19,7 @@ MOST_LEVELS = 200
 
 _ASSIGN, _CHOOSE, _COMPARE, _PREFIX = 1, 2, 5, 10
 _LEVELS = {
-    **dict.fromkeys((":=", "=", "+=", "-=", "*=", "/="), _ASSIGN),
+    **dict.fromkeys(ASSIGNMENTS, _ASSIGN),
     "?": _CHOOSE,
     "||": 3,
     "&&": 4,
@@ -30,7 +30,6 @@ _LEVELS = {
     **dict.fromkeys("*/", 9),
 }  # a higher one binds tighter
 _PREFIXES = ("-", "~", "!")
-_BOOLEANS = {"true": 1.0, "false": 0.0}
 
 
 class _Waiting:
@@ -64,7 +63,7 @@ class _Statement:
     def __init__(self, tokens: Tokens, enums: Enums) -> None:
         self.tokens = tokens
         self.enums = enums
-        self.constants = {**enums, **_BOOLEANS}
+        self.constants = {**enums, **BOOLEANS}
         self.operands: list[tuple[Run, int, str]] = []  # with their depth, and the name where one stands alone
         self.waiting: list[_Waiting] = []
 
@@ -105,7 +104,7 @@ class _Statement:
             run = code.constant(self.constants[token.text])
         else:
             run = code.name(token.text)
-        name = token.text if token.kind == "name" and token.text not in _BOOLEANS else ""
+        name = token.text if token.kind == "name" and token.text not in BOOLEANS else ""
         self.operands.append((run, 1, name))
         return False
 

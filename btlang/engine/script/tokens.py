@@ -11,6 +11,8 @@ _TOKEN = re.compile(
     |(?P<sign>:=|==|!=|<=|>=|&&|\|\||\.\.|[-+*/]=|[-+*/&|^~!<>=?:();])""",
     re.VERBOSE,
 )
+BOOLEANS = {"true": 1.0, "false": 0.0}
+ASSIGNMENTS = (":=", "=", "+=", "-=", "*=", "/=")
 _SPACE = re.compile(r"(?:[ \t\r\n]|\\\r?\n)*")  # versions before 4.9 took a backslash at the end of a line
 _LIKE_A_NUMBER = re.compile(r"[0-9][A-Za-z0-9_.]*")
 
