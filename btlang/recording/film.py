@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from btlang.api import Mission
 from btlang.engine.compile import outline
 from btlang.engine.status import NAMES
+from btlang.passes.scripts import is_prepared
 from btlang.recording.reader import RecordedNodes
 from btlang.recording.story import Story
 from btlang.robots.world_problem import read_world
@@ -18,6 +19,8 @@ from btlang.run.robot_state import Movements, rounded_scan
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+    from btlang.tree.node import Node
 
 MOST_CHANGES = 200_000
 """Of statuses in a film; a longer run ends there."""
@@ -37,6 +40,8 @@ class Film:
         self._nodes = RecordedNodes(*outline(mission.tree))
         self._story = Story(mission, self._nodes, self._about)
         self._statuses: list[list[float | int]] = []
+        self._words: list[list[Any]] = []
+        self._valued: dict[int, Node] = {}
         self._robot: list[list[Any]] = []
         self._things: list[list[Any]] = []
         self._movements, self._next_look = Movements(), 0.0
@@ -63,6 +68,7 @@ class Film:
             pairs = [number for index, status, _, _ in event.changes for number in (index, status)]
             self._statuses.append([round(event.t, 3), *pairs])
             self._count += len(pairs) // 2
+            self._take_words(event)
         elif isinstance(event, PeriodPassed):
             self._take_state(event)
             if event.t >= self._next_look - 1e-9:
@@ -75,6 +81,13 @@ class Film:
             self._events.append(as_json(event, self._mission.label))
         full = self._count > MOST_CHANGES or len(self._events) > _MOST_EVENTS
         self.is_cut = full or len(self._robot) > _MOST_STATES or len(self._things) > _MOST_PLACES
+
+    def _take_words(self, event: StatusesChanged) -> None:
+        for index, node in event.values_now().items():
+            known = self._valued.get(index)
+            if known is None or known.ports != node.ports:
+                self._words.append([round(event.t, 3), index, self._mission.label(node)])
+            self._valued[index] = node
 
     def _take_state(self, event: PeriodPassed) -> None:
         state = event.state
@@ -92,7 +105,9 @@ class Film:
         """As JSON has it.
 
         - `text`: the mission, "" where it had none; `nodes`: in preorder, with the number of the parent (-1: the root)
-          and the characters of the text that say it (None for none); `names`: those of statuses;
+          and the characters of the text that say it (None for none); `prepared` are those whose children but the
+          last only compute values for that one; `names`: those of statuses;
+        - `words`: time, node and what it says with the values of its keys, where these are new;
         - `statuses`: a time in seconds, then node and status (a number of `names`) in turn;
         - `robot`: time, x, y (metres), heading (degrees), battery (percent), what the left and the right hand hold;
         - `things`: time, name, x, y (metres, None where it isn't there) and whether the robot sees it, where one of
@@ -113,7 +128,7 @@ class Film:
             listed.append(
                 {
                     "parent": nodes.parent(index), "id": node.id, "label": mission.label(node), "ports": node.ports,
-                    "start": start, "end": end,
+                    "start": start, "end": end, "prepared": is_prepared(node),
                 }
             )  # fmt: skip
         return {
@@ -121,6 +136,7 @@ class Film:
             "text": text,
             "names": list(NAMES),
             "nodes": listed,
+            "words": self._words,
             "statuses": self._statuses,
             "robot": self._robot,
             "things": self._things,

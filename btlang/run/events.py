@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from time import time
 
-from btlang.engine.status import FAILURE
+from btlang.engine.status import FAILURE, IDLE
 from btlang.record import Record
 from btlang.tree.node import Node
 
@@ -103,6 +103,13 @@ class StatusesChanged(Event):
         """Index, new status, status before and reason of each change. Paths cost more than all the rest."""
         for index, status, before, fault in self.changes:
             yield index, status, before, self.nodes.reason(index, fault) if status == FAILURE else ""
+
+    def values_now(self) -> dict[int, Node]:
+        """`valued` without nodes that are IDLE again, whose keys may have the values of a later round by now."""
+        if not self.valued:
+            return {}
+        latest = {index: status for index, status, _, _ in self.changes}
+        return {index: node for index, node in self.valued.items() if latest.get(index) != IDLE}
 
     def __iter__(self) -> Iterator[StatusChanged]:
         nodes, number = self.nodes, self.number

@@ -50,6 +50,7 @@ class RobotLink:
         self._change: int | None = None
         self._run: dict[str, Any] | None = None
         self._statuses: dict[int, str] = {}
+        self._words: dict[int, str] = {}
         self._t = 0.0
         self._states: dict[str, dict[str, Any]] = {}
 
@@ -188,9 +189,10 @@ class RobotLink:
         if kind == "change":
             self._change = int(message["number"])
         elif kind == "run":
-            self._run, self._statuses = message, {}
+            self._run, self._statuses, self._words = message, {}, {}
         elif kind == "statuses":
             self._statuses.update(message["changes"])
+            self._words.update(message.get("words", ()))
             self._t = message["t"]
         elif kind in STATES:
             self._states[kind] = message
@@ -208,8 +210,9 @@ class RobotLink:
         messages = [self._beginning]
         if self._run is not None:
             messages.append(self._run)
-            changes = [[index, status] for index, status in self._statuses.items()]
-            messages.append({"type": "statuses", "run": self._run["run"], "t": self._t, "changes": changes})
+            changes, words = [[*pair] for pair in self._statuses.items()], [[*pair] for pair in self._words.items()]
+            statuses = {"type": "statuses", "run": self._run["run"], "t": self._t, "changes": changes}
+            messages.append({**statuses, "words": words} if words else statuses)
         return [*messages, *self._states.values()]
 
 

@@ -47,8 +47,11 @@ class News:
     def after(self, before: News) -> News:
         """These statuses together with earlier ones of the same run, where these count."""
         if self._merged is None or self._merged[0] is not before:
-            changes = dict(before.message["changes"]) | dict(self.message["changes"])
-            self._merged = before, News(self.robot, {**self.message, "changes": [[i, s] for i, s in changes.items()]})
+            message = {**before.message, **self.message}
+            for pairs in {"changes", "words"} & message.keys():
+                both = dict(before.message.get(pairs, ())) | dict(self.message.get(pairs, ()))
+                message[pairs] = [[*pair] for pair in both.items()]
+            self._merged = before, News(self.robot, message)
         return self._merged[1]
 
 

@@ -10,6 +10,7 @@ from contextlib import suppress
 
 from btlang.api import Mission
 from btlang.engine.status import IDLE, NAMES
+from btlang.passes.scripts import is_prepared
 from btlang.run.bus import INLINE
 from btlang.run.events import LOGGED, DoorMoved, Event, PeriodPassed, StatusesChanged
 from btlang.run.json_log import as_json
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from btlang.robots.geometry import Point
     from btlang.robots.world import World
     from btlang.run.events import Sink
+    from btlang.tree.node import Node
 
 RATES = 0.1, 100.0
 """The least and the most messages of one kind in a second."""
@@ -39,11 +41,20 @@ _MOST_EVENTS, _MOST_RUNS, _MOST_CHANGES = 1000, 16, 1000
 
 
 class _Watched:
-    """A run with its task, 0 for the house rules between tasks; `changed` is when a status changed last."""
+    """A run with its task, 0 for the house rules between tasks.
+
+    `changed` is when a status changed last, `valued` are nodes with the values of their keys.
+    """
 
     def __init__(self, task: int, mission: Mission, run: Run) -> None:
         self.task, self.mission, self.run = task, mission, run
         self.changed = 0.0
+        self.valued: dict[int, Node] = {}
+
+    def take(self, event: StatusesChanged) -> None:
+        """In the thread of the run."""
+        self.valued.update(event.values_now())
+        self.changed = event.wall
 
 
 class Feed:
@@ -127,7 +138,7 @@ class Feed:
                 self._scan, self._scanned_from = _scan(event), None if event.state is None else event.state.place
                 self._parts = self._look_at_parts()
         elif isinstance(event, StatusesChanged):
-            watched.changed = event.wall
+            watched.take(event)
         elif isinstance(event, DoorMoved) and self._map is not None:
             self._map.move_door(event)
         for watcher in tuple(self._watchers):
@@ -215,6 +226,7 @@ class _Watcher:
         self.speech = ("", 0, 0)
         self.run = ""
         self.codes = b""
+        self.valued: dict[int, Node] = {}
 
 
 class _Tap:
@@ -234,17 +246,34 @@ def _statuses(watcher: _Watcher, watched: _Watched) -> Iterator[dict[str, Any]]:
     """The tree of a run, if it is a new one, and the statuses that are new: those between are left out."""
     run = watched.run
     if watcher.run != run.id:
-        watcher.run, watcher.codes = run.id, bytes([IDLE]) * run.nodes.size
-        mission = watched.mission
-        nodes = [[path, node.id, mission.label(node), dict(node.ports)] for path, node in run.nodes.nodes]
-        yield {"type": "run", "run": run.id, "task": watched.task, "outline": str(mission), "nodes": nodes}
+        watcher.run, watcher.codes, watcher.valued = run.id, bytes([IDLE]) * run.nodes.size, {}
+        yield {"type": "run", "run": run.id, "task": watched.task, "outline": str(watched.mission), **_tree(watched)}
     changed = watched.changed  # before the statuses, so that none of them is older
     codes = run.follower.codes() or watcher.codes
-    if codes != watcher.codes:
+    words = list(_new_words(watcher, watched))
+    if codes != watcher.codes or words:
         pairs = enumerate(zip(watcher.codes, codes, strict=True))
         changes = [[index, NAMES[min(after, IDLE)]] for index, (before, after) in pairs if before != after]
         watcher.codes = codes
-        yield {"type": "statuses", "run": run.id, "t": changed, "changes": changes}
+        said = {"words": words} if words else {}
+        yield {"type": "statuses", "run": run.id, "t": changed, "changes": changes, **said}
+
+
+def _tree(watched: _Watched) -> dict[str, Any]:
+    nodes, label = watched.run.nodes, watched.mission.label
+    filled = [nodes.filled(index) for index in range(nodes.size)]
+    listed = [[nodes.path(index), node.id, label(node), dict(node.ports)] for index, node in enumerate(filled)]
+    return {"nodes": listed, "prepared": [index for index, node in enumerate(filled) if is_prepared(node)]}
+
+
+def _new_words(watcher: _Watcher, watched: _Watched) -> Iterator[list[Any]]:
+    """Numbers and words of the nodes whose keys have other values than somebody knows."""
+    for index, node in tuple(watched.valued.items()):
+        known = watcher.valued.get(index)
+        if known is not node:
+            watcher.valued[index] = node
+            if known is None or known.ports != node.ports:
+                yield [index, watched.mission.label(node)]
 
 
 def _state(state: RobotState | None) -> dict[str, Any]:

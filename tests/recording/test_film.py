@@ -37,6 +37,18 @@ def final(data: dict[str, object]) -> dict[int, str]:
     return statuses
 
 
+def test_nodes_have_the_words_of_their_round() -> None:
+    rounds = 'set n to 1\nrepeat 2 times: (say "round {n}" then increase n by 1)'
+    data = tried(parse_tree(f"visit {{place}} is go to {{place}}\nvisit the lab\n{rounds}"))
+    goes, says = (next(i for i, node in enumerate(data["nodes"]) if node["id"] == id) for id in ("GoTo", "Say"))
+    assert data["nodes"][data["nodes"][says]["parent"]]["prepared"]
+    assert not data["nodes"][goes]["prepared"]
+    assert [words for _, node, words in data["words"] if node == goes] == ["go to lab"]
+    assert [words for _, node, words in data["words"] if node == says] == ['say "round 1"', 'say "round 2"']
+    times = [seconds for seconds, *_ in data["words"]]
+    assert times == sorted(times)
+
+
 def test_a_trial() -> None:
     data = json.loads(json.dumps(tried(parse_tree(TEXT))))
     said = ["" if node["start"] is None else TEXT[node["start"] : node["end"]] for node in data["nodes"]]

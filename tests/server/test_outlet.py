@@ -48,6 +48,16 @@ def test_statuses_are_merged_and_the_newest_wins() -> None:
     assert outlet.take() == []
 
 
+def test_words_are_merged_like_statuses() -> None:
+    first, second = statuses("a", (0, "RUNNING")), statuses("a", (0, "SUCCESS"))
+    third = statuses("a", (1, "RUNNING"))
+    first.message["words"] = [[0, "go to lab"], [1, "wave"]]
+    third.message["words"] = [[0, "go to office"]]
+    [message] = taken(filled(first, second, third))
+    assert dict(message["words"]) == {0: "go to office", 1: "wave"}
+    assert "words" not in taken(filled(second, statuses("a", (1, "RUNNING"))))[0]
+
+
 def test_merging_changes_nothing_that_others_wait_for() -> None:
     first, second = statuses("a", (0, "RUNNING")), statuses("a", (0, "SUCCESS"))
     slow, quick = filled(first), filled(first)

@@ -70,6 +70,30 @@ def test_a_task_is_followed(tmp_path: Path) -> None:
         assert states == [State.QUEUED, State.STANDBY, State.UNDERWAY, State.COMPLETED]
 
 
+def test_nodes_have_the_words_of_their_round(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        watcher = Watcher(layer)
+        visit = "visit {place} is go to {place}\nfor each room in the lab and the office: visit {room}"
+        number = submit(layer, f'set n to 1\nrepeat 2 times: (say "round {{n}}" then increase n by 1)\n{visit}')
+
+        def is_told(message: dict[str, Any]) -> bool:
+            return message["type"] == "statuses" and any(
+                words == 'say "round 2"' for _, words in message.get("words", ())
+            )
+
+        watcher.wait(is_told)
+        late = Watcher(layer)
+        late.wait(is_told)
+        watcher.wait(lambda message: message.get("state") == State.COMPLETED)
+        run = watcher.wait(lambda message: message["type"] == "run" and message["task"] == number)
+        assert [node[2] for node in run["nodes"] if node[1] == "GoTo"] == ["go to lab", "go to office"]
+        says = next(index for index, node in enumerate(run["nodes"]) if node[1] == "Say")
+        [prepared] = run["prepared"]
+        assert run["nodes"][says][0] == f"{run['nodes'][prepared][0]}/1"
+        found = [pair for message in watcher.of("statuses") for pair in message.get("words", ()) if pair[0] == says]
+        assert [words for _, words in found] == ['say "round 1"', 'say "round 2"']
+
+
 def test_the_map_and_what_the_scanner_sees(tmp_path: Path) -> None:
     with layer_in(tmp_path) as layer:
         watcher = Watcher(layer)

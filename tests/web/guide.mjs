@@ -38,6 +38,10 @@ await visit(base, async (page) => {
   await page.click(".controls button:text-is('Pause')"); // it goes on for as long as a busy computer needs
   await page.waitForSelector(".controls button:text-is('Go on')");
   await accessible(page, "guide");
+  await page.fill(".watch input[type=search]", "approach");
+  await page.keyboard.press("Enter");
+  const found = await page.evaluate(() => document.getElementById(document.querySelector("[role=tree]").getAttribute("aria-activedescendant")).getAttribute("aria-label"));
+  assert.match(found, /approach vase/, "the tree doesn't say what is approached");
   await page.setViewportSize({ width: 360, height: 740 });
   await fits(page);
 

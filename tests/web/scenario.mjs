@@ -18,10 +18,13 @@ await visit(base, async (page, context) => {
   await logIn(page, base, "olga", password);
   await page.click(".robots a");
   await page.waitForSelector(".watch");
-  await submit(page, 'say "مرحبا \\<script>alert(1)\\</script>" then go to the statue then wait 10 minutes');
+  await submit(page, 'set n to 1\nrepeat 2 times: (say "round {n}" then increase n by 1)\nsay "مرحبا \\<script>alert(1)\\</script>" then go to the statue then wait 10 minutes');
   await page.waitForSelector(".node[data-status=RUNNING]");
   await page.waitForFunction(() => document.querySelector(".running").textContent.includes("statue"));
-  assert.match(await page.textContent(".log"), /says “مرحبا <script>/);
+  const log = await page.textContent(".log");
+  assert.match(log, /says “مرحبا <script>/);
+  assert.doesNotMatch(log, /Script code/, "what only prepares a command is in the log");
+  await page.waitForSelector(".node:has-text('say \"round 2\"')");
   await accessible(page, "watch");
 
   await page.setViewportSize({ width: 360, height: 740 });

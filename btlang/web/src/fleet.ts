@@ -41,8 +41,10 @@ export interface Run {
   task: number;
   nodes: [path: string, id: string, label: string, ports?: Record<string, string>][];
   statuses: Status[];
-  /** Which nodes are actions and conditions. */
+  /** Which nodes are actions and conditions, without what only prepares one of them. */
   leaves: boolean[];
+  /** Those whose children but the last only compute values for that one. */
+  prepared: Set<number>;
 }
 
 export interface Entry {
@@ -165,6 +167,10 @@ export class Fleet {
     else if (news.type === "statuses") {
       const run = [robot.run, robot.rules].find((each) => each?.id === news["run"]);
       if (!run) return;
+      for (const [index, words] of (news["words"] ?? []) as [number, string][]) {
+        const node = run.nodes[index];
+        if (node) node[2] = words;
+      }
       for (const [index, status] of news["changes"] as [number, Status][]) {
         run.statuses[index] = status;
         if (!robot.fresh && run.task && run.leaves[index]) log(robot, { task: run.task, wall: news["t"], event: { event: status, name: run.nodes[index]![2] } });
@@ -191,7 +197,9 @@ export class Fleet {
 
 function begin(robot: Robot, news: News): void {
   const again = robot.run?.id === news["run"];
-  const run: Run = { id: news["run"], task: news["task"], nodes: news["nodes"], statuses: news["nodes"].map(() => "IDLE"), leaves: leavesOf(news["nodes"]) };
+  const nodes: Run["nodes"] = news["nodes"];
+  const prepared = new Set<number>(news["prepared"]);
+  const run: Run = { id: news["run"], task: news["task"], nodes, statuses: nodes.map(() => "IDLE"), leaves: leavesOf(nodes, prepared), prepared };
   robot[run.task ? "run" : "rules"] = run;
   robot.task = run.task;
   if (again || !run.task) return;
@@ -208,8 +216,14 @@ function note(robot: Robot, news: News): void {
   log(robot, { task: news["task"], wall: event.wall, event });
 }
 
-function leavesOf(nodes: Run["nodes"]): boolean[] {
-  return nodes.map(([path], index) => !nodes[index + 1]?.[0].startsWith(path.replace(/\/?$/, "/")));
+function leavesOf(nodes: Run["nodes"], prepared: Set<number>): boolean[] {
+  const paths = new Set(nodes.map(([path]) => path));
+  const above = new Set([...prepared].map((index) => nodes[index]?.[0].replace(/^\/$/, "")));
+  return nodes.map(([path], index) => {
+    const [parent, position] = [path.slice(0, path.lastIndexOf("/")), Number(path.slice(path.lastIndexOf("/") + 1))];
+    const prepares = path !== "/" && above.has(parent) && paths.has(`${parent}/${position + 1}`);
+    return !prepares && !nodes[index + 1]?.[0].startsWith(path.replace(/\/?$/, "/"));
+  });
 }
 
 /** The numbers of the actions and conditions that run. */

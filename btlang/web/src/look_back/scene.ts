@@ -2,7 +2,7 @@
 import { fill, h, oncePerFrame } from "../dom";
 import { Robot, STATUSES, type Point, type Status, type Thing, type WorldMap } from "../fleet";
 import { t } from "../texts";
-import { TreeView, type TreeNode } from "../tree/tree_view";
+import { TreeView, joined, type TreeNode } from "../tree/tree_view";
 import { MapView } from "../watch/map";
 import { clock } from "./timeline";
 
@@ -12,6 +12,7 @@ export interface Film {
   text: string;
   names: Status[];
   nodes: (TreeNode & { start: number | null; end: number | null })[];
+  words: [t: number, node: number, words: string][];
   statuses: number[][];
   robot: [t: number, x: number | null, y: number | null, heading: number | null, battery: number | null, left: string | null, right: string | null][];
   things: [t: number, ...Thing][];
@@ -55,7 +56,7 @@ export class Scene {
     this.log = h("div", { class: "card events" }, h("h2", {}, t("log")), this.story);
     const words = [film.stopped && `${t("film.stopped")} ${film.stopped}.`, film.why, film.is_cut && t("film.cut")].filter(Boolean).join("\n");
     this.outcome = h("p", { class: film.failed >= 0 || film.stopped ? "outcome bad" : "outcome", lang: "en", tabindex: 0 }, words);
-    this.tree.setNodes(film.nodes);
+    this.tree.setNodes(joined(film.nodes));
     this.showWords(-1);
   }
 
@@ -95,9 +96,21 @@ export class Scene {
       for (let at = 1; at < row.length; at += 2) changes.set(row[at]!, film.names[row[at + 1]!]!);
     }
     this.tree.setStatuses(changes);
+    this.showValues();
     this.showRobot();
     const current = film.story.findLastIndex(([seconds]) => seconds <= now + 1e-6);
     [...this.story.children].forEach((item, index) => item.classList.toggle("now", index === current));
+  }
+
+  /** What the nodes say with the values of this moment. */
+  private showValues(): void {
+    const { film, now } = this;
+    const words = new Map(film.words.map(([, node]) => [node, film.nodes[node]!.label]));
+    for (const [seconds, node, said] of film.words) {
+      if (seconds > now + 1e-6) break;
+      words.set(node, said);
+    }
+    this.tree.setWords(words);
   }
 
   private showRobot(): void {

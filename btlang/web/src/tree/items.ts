@@ -11,6 +11,30 @@ export interface TreeNode {
   edits?: string[];
   /** It's marked, since it ended otherwise in another run. */
   differs?: boolean;
+  /** Its children but the last only compute values for that one. */
+  prepared?: boolean;
+  /** The node that stands for it: it isn't shown itself. */
+  shownBy?: number;
+  /** The node that it says the words of, where it stands for others. */
+  says?: number;
+}
+
+/** The same nodes, in which one that is prepared stands for all that is done for it, and looks like the last of that. */
+export function joined(nodes: readonly TreeNode[]): TreeNode[] {
+  const found = nodes.map((node): TreeNode => ({ ...node }));
+  const below: number[][] = found.map(() => []);
+  found.forEach(({ parent }, index) => parent >= 0 && below[parent]!.push(index));
+  for (let index = found.length - 1; index >= 0; index--) {
+    const node = found[index]!;
+    const last = below[index]!.at(-1);
+    if (!node.prepared || last === undefined) continue;
+    for (const part of below[index]!) found[part]!.shownBy = index;
+    for (const child of below[last]!) found[child]!.parent = index;
+    below[index] = below[last]!;
+    const { id, label, ports, differs } = found[last]!;
+    Object.assign(node, { id, label, ports, says: last, differs: node.differs || differs });
+  }
+  return found;
 }
 
 /** A place where a node is shown. Below a subtree that opens in place, one node may be shown at several. */
@@ -45,6 +69,7 @@ export class Items {
     this.below = nodes.map(() => []);
     const roots: number[] = [];
     nodes.forEach((node, index) => {
+      if (node.shownBy !== undefined) return;
       if (node.parent >= 0) this.below[node.parent]!.push(index);
       else roots.push(index);
       if (node.parent < 0 && node.tree) this.definitions.set(node.tree, index);
@@ -116,6 +141,10 @@ export class Items {
     for (let at = node; at >= 0; ) {
       const found = this.nodes[at];
       if (!found || passed.has(at)) return null;
+      if (found.shownBy !== undefined) {
+        at = found.shownBy;
+        continue;
+      }
       passed.add(at);
       way.push(at);
       at = found.parent >= 0 ? found.parent : (this.uses.get(found.tree ?? "") ?? -1);

@@ -10,7 +10,7 @@ import { gap, lines, place, type Direction } from "./layout";
 import type { Shown } from "./picture";
 import { toolbar } from "./toolbar";
 
-export type { TreeNode } from "./items";
+export { joined, type TreeNode } from "./items";
 
 /** `select` and `activate` get the number of a node; `menu` gives the commands of one, for its context menu. */
 export interface TreeOptions {
@@ -49,6 +49,7 @@ export class TreeView {
   readonly scroll: HTMLElement;
   private redraw = oncePerFrame(() => this.draw());
   private paint = oncePerFrame(() => this.paintStatuses());
+  private reword = oncePerFrame(() => this.arrange());
   private unseen = false;
   private drag: TreeDrag | null = null;
   private resized = new ResizeObserver(() => (this.unseen ? this.begin() : this.redraw()));
@@ -92,6 +93,20 @@ export class TreeView {
       this.changed.add(node);
     }
     this.paint();
+  }
+
+  /** New words of nodes; those of a node that another one stands for are its words, if it says them. */
+  setWords(changes: Iterable<readonly [node: number, words: string]>): void {
+    let shown = false;
+    for (const [node, words] of changes) {
+      let at = node;
+      for (let by = this.nodes[at]?.shownBy; by !== undefined && this.nodes[by]!.says === at; by = this.nodes[at]!.shownBy) at = by;
+      const found = this.nodes[at];
+      if (!found || found.shownBy !== undefined || found.label === words) continue;
+      found.label = words;
+      shown = true;
+    }
+    if (shown) this.reword();
   }
 
   /** The number of the selected node. */
@@ -185,7 +200,7 @@ export class TreeView {
   /** Marks the nodes with some words, and returns their numbers. */
   find(words: string): number[] {
     const wanted = words.trim().toLocaleLowerCase();
-    const found = (node: TreeNode): boolean => [node.id, node.label, ...node.ports.flat()].some((text) => text.toLocaleLowerCase().includes(wanted));
+    const found = (node: TreeNode): boolean => node.shownBy === undefined && [node.id, node.label, ...node.ports.flat()].some((text) => text.toLocaleLowerCase().includes(wanted));
     const all = wanted ? this.nodes.flatMap((node, index) => (found(node) ? [index] : [])) : [];
     this.matches = new Set(all);
     this.forget();

@@ -6,7 +6,7 @@ import { state } from "../robots";
 import { called, command, Queue } from "../tasks/queue";
 import { submitForm } from "../tasks/submit";
 import { t, type Key } from "../texts";
-import { TreeView, type TreeNode } from "../tree/tree_view";
+import { TreeView, joined, type TreeNode } from "../tree/tree_view";
 import type { Context, View } from "../view";
 import { Body } from "./body";
 import { Failure } from "./failure";
@@ -83,7 +83,10 @@ class Watch implements View {
     );
     this.unwatch = context.fleet.watch((robot, kind, news) => {
       if (robot !== this.robot) return;
-      if (kind === "statuses" && news?.["run"] === this.run?.id) this.tree.setStatuses(news!["changes"]);
+      if (kind === "statuses" && news?.["run"] === this.run?.id) {
+        this.tree.setWords(news!["words"] ?? []);
+        this.tree.setStatuses(news!["changes"]);
+      }
       if (kind === "event") {
         this.failure.note(news!["task"], news!["event"]);
         this.voice.note(news!["event"]);
@@ -132,14 +135,16 @@ class Watch implements View {
     this.tree.element.hidden = run === null;
     if (run && run !== this.run) {
       if (run.id !== this.run?.id) this.tree.setNodes(nodesOf(run));
+      else this.tree.setWords(nodesOf(run).map(({ label }, index) => [index, label] as const));
       this.tree.setStatuses(run.statuses.entries());
     }
     this.run = run;
     const leaves = run && this.robot.up ? running(run) : [];
-    const shown = JSON.stringify([run?.id, leaves]);
+    const words = leaves.slice(0, MOST_RUNNING).map((leaf) => run!.nodes[leaf]![2]);
+    const shown = JSON.stringify([run?.id, leaves, words]);
     if (this.running.dataset["shown"] === shown) return;
     this.running.dataset["shown"] = shown;
-    fill(this.running, ...leaves.slice(0, MOST_RUNNING).map((leaf) => h("li", { dir: "auto" }, run!.nodes[leaf]![2])));
+    fill(this.running, ...words.map((each) => h("li", { dir: "auto" }, each)));
     if (this.follow.getAttribute("aria-pressed") === "true" && leaves.length) this.tree.bring(leaves[0]!);
   }
 
@@ -179,10 +184,11 @@ class Watch implements View {
 /** The nodes of a run as a tree shows them; they come in preorder, with paths such as /0/1. */
 function nodesOf(run: Run): TreeNode[] {
   const numbers = new Map<string, number>();
-  return run.nodes.map(([path, id, label, ports], index) => {
+  const nodes = run.nodes.map(([path, id, label, ports], index) => {
     numbers.set(path, index);
     const above = path.slice(0, path.lastIndexOf("/")) || "/";
     const parent = path === "/" ? -1 : (numbers.get(above) ?? -1);
-    return { parent, id, label: label === id ? "" : label, ports: Object.entries(ports ?? {}) };
+    return { parent, id, label: label === id ? "" : label, ports: Object.entries(ports ?? {}), prepared: run.prepared.has(index) };
   });
+  return joined(nodes);
 }
