@@ -32,7 +32,7 @@ class News(Record):
 
 
 class Progress:
-    """A sink that hands on, once a tick at most, the nodes with a new status, and now and then all of them.
+    """A sink that hands on, once a tick at most, the nodes with a new status, and now and then and at the end all.
 
     `snapshot` is that of the run. The other functions are called in the thread of the run, and at its end.
     """
@@ -60,7 +60,7 @@ class Progress:
             self._report(True, is_last=True)
 
     def _report(self, all_too: bool, *, is_last: bool = False) -> None:
-        if not (self._new or (self._pending and all_too)):
+        if not (is_last or self._new or (self._pending and all_too)):
             return
         now = self._snapshot()
         running = "; ".join(now.running)
