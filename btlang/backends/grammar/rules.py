@@ -63,13 +63,11 @@ def joined(parts: Iterable[Part]) -> Part:
     """All parts in a row, with neighbouring texts as one; NOTHING if one of them can't be said."""
     made: list[Part] = []
     for part in parts:
-        if part == NOTHING:
-            return NOTHING
-        if part == Joined(()):
-            continue
         if isinstance(part, Text) and made and isinstance(made[-1], Text):
             made[-1] = Text(made[-1].text + part.text)
-        else:
+        elif part == NOTHING:
+            return NOTHING
+        elif not isinstance(part, Joined) or part.parts:
             made.append(part)
     return made[0] if len(made) == 1 else Joined(tuple(made))
 

@@ -60,6 +60,7 @@ class _VocabularyRules:
         leaves = list(self._leaves())
         self._actions = [leaf for leaf in leaves if leaf.entry.sort == "action"]
         self._conditions = [leaf for leaf in leaves if leaf.entry.sort == "condition"]
+        self._condition_forms = {form for leaf in self._conditions for form in leaf.forms}
 
     def made(self) -> Rules:
         rules = {name: parsed(written, self._words) for name, written in FORMS.items()}
@@ -104,9 +105,9 @@ class _VocabularyRules:
     def _denied(self, leaf: _Leaf) -> Iterator[Form]:
         """That it is not so, in the verb or the subject."""
         tables = self._vocabulary.negations, self._vocabulary.negative_subjects
-        said = {form for other in self._conditions for form in other.forms}
         for form in leaf.forms:
-            yield from (way for way, role in variants(form, *tables, {}) if role == "negated" and way not in said)
+            denied = (way for way, role in variants(form, *tables, {}) if role == "negated")
+            yield from (way for way in denied if way not in self._condition_forms)
 
     def _quantities(self) -> Part:
         found: list[Part] = []
