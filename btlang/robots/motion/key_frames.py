@@ -13,6 +13,7 @@ from btlang.robots.motion.kinematics import Array
 _LOOKS = 25  # at each quintic
 _ROUNDS = 30
 _SAFE = 0.999  # of a limit
+_BEYOND = 1.001  # slower than needed: without it each round comes nearer to the limits, and none within them
 _SHORTEST = 0.01  # seconds between two key frames
 
 
@@ -54,7 +55,7 @@ def curve(frames: Frames, start: Array, limits: Limits, rests: bool) -> Curve:
         needed = _times_too_fast(made, limits)
         if not len(needed) or needed.max() <= 1.0:
             break
-        steps = steps * (np.maximum(needed, 1.0) if turn < _ROUNDS - 5 else needed.max() * 1.01)
+        steps = steps * (np.where(needed > 1.0, needed * _BEYOND, 1.0) if turn < _ROUNDS - 5 else needed.max() * 1.01)
     return made
 
 
