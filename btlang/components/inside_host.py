@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Generator, Mapping
+from functools import lru_cache
 from inspect import isgenerator, signature
 
 from btlang.components.component import Component, ComponentError
@@ -128,8 +129,13 @@ class InsideHost:
 
 
 def _call(method: Callable[..., Any], ports: Mapping[str, Any], robot: Any) -> Any:
-    takes = signature(method).parameters
-    return method(**ports, robot=robot) if "robot" in takes else method(**ports)
+    takes_robot = _takes_robot(getattr(method, "__func__", method))
+    return method(**ports, robot=robot) if takes_robot else method(**ports)
+
+
+@lru_cache(maxsize=1024)  # a condition is asked at each tick
+def _takes_robot(function: Callable[..., Any]) -> bool:
+    return "robot" in signature(function).parameters
 
 
 class InsideLeaf:

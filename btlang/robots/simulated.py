@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
 from math import ceil
 from typing import Any
 
@@ -56,6 +57,7 @@ class SimulatedRobot:
         obstacles: Obstacles | None = None,
     ) -> None:
         self.body = body = body or standard_body()
+        self._has = cache(body.has)
         self.radius = body.radius
         self.normal_speed, self.max_speed = body.driving.speed, body.driving.top_speed
         self.normal_turn = body.turning.speed
@@ -566,7 +568,7 @@ class SimulatedRobot:
 
     def _need(self, need: str) -> None:
         """Raises RobotError where the body lacks it."""
-        if not self.body.has(need):
+        if not self._has(need):
             raise RobotError(f"the robot has no {part_of(need)}")
 
     def _begin_faults(self) -> None:
