@@ -34,6 +34,7 @@ _STUCK_AFTER, _STUCK_SHARE = 1.0, 0.05
 _BEGINS = 3.0  # seconds that it gets to set off, from the time when somebody listens
 _STEP = 0.1  # seconds that a step counts at most: robots brake by themselves before one that comes late
 _ACKNOWLEDGED = Duration(seconds=0.5)
+_NEWEST = 1  # velocity is kept: with each that fills what is kept, Fast DDS asks whether it has arrived, else each 3 s
 
 
 class RosBase:
@@ -80,7 +81,7 @@ class RosBase:
                 if self._publisher is not None:
                     self._node.destroy_publisher(self._publisher)
                 self._type = TWIST if TWIST in types else STAMPED
-                self._publisher = self._node.create_publisher(_TYPES[self._type], VELOCITY, 10)
+                self._publisher = self._node.create_publisher(_TYPES[self._type], VELOCITY, _NEWEST)
             return self._type
 
     def drive(self, linear: float, angular: float) -> None:

@@ -94,8 +94,9 @@ class RosConnection:
     def survey(self, tree: Tree, vocabulary: Lexicon) -> dict[Interface, tuple[Node | None, str]]:
         """What a tree needs of the robot, the first leaf that needs it, and what is wrong with it, "" for nothing.
 
-        Waits for what is missing: until the node is seven seconds old, at least for two seconds. Raises MissionError
-        where nav2_msgs is needed and is not installed (BT100), or btlang's interfaces aren't compiled (BT110).
+        Waits for what is missing: until the node is seven seconds old, at least for two seconds; and for two seconds
+        for states that may only be published when they change. Raises MissionError where nav2_msgs is needed and is
+        not installed (BT100), or btlang's interfaces aren't compiled (BT110).
         """
         wanted: dict[Interface, Node | None] = {CLOCK: None} if self._sim_time else {}
         declared, own = self._bound(tree, vocabulary)
@@ -106,6 +107,7 @@ class RosConnection:
         if any(interface.type.startswith(f"{OWN.name}/") for interface in wanted):
             require_interfaces()
         found: dict[Interface, tuple[Node | None, str]] = {}
+        states_until = time.monotonic() + _AGAIN
 
         def has_all() -> bool:
             found.clear()
@@ -114,7 +116,9 @@ class RosConnection:
                 found[offered] = node, reason
             lacking = {Interface(need.kind, need.name, need.type): need.missing for need in self._clients.needs()}
             found.update((interface, (node, lacking[interface])) for interface, node in own.items())
-            return not any(reason for _, reason in found.values()) and not self.robot.awaited()
+            if any(reason for _, reason in found.values()):
+                return False
+            return not self.robot.awaited() or time.monotonic() >= states_until
 
         wait_until(has_all, max(self._discovers_until - time.monotonic(), _AGAIN))
         return {self._named(interface): lack for interface, lack in found.items()}

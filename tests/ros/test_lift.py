@@ -61,5 +61,6 @@ def test_over_ros(start_sim, client: Client, tmp_path: Path) -> None:
     states = client.hear(JointState, "/joint_states")
     start_sim("--robot", str(tmp_path / "forklift.toml"))
     assert states.wait().position[0] == pytest.approx(0.1)  # metres
+    assert not client.node.count_publishers("/sightings")  # it recognises nothing, so nobody waits for what it sees
     assert main([*MISSION, "--robot", "forklift.toml", "--over", "ros", "--sim-time"]) == 0
     states.wait(lambda state: abs(state.position[0] - 0.2) < 0.011)

@@ -117,3 +117,36 @@ def test_a_robot_of_which_nothing_is_known(
     assert "; nothing reports whether the robot moves." in mission.out
     assert mission.err == ""
     assert json.loads((tmp_path / "log.jsonl").read_text().splitlines()[-1])["still"] is None
+
+
+ASKS = """
+from rclpy.publisher import Publisher
+
+asked = Publisher.wait_for_all_acked
+
+
+def ask(self, limit):
+    found = asked(self, limit)
+    print(self.topic_name, found, flush=True)
+    return found
+
+
+Publisher.wait_for_all_acked = ask
+from btlang.cli import main
+
+main(["run", "--robot", "ros", "-c", "nod", "--quiet"])
+"""
+
+
+class Asking(Command):
+    """A mission that shows which topics have arrived as it ends."""
+
+    program = ("-c", ASKS)
+
+
+def test_the_robot_has_the_last_zero(start_sim: Callable[..., Command], domain: int, tmp_path: Path) -> None:
+    """Before the program ends; without the profile of these tests, whose writers ask for it in other intervals."""
+    start_sim()
+    mission = Asking(tmp_path, domain, FASTRTPS_DEFAULT_PROFILES_FILE=None)
+    assert mission.process.wait(LONG) == 0, mission.err
+    assert "/cmd_vel True" in mission.out

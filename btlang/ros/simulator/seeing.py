@@ -23,7 +23,9 @@ class Seeing:
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot
-        self._sightings = node.create_publisher(Sightings, SIGHTINGS, COMMANDS)
+        self._sightings = None
+        if robot.body.has("perception"):
+            self._sightings = node.create_publisher(Sightings, SIGHTINGS, COMMANDS)
         self._due = Every(10)
 
         def follow(request: Follow.Request, response: Follow.Response) -> Follow.Response:
@@ -40,7 +42,7 @@ class Seeing:
     def publish(self, now: Moment) -> None:
         """Publishes what is in view."""
         robot = self._robot
-        if not robot.body.has("perception") or not self._due.is_due(now.seconds):
+        if self._sightings is None or not self._due.is_due(now.seconds):
             return
         message = Sightings()
         message.header.stamp, message.header.frame_id = now.stamp, MAP
