@@ -29,15 +29,17 @@ sys.dont_write_bytecode = False  # and each worker the tests
 # error about locked ports (Fast DDS 5737, 6117)
 os.environ["FASTDDS_BUILTIN_TRANSPORTS"] = "UDPv4"
 
-REAL_TIME = ("tests/ros/", "tests/web/", "tests/terminal/")
+REAL_TIME = ("tests/ros/", "tests/terminal/", "tests/web/")
 """Folders of tests in which several processes must be quick enough for one another."""
+_QUICK = 2
+"""The workers that have these. With more of them at a time some come too late, and with one its tests are left over."""
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """`-m long` is known before the tests are read, and the first worker, which has those in REAL_TIME, goes first."""
+    """`-m long` is known before the tests are read, and the workers that have those in REAL_TIME go first."""
     if config.option.markexpr == "long":
         os.environ[LONG] = "1"
-    if os.environ.get("PYTEST_XDIST_WORKER", "gw0") != "gw0":
+    if int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")) >= _QUICK:
         os.nice(10)
 
 
@@ -47,8 +49,13 @@ def pytest_xdist_auto_num_workers() -> int | None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Those in REAL_TIME come first: most of them share a worker, and none of the long ones is left for the end."""
-    items.sort(key=lambda item: not item.nodeid.startswith(REAL_TIME))
+    """Each worker first gets as many tests of the list as the others, in a row: some begin with those in REAL_TIME."""
+    workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    real_time = [item for item in items if item.nodeid.startswith(REAL_TIME)]
+    others = [item for item in items if not item.nodeid.startswith(REAL_TIME)]
+    share, half = len(items) // workers, len(real_time) // min(_QUICK, workers)
+    between = max(0, share - half)
+    items[:] = [*real_time[:half], *others[:between], *real_time[half:], *others[between:]]
 
 
 def pytest_collection_finish() -> None:
