@@ -268,7 +268,7 @@ def _tree(watched: _Watched) -> dict[str, Any]:
 
 def _new_words(watcher: _Watcher, watched: _Watched) -> Iterator[list[Any]]:
     """Numbers and words of the nodes whose keys have other values than somebody knows."""
-    for index, node in tuple(watched.valued.items()):
+    for index, node in watched.valued.copy().items():  # in one step: the run goes on
         known = watcher.valued.get(index)
         if known is not node:
             watcher.valued[index] = node
