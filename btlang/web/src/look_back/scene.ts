@@ -38,6 +38,7 @@ export class Scene {
   private story = h("ol", { class: "log story", lang: "en", tabindex: 0 });
   private now = 0;
   private taken = 0; // statuses that the tree shows
+  private said = 0; // words that it shows
   private draw = oncePerFrame(() => this.show());
 
   /** `jump` is told what somebody chose in the story: a time, in seconds, and a node (-1: none). */
@@ -105,9 +106,13 @@ export class Scene {
   /** What the nodes say with the values of this moment. */
   private showValues(): void {
     const { film, now } = this;
-    const words = new Map(film.words.map(([, node]) => [node, film.nodes[node]!.label]));
-    for (const [seconds, node, said] of film.words) {
-      if (seconds > now + 1e-6) break;
+    if (this.said && film.words[this.said - 1]![0] > now) {
+      this.said = 0;
+      this.tree.setWords(film.words.map(([, node]) => [node, film.nodes[node]!.label] as const));
+    }
+    const words = new Map<number, string>();
+    while (this.said < film.words.length && film.words[this.said]![0] <= now + 1e-6) {
+      const [, node, said] = film.words[this.said++]!;
       words.set(node, said);
     }
     this.tree.setWords(words);
