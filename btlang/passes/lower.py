@@ -12,7 +12,7 @@ from btlang.passes.scope import Scope
 from btlang.passes.scripts import assignment, behind, chosen, comparison, prepared
 from btlang.text.source import Span
 from btlang.tree import ast
-from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, ON_SUCCESS, SUBTREE
+from btlang.tree.catalogue import SUBTREE, never_ends
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
@@ -263,18 +263,8 @@ def _check(_item: ast.Check, done: list[Lowered], _scope: Scope) -> Lowered:
 def _exact(item: ast.Exact, done: list[Lowered], scope: Scope) -> Lowered:
     """Nothing is added to it, not even where it can be skipped."""
     node = Node(item.id, tuple(part.node for part in done), item.ports, item.name, item.span)
-    return Lowered(node, False, _never_ends(node, [part.endless for part in done], scope))
-
-
-def _never_ends(node: Node, endless: Sequence[bool], scope: Scope) -> bool:
-    kind = CATALOGUE.get(node.id)
-    if kind is None or not endless:
-        return node.id == SUBTREE and node.port("ID") in scope.endless
-    if kind.goes_on == ON_FAILURE or kind.at_once:
-        return all(endless)
-    if kind.roles:
-        return kind.roles[-1] == "work" and endless[-1]
-    return any(endless) if kind.goes_on or kind.takes_time else kind.again == ON_SUCCESS and kind.is_endless(node)
+    names_endless = node.id == SUBTREE and node.port("ID") in scope.endless
+    return Lowered(node, False, names_endless or never_ends(node.id, node.ports, [part.endless for part in done]))
 
 
 def _always(node_id: str) -> Callable[[ast.Ast, list[Lowered], Scope], Lowered]:

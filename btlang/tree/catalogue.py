@@ -6,7 +6,7 @@ its semantics in engine/compile.py and a row in the behaviour tables of the test
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from btlang.record import Record
 
@@ -217,6 +217,20 @@ CATALOGUE: dict[str, NodeKind] = {
     )
 }  # fmt: skip
 """By id."""
+
+
+def never_ends(node_id: str, ports: Sequence[tuple[str, str]], endless: Sequence[bool]) -> bool:
+    """Whether a node with these ports runs until it fails or is stopped; `endless` says which of its children do."""
+    kind = CATALOGUE.get(node_id)
+    if kind is None or not endless:
+        return False
+    if kind.goes_on == ON_FAILURE or kind.at_once:
+        return all(endless)
+    if kind.roles:
+        return kind.roles[-1] == "work" and endless[-1]
+    if kind.goes_on or kind.takes_time:
+        return any(endless)
+    return kind.again == ON_SUCCESS and (dict(ports).get(kind.rounds) == "-1" if kind.rounds else kind.endless)
 
 
 def held(node_id: str, port: str) -> str:

@@ -35,7 +35,9 @@ class Entry(Record, uncompared=("span",)):
     `call` is "module:name" or the Python object itself; `phrases` are patterns, the first is the one printed back;
     `span` is the place of its first phrase in its keyword file. Where `measures` names a type, the `call` gives a
     quantity of it; the vocabulary makes the phrases that compare it of the `quantity` ones and the words for comparing.
-    `instant` and `uninterruptible` are what an action says of itself: that it ends in the tick in which it starts, and
+    An `accompaniment` can go along with other commands: speech, gestures, lights, driving and turning by a measure;
+    every other action is a task, whose result counts. `instant` and `uninterruptible` are what an action says of
+    itself: that it ends in the tick in which it starts, and
     that it should not be halted half-way. Warnings are made of them; they change nothing in a run. With `thread` the
     `call`, a plain function, works in a thread of its own, beside the tick. `ros` stands in place of `call` on a robot
     that speaks ROS 2. With `replaces` its `call` is what runs, whatever other entries of its id say, on any robot.
@@ -56,6 +58,7 @@ class Entry(Record, uncompared=("span",)):
     example: str = ""
     quantity: tuple[str, ...] = ()
     measures: str = ""
+    accompaniment: bool = False
     instant: bool = False
     uninterruptible: bool = False
     thread: bool = False

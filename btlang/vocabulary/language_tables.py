@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from typing import Any
 
 CONNECTIVES = {
-    "then": "sequence", "and": "parallel", "or": "fallback", "after": "sequence",
+    "then": "sequence", "and": "and", "or": "fallback", "after": "sequence",
     "before": "sequence", "meanwhile": "parallel",
 }  # fmt: skip
-"""The roles that join commands, each with the operator of the chain that it makes."""
+"""The roles that join commands, each with the operator of the chain that it makes; see `conjunctions.py` for "and"."""
 
 GOES_ON = frozenset((
     "otherwise", "or", "meanwhile", "in_parallel", "if_works", "if_it_works", "in_any_case",

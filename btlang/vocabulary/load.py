@@ -126,8 +126,13 @@ def _after_yielding(files: Sequence[KeywordFile], entries: Iterable[Entry]) -> l
     """The files without the entries that yield to another one with their id and a function."""
     given = [*(entry for file in files for entry in file.entries), *entries]
     taken = {entry.id for entry in given if entry.call and not entry.yields}
+    marked = {entry.id for entry in given if entry.accompaniment and entry.yields} & taken
+
+    def kept(entry: Entry) -> Entry:
+        return entry.replace(accompaniment=True) if entry.id in marked else entry  # type: ignore[no-any-return]
+
     return [
-        file.replace(entries=tuple(entry for entry in file.entries if not (entry.yields and entry.id in taken)))
+        file.replace(entries=tuple(kept(entry) for entry in file.entries if not (entry.yields and entry.id in taken)))
         for file in files
     ]
 

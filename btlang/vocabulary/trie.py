@@ -204,7 +204,7 @@ def _listed(
             _is_longer(trie, text, at, value[1], context, is_subject) for trie in (root, names or {})
         ):
             break
-        if comma and not role and _is_command(root, text, at, value[1], context):
+        if _is_command(root, text, at, value[1], context):
             break
         more.append(value[0])
         last, joiner = value[1], role
@@ -217,7 +217,7 @@ def _joiner(root: TrieNode, names: TrieNode | None, text: Words, at: int, contex
 
 
 def _is_command(root: TrieNode, text: Words, at: int, last: int, context: ReadingContext) -> bool:
-    """Whether words without an article are a whole command, too: `if you are at the door, dock`."""
+    """Whether words without an article are a whole command, too: `go to the lab and dock`."""
     match = longest(root, text, at, context, lists=False) if at not in text.articles else None
     return match is not None and match.last == last and match.meaning.role == "command"
 

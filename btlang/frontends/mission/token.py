@@ -5,7 +5,7 @@ a word that goes on with the statement before it, so that it ends nothing. The g
 grouped tokens, which need no look-ahead any more:
 
     COMMAND CONDITION                      operands
-    SEMI OR_ELSE WIDE_AND THEN AFTER OR AND    between commands, loosest first
+    SEMI OR_ELSE WIDE_MEANWHILE WIDE_AND THEN AFTER OR MEANWHILE AND    between commands, loosest first
     BLOCK_AND BLOCK_OR                     in place of SEMI between the lines of `in parallel:`, `the first that works:`
     BLOCK_CHILD                            the same between the children of a node that is said by its id
     COND_OR_ELSE COND_WIDE_AND COND_OR COND_AND NOT    between and before conditions

@@ -13,7 +13,7 @@ from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import Token
 from btlang.vocabulary.language_tables import CONNECTIVES
 
-_JOINTS = {"meanwhile": "AND", "in_parallel": "AND", "while_doing": "AND", "before": "THEN"}
+_JOINTS = {"in_parallel": "MEANWHILE", "while_doing": "MEANWHILE", "before": "THEN"}
 
 
 def connective(scan: Scan, token: Token) -> None:
@@ -38,6 +38,7 @@ def _skip_comma(scan: Scan) -> None:
 def _join(scan: Scan, token: Token, kind: str) -> None:
     entry = scan.stack[-1]
     before = [*entry.joints, *entry.commas]
+    entry.begin_chain()
     made = scan.emit(kind, token)
     entry.connective(made)
     entry.joints = [*before, made] if token.kind == "and" else []
@@ -52,7 +53,7 @@ def _joint(token: Token) -> str:
 def _widening(scan: Scan, token: Token) -> None:
     """A connective behind a comma or a stop."""
     joint = _joint(token)
-    widens = joint in ("AND", "OR") and not token.role
+    widens = joint in ("AND", "MEANWHILE", "OR") and not token.role
     _join(scan, token, f"WIDE_{joint}" if widens else joint)
     _skip_comma(scan)
 
@@ -80,7 +81,8 @@ def comma(scan: Scan, token: Token) -> None:
         advice = "Remove it." if fix else both_readings(scan, following)
         scan.fail("BT032", scan.span(token), fix, place=f"before '{scan.words(following)}'", advice=advice)
     else:
-        scan.stack[-1].connective(scan.emit("COMMA", token))
+        entry.begin_chain()
+        entry.connective(scan.emit("COMMA", token))
         scan.next(token, True)
 
 
@@ -208,14 +210,17 @@ _PACES = ({"count", "every"}, {"count", "apart"})
 
 
 def at_the_same_time(scan: Scan, token: Token) -> None:
-    """`A at the same time B` joins; behind `A and B` it says that they are a P, whatever `and` means."""
+    """`A at the same time B` joins; behind `A and B` it makes a bracket of them, a P whatever they are."""
     entry = scan.stack[-1]
     if scan.raw[scan.at + 1].kind in STARTS_OPERAND | CONDITION_FORMS:
         connective(scan, token)
     elif entry.joints:
         for joint in entry.joints:
-            joint.kind = "AND"
+            joint.kind = "MEANWHILE"
         scan.next(token, False)
+        entry.joints = []
+        entry.operand = entry.chain
+        scan.enclose(entry.chain)
     else:
         scan.fail("BT031", scan.span(token), words=scan.words(token))
 

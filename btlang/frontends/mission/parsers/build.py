@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 
 CHAINS = {
     "SEMI": "sequence", "BLOCK_AND": "parallel", "BLOCK_OR": "fallback", "BLOCK_CHILD": "children",
-    "OR_ELSE": "fallback", "WIDE_AND": "parallel",
+    "OR_ELSE": "fallback", "WIDE_AND": "and", "WIDE_MEANWHILE": "parallel",
     **{role.upper(): operator for role, operator in CONNECTIVES.items()},
     "COND_OR_ELSE": "any", "COND_WIDE_AND": "all", "COND_OR": "any", "COND_AND": "all",
 }  # fmt: skip

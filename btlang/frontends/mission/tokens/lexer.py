@@ -202,7 +202,10 @@ class Lexer:
                 if at in going_on:
                     go_on(tokens)
                 if role == "command" and at in articles:
-                    self.problems += self._partial.whole_command(match, at)
+                    end = self._partial.add_left_out(at, match.last)  # `then the dock`: with an article it is a name
+                    if end:
+                        at = end
+                        continue
                 if role in _CONDITIONS:
                     if role != "condition":
                         tokens.append(Token("not", starts[at], starts[at]))
@@ -323,8 +326,6 @@ class Lexer:
                 self.problems.append(self._why(at, at, Match(Meaning(prefix.role), at)))
             self.tokens.append(Token("unknown", span.start, span.end))
             return bisect_right(self.text.starts, span.end - 1)
-        if prefix.role == "remember" and self.tokens and self.tokens[-1].kind == "and":
-            self.tokens[-1].kind = "then"  # `ask ... and remember the answer`: what came of it
         self.tokens.append(read[0])
         return read[1]
 

@@ -8,10 +8,8 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.calls import Calls
-from btlang.text.source import Span
 from btlang.text.words import END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import ReadingContext
@@ -65,26 +63,15 @@ class PartialCommands:
         self._tokens.append(token)
         return end
 
-    def add_left_out(self, at: int) -> int:
-        """A command whose first words are those of the one before it."""
+    def add_left_out(self, at: int, least: int = 0) -> int:
+        """A command whose first words are those of the one before it, and which ends at a word `least` or behind it."""
         read = self._left_out(at)
-        if read is None:
+        if read is None or read[0].last < least:
             return 0
         token = self._token_of(read[0], at)
         self._said[token.start] = read[1]
         enlist(self._tokens, token)
         return read[0].last
-
-    def whole_command(self, match: Match, at: int) -> Iterator[Diagnostic]:
-        """BT050 where a command that has an article could be the rest of one: `go to the hall, then the dock`."""
-        read = self._left_out(at)
-        if read is not None and read[0].last >= match.last:
-            words, text = self._text.words, self._text
-            span = Span(text.source, text.articles[at][0], text.ends[match.last - 1])
-            front = " ".join(words[place] for place in read[1] if place < at)
-            bare, other = text.span(at, match.last).text, f"{front} {span.text}"
-            problem = diagnostic("BT050", span, taken=bare, other=other, fixed=bare)
-            yield problem.replace(readings=((span, bare), (span, other)))
 
     def _token_of(self, match: Match, at: int) -> Token:
         token = self._calls.token(match, at)
