@@ -52,14 +52,12 @@ def choose(
     type: str,
     how: str,
     output: Callable[[str], object],
-    clothing: str = "",
-    color: str = "",
-    gesture: str = "",
-    kind: str = "",
-    use: str = "",
+    **parts: str,
 ) -> None:
-    """Puts out the "nearest", a "random" name and so on of a type. Fails if there is none with these parts."""
-    parts = {"clothing": clothing, "color": color, "gesture": gesture, "kind": kind, "use": use}
+    """Puts out the "nearest", a "random" name and so on of a type. Fails if there is none with these parts.
+
+    The parts are those of a description: what it is like, what it isn't, and how it stands to something else.
+    """
     output(robot.choose(type, how, {name: text for name, text in parts.items() if text}))
 
 

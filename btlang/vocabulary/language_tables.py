@@ -65,7 +65,7 @@ EXPLAINED = (*(role for role in ROLES if role != "never"), "compare", "politenes
 
 SWITCHES = frozenset(("decimal_comma",))
 
-WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner", "one_each", "quantifiers", "halting", "asked_once"))
+WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner", "one_each", "quantifiers", "halting", "asked_once", "relatives", "relative_denials"))
 
 
 def _words(value: object) -> bool:
@@ -119,6 +119,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "plurals": (_words, "a list of words"),
     "nouns": (_words, "a list of words"),
     "plural_endings": (_is_text, "an ending"),
+    "relations": (_words, "a list of phrases"),
     "everyone": (_words, "a list of words"),
     "pronouns": (_words, "a list of types"),
     "meanings": (_between, "one of " + ", ".join(CONNECTIVES)),
@@ -183,7 +184,7 @@ def _phrase_problems(kind: str, name: str, phrases: list[str], known: Mapping[st
 _LANGUAGE: dict[str, Any] = {
     "language": "", "decimal_comma": False,
     "articles": [], "politeness": [], "unit_joiner": [], "one_each": [],
-    "quantifiers": [], "halting": [], "asked_once": [],
+    "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {}, "doing": {},
     "negative_subjects": {}, "plurals": {}, "plural_endings": {}, "nouns": {}, "everyone": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {}, "times": {},

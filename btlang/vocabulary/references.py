@@ -19,6 +19,16 @@ Parts = tuple[tuple[str, str], ...]
 _PIECE = r"(?P<mark>\{\{|\}\})|\{(?P<name>[^{}]+)\}|(?P<text>[^{}]+|[{}])"  # compiled when a text needs it
 PARTS = ("clothing", "color", "gesture", "kind", "use")
 """What a name can be described by."""
+_EVERYTHING = ("object", "person", "place")
+RELATIONS: dict[str, tuple[str, ...]] = {
+    "on": ("object",), "inside": ("object", "person", "place"), "at": ("object", "person"), "off": ("object",),
+    "near": _EVERYTHING, "beside": _EVERYTHING, "behind": _EVERYTHING, "in_front_of": _EVERYTHING,
+    "left_of": _EVERYTHING, "right_of": _EVERYTHING, "under": ("object", "place"), "above": ("object", "place"),
+    "part_of": ("object", "place"),
+}  # fmt: skip
+"""How a thing may stand to another one that describes it, each with the types of things of which that can be said."""
+DENIED = {"not_color": "color", "not_kind": "kind"}
+"""What a thing is said not to be, each with the type of the value; several values stand between semicolons."""
 _NO_PARTS = ("type", "how", "output")  # the other ports of a choice
 
 

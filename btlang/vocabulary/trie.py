@@ -129,6 +129,9 @@ def longest(
                     if plain and kind in openers and word not in openers[kind]:
                         continue  # as nearly always, without reading
                     value = context.read(kind, text, i)
+                    if kind in WORLD and (value is None or words[value[1]] in context.modifiers):
+                        for wider in context.wider(kind, text, i, value):
+                            paths.append((child, wider[1], (*found, SlotValue(name, kind, wider[0], i, wider[1]))))
                     if value is None:
                         chosen = context.choice(text, i)
                         if chosen is not None and (chosen[0].type, chosen[0].how) == (kind, ALL):

@@ -11,8 +11,9 @@ from marshal import dumps, loads  # a copy of a trie, at a tenth of the time tha
 
 from btlang.text.source import Source
 from btlang.text.words import Orthography, Words, split
+from btlang.vocabulary.descriptions import NAME, Modifiers
 from btlang.vocabulary.nouns import ALL, Description, Features, Noun, noun_phrases
-from btlang.vocabulary.references import Choice, choice_of
+from btlang.vocabulary.references import DENIED, RELATIONS, Choice, choice_of
 from btlang.vocabulary.value_type import PLACE, ValueType, format_number, with_unit
 from btlang.vocabulary.word_tree import END, WordTree, find, insert
 
@@ -63,6 +64,7 @@ class Values:
                 self._names[kind.name] = {}
         self._facing = [phrase.split() for phrase in language["roles"].get("facing", ())]
         self.phrases = noun_phrases(self._names, language, nouns)
+        self.modifiers = Modifiers(language)
         self._features: Features = {}
         self._spoken: dict[tuple[str, str], str] = {}
         self._exceptions: WordTree = {}
@@ -186,7 +188,17 @@ class Values:
 
     def choice_words(self, choice: Choice) -> str:
         """The words that stand for a choice: `nearest person`."""
-        return self.phrases.words(Description(choice.type, choice.how, choice.parts), self._spoken) or choice.text
+        behind = tuple(part for part in choice.parts if part[0] in RELATIONS or part[0] in DENIED)
+        parts = dict(part for part in choice.parts if part not in behind)
+        name, color = parts.pop(NAME, ""), ""
+        if name:
+            color = parts.pop("color", "")
+            head = " ".join(filter(None, (color and self.spoken("color", color), self.spoken(choice.type, name))))
+        else:
+            head = self.phrases.words(Description(choice.type, choice.how, tuple(parts.items())), self._spoken)
+        if not head:
+            return choice.text
+        return " ".join(filter(None, (head, self.modifiers.said(behind, self.spoken))))
 
     def meant_by(self, text: str) -> tuple[str, ...]:
         """The name that a port text is, or all that are described as its choice is."""
