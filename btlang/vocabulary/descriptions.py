@@ -47,6 +47,12 @@ class Modifiers:
         self.starts = frozenset((*self._relations, *self._clauses))
         """The words with which something behind a head may begin."""
 
+    def words(self) -> Iterator[str]:
+        """Every word of it."""
+        for phrases in (*self._words.values(), self._relatives, self._denials):
+            for phrase in phrases:
+                yield from phrase.split()
+
     def behind(self, kind: str, text: Words, at: int, names: Names) -> Iterator[tuple[Parts, int]]:
         """The filters that may stand behind a head of a type, and where each ends; the shortest first."""
         clause = find(self._clauses, text.words, at)

@@ -29,6 +29,35 @@ MEASURED = "value"
 """The port of such a condition that may name the blackboard key to write what was measured to."""
 
 
+THEME, RECIPIENT, MANNER = "theme", "recipient", "manner"
+UNMARKED = frozenset((THEME, MANNER, "extent", "duration"))
+"""Roles that no word introduces."""
+VERB_ROLES = (
+    THEME, RECIPIENT, "beneficiary", "goal", "source", "path", "location", "instrument", "topic", "extent", "duration",
+    MANNER,
+)  # fmt: skip
+"""The roles that a verb may have."""
+
+
+class Role(Record):
+    """A role of a verb: the slot that its value fills, and the words that may introduce it.
+
+    One that is `for_speaker` may be said as `me`, and then fills no slot.
+    """
+
+    name: str
+    slot: str
+    type: str
+    words: tuple[tuple[str, ...], ...] = ()
+    is_needed: bool = True
+    for_speaker: bool = False
+
+    @property
+    def is_direct(self) -> bool:
+        """Whether its value may stand without a word that introduces it."""
+        return self.name in UNMARKED or self.name == RECIPIENT
+
+
 class Entry(Record, uncompared=("span",)):
     """One action or condition.
 
@@ -41,6 +70,7 @@ class Entry(Record, uncompared=("span",)):
     that it should not be halted half-way. Warnings are made of them; they change nothing in a run. With `thread` the
     `call`, a plain function, works in a thread of its own, beside the tick. `ros` stands in place of `call` on a robot
     that speaks ROS 2. With `replaces` its `call` is what runs, whatever other entries of its id say, on any robot.
+    `verbs` are verbs with their roles, from which the vocabulary makes the first of the `phrases`.
     `needs` names capabilities and parts of the robot (btlang.vocabulary.capabilities); what an action takes of them for
     itself is among its `resources`. `outputs` are the slots whose ports it writes. An entry that `yields` leaves its
     words to a mission, or another entry, that gives them a meaning. An entry without a `sort` has only phrases: those
@@ -67,6 +97,7 @@ class Entry(Record, uncompared=("span",)):
     needs: tuple[str, ...] = ()
     outputs: tuple[str, ...] = ()
     yields: bool = False
+    verbs: tuple[tuple[tuple[str, ...], tuple[Role, ...]], ...] = ()
     span: Span | None = None
 
     def slot(self, name: str) -> SlotSpec:

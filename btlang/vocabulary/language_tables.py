@@ -65,7 +65,8 @@ EXPLAINED = (*(role for role in ROLES if role != "never"), "compare", "politenes
 
 SWITCHES = frozenset(("decimal_comma",))
 
-WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner", "one_each", "quantifiers", "halting", "asked_once", "relatives", "relative_denials"))
+WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner", "one_each", "quantifiers", "halting", "asked_once", "relatives", "relative_denials",
+    "particles", "fillers", "speaker"))
 
 
 def _words(value: object) -> bool:
@@ -120,6 +121,8 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "nouns": (_words, "a list of words"),
     "plural_endings": (_is_text, "an ending"),
     "relations": (_words, "a list of phrases"),
+    "prepositions": (_words, "a list of phrases"),
+    "synonyms": (_words, "a list of verbs"),
     "everyone": (_words, "a list of words"),
     "pronouns": (_words, "a list of types"),
     "meanings": (_between, "one of " + ", ".join(CONNECTIVES)),
@@ -185,6 +188,7 @@ _LANGUAGE: dict[str, Any] = {
     "language": "", "decimal_comma": False,
     "articles": [], "politeness": [], "unit_joiner": [], "one_each": [],
     "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},
+    "prepositions": {}, "synonyms": {}, "particles": [], "fillers": [], "speaker": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {}, "doing": {},
     "negative_subjects": {}, "plurals": {}, "plural_endings": {}, "nouns": {}, "everyone": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {}, "times": {},

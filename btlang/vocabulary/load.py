@@ -113,7 +113,7 @@ def _made(
         own = {shown_name(path) for path in keyword_files(folder)}
         files = [
             file.replace(
-                entries=tuple(entry for entry in file.entries if not (entry.phrases or entry.quantity)), nouns=()
+                entries=tuple(entry for entry in file.entries if not (entry.phrases or entry.quantity or entry.verbs)), nouns=()
             )
             if file.source.name in own
             else file

@@ -12,9 +12,10 @@ from btlang.text.spelling import respellings
 from btlang.text.words import Words, split
 from btlang.vocabulary.language_tables import CHANGING, NOT_ALONE
 from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.trie import Match, TrieNode, longest
+from btlang.vocabulary.trie import TrieNode, longest
 
 _ID = re.compile(r"(?:[A-Z][a-z0-9]*)+")
 _PART = re.compile(r"[A-Z]{2,}[0-9]*(?![a-z])|[A-Z][a-z0-9]*")

@@ -7,9 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from btlang.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.descriptions import NAME
+from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.references import CHOICES, Choice, Parts, choice_of
-from btlang.vocabulary.value_type import format_number
+from btlang.vocabulary.value_type import WORLD, format_number
 from btlang.vocabulary.values import Values, key_of
 from btlang.vocabulary.word_tree import find
 
@@ -36,7 +37,7 @@ class ReadingContext:
     """
 
     __slots__ = (
-        "_most_words", "joiners", "keys", "known", "lacked", "latest", "met", "modifiers", "openers", "pronouns", "starts", "types",
+        "_most_words", "joiners", "keys", "known", "lacked", "latest", "manners", "met", "modifiers", "openers", "pronouns", "starts", "types",
         "untyped", "values",
     )  # fmt: skip
 
@@ -44,6 +45,7 @@ class ReadingContext:
         self.values = values
         self.types, self.joiners, self.pronouns = values.types, values.joiners, values.pronouns
         self.starts, self.modifiers = values.choice_starts, values.modifiers.starts
+        self.manners = values.names_tree(MANNER) if MANNER in values.types else {}
         self.latest: dict[str, str] = {}
         self.lacked = False
         self.met: set[str] = set()
@@ -79,6 +81,14 @@ class ReadingContext:
             return self._referred(kind, text.words[at], at)
         chosen = self._chosen(kind, text, at) if text.words[at] in self.starts else None
         return chosen if found is None or (chosen is not None and chosen[1] > found[1]) else found
+
+    def ways(self, kind: str, text: Words, at: int) -> Iterator[tuple[str, int]]:
+        """Every value of a type that begins at a word and where it ends: the plain one, then with what describes it."""
+        value = self.read(kind, text, at)
+        if value is not None:
+            yield value
+        if kind in WORLD and (value is None or text.words[value[1]] in self.modifiers):
+            yield from self.wider(kind, text, at, value)
 
     def wider(self, kind: str, text: Words, at: int, value: tuple[str, int] | None) -> Iterator[tuple[str, int]]:
         """What a value is with what describes it (`the cup` as `the cup on the table`), the shortest first.

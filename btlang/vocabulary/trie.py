@@ -8,15 +8,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 
-from btlang.record import Record
 from btlang.text.words import Words
-from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.entry import MANNER, Meaning
+from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.nouns import ALL, Description
 from btlang.vocabulary.pattern import Form, Slot
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.value_type import TEXT, WORLD, ValueType
 from btlang.vocabulary.values import Values
-from btlang.vocabulary.word_tree import END, SLOTS
+from btlang.vocabulary.verbs import fill
+from btlang.vocabulary.word_tree import END, NO_WORDS, SLOTS, VERBS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -24,30 +25,6 @@ if TYPE_CHECKING:
 
 _MARKS = frozenset((",", ";", ":", "(", ")", "\n"))
 TrieNode = dict[str, "Any"]
-
-
-class SlotValue(Record):
-    """The value that was read in a slot: its port text and the words `first` to `last` (exclusive).
-
-    Of a list (`the lab, the hall and the dock`) `more` holds the further values; `joiner` is "and", "or", "nor", or ""
-    where there are only commas. `every place` is a list, too; its text is "" where there are no such names.
-    """
-
-    name: str
-    type: str
-    text: str
-    first: int
-    last: int
-    more: tuple[str, ...] = ()
-    joiner: str = ""
-
-
-class Match(Record):
-    """A phrase found in a text, up to word `last` (exclusive)."""
-
-    meaning: Meaning
-    last: int
-    values: tuple[SlotValue, ...] = ()
 
 
 def add(root: TrieNode, form: Form, types: Mapping[str, str], meaning: Meaning) -> Meaning | None:
@@ -104,12 +81,13 @@ def longest(
     """
     words = text.words
     if words[at] not in root and SLOTS not in root:
-        return None
+        return _after_manner(root, text, at, context, names) if words[at] in context.manners else None
     openers = context.openers
     best: Meaning | None = None
     best_last = at
     best_values: tuple[SlotValue, ...] = ()
     paths: list[tuple[TrieNode, int, Any]] = []
+    verbs: list[tuple[TrieNode, int]] = []
     node: TrieNode | None = root
     i = at
     while True:
@@ -119,6 +97,8 @@ def longest(
                 meaning: Meaning = node[END]
                 if meaning.entry is not None or not any(value.more for value in found):
                     best, best_last, best_values = meaning, i, found
+            if VERBS in node:
+                verbs.append((node, i))
             if SLOTS in node:
                 plain = word.isalpha() or word in _MARKS
                 edges = node[SLOTS]
@@ -149,7 +129,51 @@ def longest(
         if not paths:
             break
         node, i, found = paths.pop()
+    if verbs and (best is None or words[best_last] not in context.values.ends):
+        for node, i in verbs:
+            match = _filled(root, node, text, i, context, names)
+            if match is not None and (best is None or match.last > best_last):
+                best, best_last, best_values = match.meaning, match.last, match.values
+    if words[at] in context.manners:
+        match = _after_manner(root, text, at, context, names)
+        if match is not None and match.last > best_last:
+            return match
     return Match(best, best_last, best_values) if best is not None else None
+
+
+def _filled(
+    root: TrieNode,
+    node: TrieNode,
+    text: Words,
+    at: int,
+    context: ReadingContext,
+    names: TrieNode | None,
+    before: SlotValue | None = None,
+) -> Match | None:
+    """The verb that ends at a word, with the roles that stand behind it."""
+
+    def list_of(value: SlotValue) -> SlotValue | None:
+        return _listed(root, text, value, context, names, is_subject=False)
+
+    return fill(node[VERBS], text, at, context, context.values.role_words, list_of, before)
+
+
+def _after_manner(
+    root: TrieNode, text: Words, at: int, context: ReadingContext, names: TrieNode | None
+) -> Match | None:
+    """A verb with an adverb before it: `slowly go to the lab`."""
+    manner = context.read(MANNER, text, at)
+    if manner is None:
+        return None
+    before = SlotValue(MANNER, MANNER, manner[0], at, manner[1])
+    node: TrieNode | None = root
+    i, best = manner[1], None
+    while (node := node.get(text.words[i])) is not None:
+        i += 1
+        if VERBS in node:
+            found = _filled(root, node, text, i, context, names, before)
+            best = found if found is not None and (best is None or found.last > best.last) else best
+    return best
 
 
 def all_names(
@@ -252,12 +276,12 @@ def collisions(root: TrieNode, values: Values, other: TrieNode | None = None) ->
         seen |= {(id(left), id(right)), (id(right), id(left))}
         if left is not right and END in left and END in right:
             yield left[END], right[END]
-        words = [w for w in left if w not in (END, SLOTS)]
+        words = [w for w in left if w not in NO_WORDS]
         pending += [(left[w], right[w]) for w in words if w in right]
         for one, another in ((left, right), (right, left)):
             for _, kind, child in one.get(SLOTS, ()):
                 pending += [
-                    (child, n) for w, n in another.items() if w not in (END, SLOTS) and values.takes_word(kind, w)
+                    (child, n) for w, n in another.items() if w not in NO_WORDS and values.takes_word(kind, w)
                 ]
         for _, kind, child in left.get(SLOTS, ()):
             for _, other_kind, other_child in right.get(SLOTS, ()):

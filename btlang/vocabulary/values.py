@@ -15,6 +15,7 @@ from btlang.vocabulary.descriptions import NAME, Modifiers
 from btlang.vocabulary.nouns import ALL, Description, Features, Noun, noun_phrases
 from btlang.vocabulary.references import DENIED, RELATIONS, Choice, choice_of
 from btlang.vocabulary.value_type import PLACE, ValueType, format_number, with_unit
+from btlang.vocabulary.verbs import role_words
 from btlang.vocabulary.word_tree import END, WordTree, find, insert
 
 TYPE_CHECKING = False
@@ -65,6 +66,12 @@ class Values:
         self._facing = [phrase.split() for phrase in language["roles"].get("facing", ())]
         self.phrases = noun_phrases(self._names, language, nouns)
         self.modifiers = Modifiers(language)
+        self.role_words = role_words(language)
+        introducing = {phrase[0] for phrases in self.role_words.introducing.values() for phrase in phrases}
+        going_on = introducing | self.role_words.particles | self.role_words.fillers | self.modifiers.starts
+        firsts = {phrase.split()[0] for phrases in language["roles"].values() for phrase in phrases}
+        self.ends = frozenset((",", ";", ":", ")", "\n", *(firsts - going_on)))
+        """Words at which no phrase goes on beyond its own pattern."""
         self._features: Features = {}
         self._spoken: dict[tuple[str, str], str] = {}
         self._exceptions: WordTree = {}

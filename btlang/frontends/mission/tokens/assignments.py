@@ -7,9 +7,10 @@ from btlang.frontends.mission.token import Assigned, Each, Remembered, Token
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.nouns import ALL
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.trie import SlotValue, all_names, longest, reaches_beyond
+from btlang.vocabulary.trie import all_names, longest, reaches_beyond
 from btlang.vocabulary.value_type import number_type
 
 

@@ -10,9 +10,9 @@ from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import choice_of, keys_in, point_ports, renamed
-from btlang.vocabulary.trie import Match, SlotValue
 from btlang.vocabulary.value_type import PLACE
 from btlang.vocabulary.values import key_of
 

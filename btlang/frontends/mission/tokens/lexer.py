@@ -20,8 +20,9 @@ from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.trie import Match, TrieNode, longest
+from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.word_tree import SLOTS
 
 _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}

@@ -12,8 +12,9 @@ from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.text.words import END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.trie import Match, TrieNode, longest
+from btlang.vocabulary.trie import TrieNode, longest
 
 BEFORE_DOING = frozenset(("before", "after", "while", "never"))
 """The kinds of tokens behind which a command may have the form of its verb: `after waving`."""
