@@ -10,6 +10,8 @@ from btlang.actions.points import where
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.capabilities import Base, Navigation
 from btlang.robots.geometry import Pose
+from btlang.robots.likeness import unseen
+from btlang.robots.relations import related_words
 from btlang.robots.robot import Operation
 
 
@@ -59,6 +61,17 @@ def choose(
     The parts are those of a description: what it is like, what it isn't, and how it stands to something else.
     """
     output(robot.choose(type, how, {name: text for name, text in parts.items() if text}))
+
+
+def choose_all(robot: Base, type: str, output: Callable[[str], object], count: str = "", **parts: str) -> None:
+    """Puts out the names of a type with these parts, the nearest first. Fails if there are none, or too few."""
+    wanted = {name: text for name, text in parts.items() if text}
+    names = robot.described(type, wanted)
+    if not names:
+        raise ActionFailed(unseen(type, wanted, related_words(wanted)) if wanted else f"there's no {type}")
+    if count and len(names) < int(count):
+        raise ActionFailed(f"{count} are needed, but there's only {', '.join(names)}")
+    output(";".join(names[: int(count)] if count else names))
 
 
 def accomplish(operation: Operation) -> Steps:

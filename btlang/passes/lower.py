@@ -18,7 +18,7 @@ from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.entry import MEASURED
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.references import choice_of
+from btlang.vocabulary.references import ALL, choice_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -140,7 +140,14 @@ def _remember(item: ast.Remember, _done: list[Lowered], scope: Scope) -> Lowered
 
 
 def _for_each(item: ast.ForEach, done: list[Lowered], scope: Scope) -> Lowered:
-    """One instance of the body for each value."""
+    """One instance of the body for each value; of a set the body in a loop over the names that the robot finds."""
+    choice = choice_of(item.values[0])
+    if choice is not None and choice.how == ALL:
+        names, key = f"{{{item.key}_names}}", f"{{{item.key}}}"
+        ports = (("type", choice.type), ("output", names), *choice.parts)
+        found = Node("ChooseAll", (), ports)
+        loop = new_node("LoopString", [done[0].node], item.span, queue=names, value=key)
+        return Lowered(Node("Sequence", (found, loop), span=item.span), False, done[0].endless)
     name = scope.new_name(item.key)
     scope.bodies.append((name, done[0].node))
     shared = tuple((key, f"{{{key}}}") for key in scope.needs(item.body, [item.key]))

@@ -89,8 +89,9 @@ class Relations:
             names = [name for name, thing in self._things.items() if isinstance(thing, WorldObject)]
         else:
             world = self._world
-            named = (*world.places, *self._things.values(), *world.doors, *world.zones)
-            names = list(dict.fromkeys(each.name for each in named if each.name.lower() == head.lower()))
+            known = [place.name for place in world.places] + list(self._things)
+            known += [*(door.name for door in world.doors), *(zone.name for zone in world.zones)]
+            names = [name for name in dict.fromkeys(known) if name.lower() == head.lower()]
         like = {part: text for part, text in likes.items() if part not in RELATIONS}
         for name in names:
             if like and not (name in self._things and self._things[name].fits(like)):

@@ -107,7 +107,7 @@ class Conjunctions:
         operator = chain.operator
         if operator == "and":
             operator = self._meaning(chain, traits)
-        made = chain
+        made: ast.Ast = chain
         if operator != chain.operator or any(new is not old for new, old in zip(items, chain.items, strict=True)):
             made = _melted(ast.Chain(operator, tuple(items), chain.bracketed, chain.span))
         endless = [each.endless for each in traits]

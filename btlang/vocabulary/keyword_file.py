@@ -32,7 +32,22 @@ if TYPE_CHECKING:
 
 _OWN = ("shipped", "yields", "replaces", "action", "condition", "quantity", "noun", "type", "phrases")
 _TOP = {"language", *_OWN, *WORD_LISTS, *SWITCHES, *TABLES}
-_ENTRY = {"phrase", "verb", "roles", "frames", "id", "call", "ros", "slots", "outputs", "resources", "needs", "topic", "help", "example"}
+_ENTRY = {
+    "phrase",
+    "verb",
+    "roles",
+    "frames",
+    "id",
+    "call",
+    "ros",
+    "slots",
+    "outputs",
+    "resources",
+    "needs",
+    "topic",
+    "help",
+    "example",
+}
 _FLAGS = ("accompaniment", "instant", "uninterruptible", "thread")
 _MORE = {"action": set(_FLAGS), "condition": set[str](), "quantity": {"type"}}
 """The keys that an entry of one sort has beside those of all."""
@@ -124,7 +139,7 @@ class _Reader:
             resources = list(dict.fromkeys((*resources, *resources_of(needs))))
         for key in [key for key in _FLAGS if not isinstance(table.get(key, False), bool)]:
             self.wrong(f"{key} of '{near}' must be true or false", near)
-        flags = {key: table.get(key) is True for key in _FLAGS}
+        flags: dict[str, Any] = {key: table.get(key) is True for key in _FLAGS}
         if flags["instant"] and flags["thread"]:
             self.wrong(f"'{near}' can't be instant: work in a thread ends in a later tick", near)
         topic, help, example = (str(table.get(key, "")) for key in ("topic", "help", "example"))
@@ -267,7 +282,7 @@ class _Reader:
         kind, is_needed = said.removesuffix("?"), not said.endswith("?")
         words = given.get("words", [])
         if not kind.isidentifier() or speaker not in ("", "me") or not _strings(words):
-            self.wrong(f"the role {name} of '{near}' needs a type such as \"place\", \"place?\" or \"person/me\"", near)
+            self.wrong(f'the role {name} of \'{near}\' needs a type such as "place", "place?" or "person/me"', near)
             return None
         phrases = tuple(tuple(phrase.lower().split()) for phrase in words if phrase.split())
         return Role(name, str(given.get("slot", kind)), kind, phrases, is_needed, speaker == "me")

@@ -65,8 +65,22 @@ EXPLAINED = (*(role for role in ROLES if role != "never"), "compare", "politenes
 
 SWITCHES = frozenset(("decimal_comma",))
 
-WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner", "one_each", "quantifiers", "halting", "asked_once", "relatives", "relative_denials",
-    "particles", "fillers", "speaker"))
+WORD_LISTS = frozenset(
+    (
+        "articles",
+        "politeness",
+        "unit_joiner",
+        "one_each",
+        "quantifiers",
+        "halting",
+        "asked_once",
+        "relatives",
+        "relative_denials",
+        "particles",
+        "fillers",
+        "speaker",
+    )
+)
 
 
 def _words(value: object) -> bool:

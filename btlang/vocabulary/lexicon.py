@@ -60,7 +60,9 @@ class Lexicon:
             language["roles"] = {**english.roles, **language["roles"]}  # a role without words keeps the English ones
             language["comparisons"] = {**english.comparisons, **language["comparisons"]}
             for node_id, known in english.entries.items():
-                self.entries[node_id] = [entry.replace(phrases=(), quantity=(), verbs=(), example="") for entry in known]
+                self.entries[node_id] = [
+                    entry.replace(phrases=(), quantity=(), verbs=(), example="") for entry in known
+                ]
         self.articles = frozenset(language["articles"])
         self.orthography = Orthography(self.articles, language["decimal_comma"], language["contractions"])
         self._with_names: dict[tuple[object, ...], Lexicon] = {}

@@ -10,7 +10,8 @@ class SlotValue(Record):
     """The value that was read in a slot: its port text and the words `first` to `last` (exclusive).
 
     Of a list (`the lab, the hall and the dock`) `more` holds the further values; `joiner` is "and", "or", "nor", or ""
-    where there are only commas. `every place` is a list, too; its text is "" where there are no such names.
+    where there are only commas. `every place` is a list, too; its text is "" where there are no such names. `group` is
+    the choice of all that such words describe.
     """
 
     name: str
@@ -20,6 +21,7 @@ class SlotValue(Record):
     last: int
     more: tuple[str, ...] = ()
     joiner: str = ""
+    group: str = ""
 
 
 class Match(Record):

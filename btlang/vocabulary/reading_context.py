@@ -9,7 +9,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.nouns import Description
-from btlang.vocabulary.references import CHOICES, Choice, Parts, choice_of
+from btlang.vocabulary.references import ALL, CHOICES, Choice, Parts, choice_of
 from btlang.vocabulary.value_type import WORLD, format_number
 from btlang.vocabulary.values import Values, key_of
 from btlang.vocabulary.word_tree import find
@@ -37,8 +37,8 @@ class ReadingContext:
     """
 
     __slots__ = (
-        "_most_words", "joiners", "keys", "known", "lacked", "latest", "manners", "met", "modifiers", "openers", "pronouns", "starts", "types",
-        "untyped", "values",
+        "_most_words", "joiners", "keys", "known", "lacked", "latest", "manners", "met", "modifiers", "openers",
+        "pronouns", "starts", "types", "untyped", "values",
     )  # fmt: skip
 
     def __init__(self, values: Values, known: Mapping[str, Known] | None = None) -> None:
@@ -90,13 +90,20 @@ class ReadingContext:
         if kind in WORLD and (value is None or text.words[value[1]] in self.modifiers):
             yield from self.wider(kind, text, at, value)
 
+    def sets(self, kind: str, text: Words, at: int) -> Iterator[tuple[str, int]]:
+        """The sets of names of a type that begin at a word, each as a choice of all, and where it ends."""
+        for meant, end in self.values.groups(text, at) if kind in WORLD else ():
+            if meant.type == kind:
+                yield Choice(ALL, kind, self.keys.get(kind, kind), meant.parts).text, end
+
     def wider(self, kind: str, text: Words, at: int, value: tuple[str, int] | None) -> Iterator[tuple[str, int]]:
         """What a value is with what describes it (`the cup` as `the cup on the table`), the shortest first.
 
         Without a value: a name with adjectives before it.
         """
         modifiers, names = self.values.modifiers, self.values.names_tree
-        how, parts = "nearest", ()
+        how = "nearest"
+        parts: Parts = ()
         if value is None:
             adjectives = modifiers.before(text, at, names)
             named = find(names(kind), text.words, adjectives[1]) if adjectives is not None else None

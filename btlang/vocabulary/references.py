@@ -14,6 +14,9 @@ from btlang.vocabulary.entry import POINT
 SIZED = ("largest", "smallest")
 CHOICES = ("nearest", "seen", "random", *SIZED)
 """The ways to choose a name; "seen" is the nearest in view, else the nearest known."""
+ALL = "all"
+"""In place of such a way: all names that are meant, one after the other. The part "count" says how many."""
+COUNT = "count"
 Parts = tuple[tuple[str, str], ...]
 """What something is like, sorted: ("color", "red")."""
 _PIECE = r"(?P<mark>\{\{|\}\})|\{(?P<name>[^{}]+)\}|(?P<text>[^{}]+|[{}])"  # compiled when a text needs it
@@ -70,7 +73,7 @@ def choice_of(text: str) -> Choice | None:
         return None
     first, *parts = text[1:-1].split("|")
     words = first.split(" ")
-    if len(words) != 3 or words[0] not in CHOICES:
+    if len(words) != 3 or words[0] not in (*CHOICES, ALL):
         return None
     named = (part.partition("=") for part in parts)
     return Choice(words[0], words[1], words[2], tuple((name, value) for name, _, value in named))
@@ -79,7 +82,7 @@ def choice_of(text: str) -> Choice | None:
 def choice_by(ports: Mapping[str, str]) -> Choice:
     """The choice that a node with these ports makes."""
     parts = ((name, text) for name, text in ports.items() if name not in _NO_PARTS)
-    return Choice(ports.get("how", ""), ports.get("type", ""), ports.get("output", "")[1:-1], tuple(sorted(parts)))
+    return Choice(ports.get("how", ALL), ports.get("type", ""), ports.get("output", "")[1:-1], tuple(sorted(parts)))
 
 
 def pieces(text: str) -> list[str | Reference]:

@@ -11,9 +11,10 @@ from itertools import chain
 from btlang.text.words import Words
 from btlang.vocabulary.entry import MANNER, Meaning
 from btlang.vocabulary.match import Match, SlotValue
-from btlang.vocabulary.nouns import ALL, Description
+from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.pattern import Form, Slot
 from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.references import ALL, Choice
 from btlang.vocabulary.value_type import TEXT, WORLD, ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import fill
@@ -110,13 +111,14 @@ def longest(
                         continue  # as nearly always, without reading
                     value = context.read(kind, text, i)
                     if kind in WORLD and (value is None or words[value[1]] in context.modifiers):
-                        for wider in context.wider(kind, text, i, value):
-                            paths.append((child, wider[1], (*found, SlotValue(name, kind, wider[0], i, wider[1]))))
+                        wider = [
+                            SlotValue(name, kind, each[0], i, each[1]) for each in context.wider(kind, text, i, value)
+                        ]
+                        paths += [(child, each.last, (*found, each)) for each in wider]
                     if value is None:
-                        chosen = context.choice(text, i)
-                        if chosen is not None and (chosen[0].type, chosen[0].how) == (kind, ALL):
-                            every = all_names(root, chosen[0], text, i, chosen[1], context, name)
-                            paths.append((child, every.last, (*found, every)))
+                        if kind in WORLD or word in context.starts:
+                            sets = _sets(root, text, i, context, name, kind)
+                            paths += [(child, every.last, (*found, every)) for every in reversed(sets)]
                         continue
                     one = SlotValue(name, kind, value[0], i, value[1])
                     paths.append((child, value[1], (*found, one)))
@@ -166,14 +168,32 @@ def _after_manner(
     if manner is None:
         return None
     before = SlotValue(MANNER, MANNER, manner[0], at, manner[1])
-    node: TrieNode | None = root
+    node: TrieNode | None = root.get(text.words[manner[1]])
     i, best = manner[1], None
-    while (node := node.get(text.words[i])) is not None:
+    while node is not None:
         i += 1
         if VERBS in node:
             found = _filled(root, node, text, i, context, names, before)
             best = found if found is not None and (best is None or found.last > best.last) else best
+        node = node.get(text.words[i])
     return best
+
+
+def _sets(root: TrieNode, text: Words, at: int, context: ReadingContext, name: str, kind: str) -> list[SlotValue]:
+    """The sets of names of a type that begin at a word; the shortest first."""
+    ways = [(meant, end) for meant, end in context.values.groups(text, at) if meant.type == kind]
+    found: list[SlotValue] = []
+    for meant, end in ways:
+        group = Choice(ALL, kind, context.keys.get(kind, kind), meant.parts).text
+        found.append(SlotValue(name, kind, group, at, end, group=group))
+    if ways and context.choice(text, at) is not None:
+        listed = all_names(root, ways[0][0], text, at, ways[0][1], context, name)
+        same = [at for at, value in enumerate(found) if value.last == listed.last]
+        if same:
+            found[same[0]] = listed.replace(group=found[same[0]].group)
+        elif listed.last > ways[0][1]:
+            found.append(listed)  # with something unknown behind `except`
+    return found
 
 
 def all_names(
@@ -280,9 +300,7 @@ def collisions(root: TrieNode, values: Values, other: TrieNode | None = None) ->
         pending += [(left[w], right[w]) for w in words if w in right]
         for one, another in ((left, right), (right, left)):
             for _, kind, child in one.get(SLOTS, ()):
-                pending += [
-                    (child, n) for w, n in another.items() if w not in NO_WORDS and values.takes_word(kind, w)
-                ]
+                pending += [(child, n) for w, n in another.items() if w not in NO_WORDS and values.takes_word(kind, w)]
         for _, kind, child in left.get(SLOTS, ()):
             for _, other_kind, other_child in right.get(SLOTS, ()):
                 if _overlap(values.types[kind], values.types[other_kind]):

@@ -17,6 +17,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.vocabulary.reading_context import ReadingContext
+
     ListOf = Callable[[SlotValue], "SlotValue | None"]
 
 
@@ -112,9 +114,7 @@ def fill(
 class _Filling:
     """Fills the roles of one frame from the words of one text."""
 
-    def __init__(
-        self, frame: Frame, text: Words, context: ReadingContext, words: RoleWords, list_of: ListOf
-    ) -> None:
+    def __init__(self, frame: Frame, text: Words, context: ReadingContext, words: RoleWords, list_of: ListOf) -> None:
         self._frame, self._text, self._context, self._words, self._list_of = frame, text, context, words, list_of
         self._best: tuple[int, tuple[SlotValue, ...], int] | None = None
 
@@ -160,6 +160,9 @@ class _Filling:
         if role.for_speaker and text.words[at] in self._words.speaker:
             self._go_on(at + 1, {**filled, role.name: None}, has_particle)
             return
+        for group, last in context.sets(role.type, text, at):
+            one = SlotValue(role.slot, role.type, group, at, last, group=group)
+            self._go_on(last, {**filled, role.name: one}, has_particle)
         for value in context.ways(role.type, text, at):
             one = SlotValue(role.slot, role.type, value[0], at, value[1])
             self._go_on(one.last, {**filled, role.name: one}, has_particle)
@@ -167,4 +170,3 @@ class _Filling:
                 listed = self._list_of(one)
                 if listed is not None:
                     self._go_on(listed.last, {**filled, role.name: listed}, has_particle)
-

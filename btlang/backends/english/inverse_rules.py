@@ -10,6 +10,8 @@ from btlang.backends.english.candidate import REFERENCE, Candidate, Checked
 from btlang.text.source import NOWHERE
 from btlang.tree import ast
 from btlang.tree.node import Node
+from btlang.vocabulary.references import ALL, Choice
+from btlang.vocabulary.value_type import WORLD
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -38,6 +40,12 @@ def _chain(operator: str) -> Form:
 def _sequence(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
     """`A 3 times 10 s apart`, or a chain."""
     last = children[1] if len(children) == 2 else None
+    if last is not None and last.node.id == "LoopString" and children[0].node.id == "ChooseAll":
+        found, loop = dict(children[0].node.ports), last.node
+        key, kind, names = loop.port("value")[1:-1], found.pop("type", ""), found.pop("output", "")
+        if names == loop.port("queue") == f"{{{key}_names}}" and kind in WORLD:
+            text = Choice(ALL, kind, key, tuple(sorted(found.items()))).text
+            yield ast.ForEach(key, kind, (text,), last.children[0].part, NOWHERE)
     if last is not None and last.node.id == "Repeat" and [part.node.id for part in last.children] == ["Delay"]:
         delay, rounds = last.children[0].node, last.node.port("num_cycles")
         body = _round(children[0], checked) if delay.children == (children[0].node,) else None

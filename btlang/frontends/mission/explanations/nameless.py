@@ -7,8 +7,8 @@ from btlang.text.spelling import nearest
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import SlotValue
-from btlang.vocabulary.nouns import ALL
 from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.references import ALL
 
 _MOST_SHOWN = 5
 

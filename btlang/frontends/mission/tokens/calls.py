@@ -50,7 +50,7 @@ class Calls:
     def note(self, match: Match) -> None:
         """What pronouns stand for from here on."""
         for value in match.values:
-            latest = value.more[-1] if value.more else value.text
+            latest = value.group or (value.more[-1] if value.more else value.text)
             choice = choice_of(latest) if latest[:1] == "{" else None
             if choice is not None:
                 self._context.met.add(choice.key)
@@ -61,6 +61,10 @@ class Calls:
         if entry.sort == "value" and not (self._context.known and entry.id in self._context.known):
             self._unknown_value(self._text.span(at, match.last), entry.id)
         arguments = []
+        sets = [value for value in match.values if value.group]
+        if sets and entry.sort in ("action", "name"):
+            values = [value.replace(text=value.group, more=()) if value.group else value for value in match.values]
+            match = match.replace(values=tuple(values))
         for value in match.values:
             text = value.text
             if value.more or text[:1] in _ODD or "{" in text:

@@ -145,7 +145,11 @@ def left_out(
     A text is never a part of it: `say hello, then goodbye` is no such command.
     """
     rest = _rest(text, at)
+    whole = _match(text, [*said, *said[-1:]], {}, tries, context)
+    inside = {place for value in (whole.values if whole else ()) for place in range(value.first + 1, value.last)}
     for kept in range(len(said), 0, -1):
+        if kept in inside:
+            continue  # a part of a value: `the orange room, then the yellow room`
         places = [*said[:kept], *rest]
         match = _match(text, places, {}, tries, context)
         if match is None or match.last <= kept or match.meaning.role not in ("command", "name"):
