@@ -48,5 +48,7 @@ class BaseWatch(Watch):
             raise ActionFailed(f"bumped into something after {so_far}")
         if self._robot.battery_empty:
             raise ActionFailed(f"the battery is empty after {so_far}")
+        if reason := self._robot.held_back:
+            raise ActionFailed(f"stopped after {so_far}: {reason}")
         if self._robot.stuck:
             raise ActionFailed(f"stuck after {so_far}: the wheels turn but the robot doesn't move")

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from math import inf
 
 from btlang.components.base import DeviceBase
-from btlang.components.safety import Guard, Safety
+from btlang.components.sensors import DeviceSensors
 from btlang.components.servos import servo_angle
 from btlang.devices.device_set import DeviceSet, Reads, reader
 from btlang.devices.driver import DeviceError
@@ -46,42 +46,24 @@ def device_parts(
     """
     readers = devices.readers
     bumpers = tuple(name for name, device in devices.devices.items() if device.kind == "button" and BUMPER in name)
-    safety = Safety(
-        [
-            Guard(name, readers[name], device.angle)
-            for name, device in devices.devices.items()
-            if device.kind == "range" or name in bumpers
-        ],
-        body,
-    )
     base = DeviceBase(
         world.start, body, readers, wheels=devices.first("drive"), imu=devices.first("imu"), bumpers=bumpers,
-        safety=safety, locate=locate, advance=advance,
+        locate=locate, advance=advance,
     )  # fmt: skip
     lidar = devices.first("lidar")
+    sensors = DeviceSensors(devices, bumpers, lidar, body.sensor("scanner"), body.radius)
     face = body.mouth.display if body.mouth is not None else ""
     displays = [name for name, device in devices.devices.items() if device.kind == "display" and name != face]
     joints = joints_over(body, readers)
     return Parts(
         base,
         DevicePower(devices.first("battery"), readers),
-        lambda pose: _scan(lidar, readers, body.sensor("scanner")),
+        lambda pose: sensors.scan(),
         joints,
         DeviceHands(body, readers, Hands(obstacles, world.names.objects, body)),
         DeviceVoice(body, readers, devices.first("speaker"), displays, joints),
+        sensors.readings,
     )
-
-
-def _scan(lidar: str, readers: Mapping[str, Reads], scanner: Sensor | None) -> Array:
-    import numpy as np  # most missions need none
-
-    from btlang.robots.scan import around
-
-    reading = reader(readers, lidar, "lidar").read(lidar)
-    assert isinstance(reading, Scan)
-    ranges = np.asarray(reading.ranges, dtype=np.float64)
-    angles = np.radians(reading.start + reading.step * np.arange(len(ranges)))
-    return around(ranges, angles, CENTRE if scanner is None else scanner.pose)
 
 
 class DevicePower:

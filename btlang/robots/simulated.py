@@ -16,6 +16,8 @@ from btlang.robots.geometry import Point, Pose
 from btlang.robots.gesturing import Gestures
 from btlang.robots.idling import Idling
 from btlang.robots.latch import Latch
+from btlang.robots.motion.guard.guard import Guard
+from btlang.robots.motion.guard.readings import ObstacleReading, OdometryReading, ScanReading
 from btlang.robots.navigation import NavigationGoal, Navigator
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.parts import IdlePart, Parts
@@ -77,7 +79,14 @@ class SimulatedRobot:
         self._surroundings = Surroundings(world, self._obstacles, body, self._joints.angle, self._emit)
         if isinstance(self._joints, IdlePart) and body.idle != Idle():
             self._idling = Idling(body, self._joints, self._surroundings.where, lambda: self.pose)
-        self._navigator = Navigator(world, self._base, self._obstacles, self.faults, self._surroundings)
+        self._sensors, self._scanned = parts.sensors, 0.0
+        self._guard = Guard(
+            body, self._surroundings.zones, self._obstacles, sensors=self._readings, odometry=self._odometry,
+            pose=lambda: self._base.pose, now=lambda: self.time,
+        )  # fmt: skip
+        self._navigator = Navigator(
+            world, self._base, self._obstacles, self.faults, self._surroundings, self._guard
+        )
         self._choices = Choices()
         self._latch = Latch()
         self._last_said = ""
@@ -219,6 +228,20 @@ class SimulatedRobot:
     def stuck(self) -> bool:
         """True when it has been commanded to move for a second and does not."""
         return self._base.stuck
+
+    @property
+    def held_back(self) -> str:
+        """See btlang.robots.capabilities.Base."""
+        return self._guard.held
+
+    @property
+    def limited_by(self) -> str:
+        """See btlang.robots.capabilities.Base."""
+        return self._guard.verdict.reason
+
+    def touch(self) -> None:
+        """See btlang.robots.capabilities.Base."""
+        self._guard.touch()
 
     @property
     def set_out_from(self) -> Pose:
@@ -407,6 +430,7 @@ class SimulatedRobot:
         """Puts the robot somewhere else, at rest, as somebody who carries it would."""
         self._rest()
         self._base.put(pose)
+        self._guard.forget()
 
     # Power
     @property
@@ -570,6 +594,17 @@ class SimulatedRobot:
         """Raises RobotError where the body lacks it."""
         if not self._has(need):
             raise RobotError(f"the robot has no {part_of(need)}")
+
+    def _readings(self) -> list[ObstacleReading]:
+        """Those of the sensors; a scanner that is silent says what it said last."""
+        readings = self._sensors(self.time)
+        if not self.faults.scanner_silent:
+            self._scanned = self.time
+            return readings
+        return [each.replace(stamp=self._scanned) if isinstance(each, ScanReading) else each for each in readings]
+
+    def _odometry(self) -> OdometryReading | None:
+        return OdometryReading("odometry", self.time, self._base.silent or "", self._base.pose)
 
     def _begin_faults(self) -> None:
         for fault in self.faults.advance(self.time):
