@@ -175,7 +175,7 @@ class Navigator:
             goal.end(silent)
         elif self._base.bumps > goal.bumps:
             goal.end(f"bumped into {self._base.bumped_into} on the way to {said(name)}")
-        elif self._base.stuck:
+        elif self._base.stuck or self._guard.stuck:
             goal.end(f"stuck on the way to {said(name)}: the wheels turn but the robot doesn't move")
         elif self._guard.held and self._guard.verdict.cause not in (Cause.PERSON, Cause.ZONE):
             goal.end(f"stopped on the way to {said(name)}: {self._guard.held}")

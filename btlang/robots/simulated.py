@@ -213,6 +213,8 @@ class SimulatedRobot:
             return
         self._navigator.cancel("another command took over the drive")
         self._base.drive(linear, angular)
+        if linear == 0.0 == angular:
+            self._guard.rest()
 
     @property
     def bumps(self) -> int:
@@ -227,7 +229,7 @@ class SimulatedRobot:
     @property
     def stuck(self) -> bool:
         """True when it has been commanded to move for a second and does not."""
-        return self._base.stuck
+        return self._base.stuck or self._guard.stuck
 
     @property
     def held_back(self) -> str:
@@ -630,9 +632,9 @@ class SimulatedRobot:
         if self._base.bumps > self._bumps_reported:
             self._bumps_reported = self._base.bumps
             self._emit("bump", into=self._base.bumped_into)
-        if self._base.stuck and not self._stuck_reported:
+        if self.stuck and not self._stuck_reported:
             self._emit("stuck")
-        self._stuck_reported = self._base.stuck
+        self._stuck_reported = self.stuck
 
     def _emit(self, event: str, **data: Any) -> None:
         if self._idling is not None and event in ("hear", "ask"):

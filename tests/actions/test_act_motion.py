@@ -106,7 +106,7 @@ def test_bumps_fail(bench):
 
 def test_it_stops_before_what_its_scanner_sees(bench):
     b = bench(**WALL)
-    for so_far in ("0.76", "0.00"):
+    for so_far in ("0.77", "0.00"):
         with pytest.raises(ActionFailed, match=rf"^stopped after {so_far} m: scanner: 0\.04 m ahead$"):
             b.run(motion.move_forward, distance=2.0)
     assert b.robot.bumps == 0

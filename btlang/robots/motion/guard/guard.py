@@ -9,7 +9,7 @@ from math import copysign, cos, inf, isfinite, isnan, radians, sqrt
 from btlang.record import Record
 from btlang.robots.body import Body
 from btlang.robots.geometry import Pose, wrap
-from btlang.robots.motion.guard.odometry import OdometryCheck
+from btlang.robots.motion.guard.odometry import STANDS, OdometryCheck
 from btlang.robots.motion.guard.people import WalkingPeople, safe_among
 from btlang.robots.motion.guard.readings import (
     ContactReading,
@@ -84,6 +84,7 @@ class Guard:
         self._check = OdometryCheck(body)
         self._checked: OdometryReading | None = None
         self._disagrees = ""
+        self._direction = 0.0, 0.0
         # what a sensor said last, how far the robot had gone when it said so first, and when it was asked last
         self._seen: dict[str, tuple[float, float, float]] = {}
         self._stands_since: float | None = None
@@ -99,14 +100,24 @@ class Guard:
             return ""
         return verdict.reason
 
+    @property
+    def stuck(self) -> bool:
+        """Whether the odometry shows no motion although some was commanded."""
+        return self._disagrees == STANDS
+
     def touch(self) -> None:
         """The robot may touch what is ahead, at the contact speed of its body. To be repeated, as velocities are."""
         self._touches_until = self._now() + _TOUCHING
 
+    def rest(self) -> None:
+        """A drive has ended; the next one is judged for itself."""
+        self._check.rest()
+        self._disagrees, self._stands_since = "", None
+
     def forget(self) -> None:
         """Somebody else moved the robot, or will."""
+        self.rest()
         self._check.forget()
-        self._disagrees = ""
 
     def judge(self, linear: float, angular: float) -> Verdict:
         """What may be sent in place of a velocity that is wanted, in metres and degrees a second.
@@ -131,9 +142,11 @@ class Guard:
             self._checked = reading
             fault = self._check.fault(reading.pose, reading.stamp)
             self._disagrees = self._disagrees or fault
+        direction = copysign(1.0, linear) if linear else 0.0, copysign(1.0, angular) if not linear else 0.0
+        if direction != self._direction or linear == 0.0 == angular:
+            self._direction = direction
+            self.rest()  # the way back is another drive
         if linear == 0.0 == angular:
-            self._disagrees = ""
-            self._check.rest()
             return Verdict(0.0, 0.0)
         if reading is not None and self._disagrees:
             return Verdict(0.0, 0.0, f"{reading.source} {self._disagrees}", Cause.ODOMETRY)

@@ -20,7 +20,7 @@ _NOTHING = 0.05  # of what is commanded: less is standing still
 _STEP = 0.2  # seconds that a step counts at most: a robot brakes by itself before a command that comes late
 _KEPT = 100  # commands
 _STANDING = 0.3  # seconds without motion
-_STANDS = "shows that the robot doesn't move"
+STANDS = "shows that the robot doesn't move"
 _DROVE, _TURNED = "shows {:.2f} m where {:.2f} m were commanded", "shows {:.0f} degrees where {:.0f} were commanded"
 
 
@@ -84,7 +84,7 @@ class OdometryCheck:
             return ""
         if stamp - self._moved_at <= _STANDING:
             return shown.format(*found)
-        return _STANDS if stamp - self._moved_at > _SETS_OFF else ""
+        return STANDS if stamp - self._moved_at > _SETS_OFF else ""
 
     def _add(self, pose: Pose, stamp: float) -> None:
         before, self._pose = self._pose, pose
