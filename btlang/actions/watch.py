@@ -8,7 +8,6 @@ from typing import Protocol
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.capabilities import Base, Machine, Power, Sensors
 
-
 STUCK = "the wheels turn but the robot doesn't move"
 
 

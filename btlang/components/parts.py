@@ -10,9 +10,9 @@ from btlang.components.sensors import DeviceSensors
 from btlang.components.servos import servo_angle
 from btlang.devices.device_set import DeviceSet, Reads, reader
 from btlang.devices.driver import DeviceError
-from btlang.devices.kinds import Charge, Grip, GripTarget, JointTarget, Play, Scan, Shown
-from btlang.robots.body import Body, Sensor
-from btlang.robots.geometry import CENTRE, Pose
+from btlang.devices.kinds import Charge, Grip, GripTarget, JointTarget, Play, Shown
+from btlang.robots.body import Body
+from btlang.robots.geometry import Pose
 from btlang.robots.hands import Hands
 from btlang.robots.joints import clipped, joint_of
 from btlang.robots.obstacles import Obstacles
@@ -25,7 +25,6 @@ from btlang.robots.world import World, said
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.capabilities import Operation
-    from btlang.robots.scan import Array
 
 BUMPER = "bumper"
 _FULL = 100.0  # percent

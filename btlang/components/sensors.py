@@ -25,9 +25,7 @@ class DeviceSensors:
     ) -> None:
         self._readers, self._lidar, self._radius = devices.readers, lidar, radius
         self._scanner = scanner or Sensor("scanner", "")
-        self._near = [
-            device for name, device in devices.devices.items() if device.kind == "range" or name in bumpers
-        ]
+        self._near = [device for name, device in devices.devices.items() if device.kind == "range" or name in bumpers]
         self._seen: tuple[Scan, Array, float] | None = None  # the latest scan, around the centre, and the room it shows
 
     def scan(self) -> Array:

@@ -207,7 +207,14 @@ def _dock(top: Table) -> Dock | None:
 def _base(table: Table) -> Base:
     driving, turning = _limits(table.table("driving")), _limits(table.table("turning"))
     gap = table.number("wheel_gap", low=0.01)
-    return table.finish(Base(driving, turning, gap, table.number("contact_speed", min(0.1, driving.speed), low=_LEAST, high=driving.speed)))
+    return table.finish(
+        Base(
+            driving,
+            turning,
+            gap,
+            table.number("contact_speed", min(0.1, driving.speed), low=_LEAST, high=driving.speed),
+        )
+    )
 
 
 def _limits(table: Table) -> Limits:

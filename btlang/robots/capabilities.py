@@ -152,7 +152,7 @@ class Base(Machine, Protocol):
 
     @property
     def limited_by(self) -> str:
-        """Why it drives slower than commanded, or stands: what a sensor sees ahead, or can't see; "" where it doesn't."""
+        """Why it drives slower than commanded, or stands, such as what a sensor sees ahead; "" where it doesn't."""
 
     @property
     def held_back(self) -> str:

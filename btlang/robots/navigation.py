@@ -10,8 +10,8 @@ from btlang.interrupts import interrupts_later
 from btlang.robots.body import Body, Limits
 from btlang.robots.faults import Faults
 from btlang.robots.geometry import Point, Pose, wrap
-from btlang.robots.obstacles import Obstacles
 from btlang.robots.motion.guard.guard import Cause, Guard
+from btlang.robots.obstacles import Obstacles
 from btlang.robots.parts import BasePart
 from btlang.robots.robot import RobotError
 from btlang.robots.surroundings import Surroundings

@@ -14,10 +14,15 @@ _LOOK = 1.0  # seconds that one look counts at most: a look that comes late says
 
 
 class Progress:
-    """Metres, or degrees where it `turns`. `close` is how near is near enough, `now` gives seconds, `why` a known reason."""
+    """Metres, or degrees where it `turns`. `close` is how near is near enough, `now` gives seconds, `why` a reason."""
 
     def __init__(
-        self, wanted: float, close: float, turns: bool, now: Callable[[], float], patience: float = PATIENCE,
+        self,
+        wanted: float,
+        close: float,
+        turns: bool,
+        now: Callable[[], float],
+        patience: float = PATIENCE,
         why: Callable[[], str] = str,
     ) -> None:
         self._wanted, self._close, self._turns = abs(wanted), close, turns

@@ -84,9 +84,7 @@ class SimulatedRobot:
             body, self._surroundings.zones, self._obstacles, sensors=self._readings, odometry=self._odometry,
             pose=lambda: self._base.pose, now=lambda: self.time,
         )  # fmt: skip
-        self._navigator = Navigator(
-            world, self._base, self._obstacles, self.faults, self._surroundings, self._guard
-        )
+        self._navigator = Navigator(world, self._base, self._obstacles, self.faults, self._surroundings, self._guard)
         self._choices = Choices()
         self._latch = Latch()
         self._last_said = ""

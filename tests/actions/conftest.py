@@ -51,6 +51,7 @@ class Bench:
 @pytest.fixture
 def bench():
     """Makes a bench in a world, by default a large empty one."""
+
     def make(world=None, body=None, **changes):
         return Bench((world or World(start=Pose(0.0, 0.0))).replace(**changes), body)
 

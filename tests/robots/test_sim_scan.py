@@ -1,6 +1,6 @@
 """The scanner against exact geometry."""
 
-from math import cos, inf, nan, radians, sin, sqrt
+from math import cos, degrees, inf, nan, radians, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -57,8 +57,9 @@ def test_what_a_mounted_scanner_measures_is_around_the_robot(at, echoes):
     wanted[round(at.heading) % 360] = inf  # where a beam looked that found nothing
     found = around(ranges, angles, at)
     assert [found[beam] for beam in echoes] == pytest.approx(list(echoes.values()))
-    elsewhere = np.array([min((abs(wrap(beam - other)) for other in (*echoes, at.heading)), default=180) for beam in range(360)])
-    assert np.isnan(found[elsewhere > 20]).all()
+    looked = (*echoes, at.heading, at.heading + degrees(1.0))
+    away = np.array([min(abs(wrap(beam - other)) for other in looked) for beam in range(360)])
+    assert np.isnan(found[away > 20]).all()
 
 
 @given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(-180, 180))

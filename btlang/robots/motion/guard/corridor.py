@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from math import inf
+from math import inf, nan
 
 import numpy as np
 import numpy.typing as npt
@@ -33,7 +33,12 @@ def free_way(ranges: Array, direction: float, radius: float, wide: float = 0.0) 
         nearest = max(0.0, float((along[touching] - np.sqrt(radius * radius - beside * beside)).min()))
     else:
         nearest = inf
-    return nearest if not np.isnan(beams[_WINDOW]).any() or _is_covered(beams[_WINDOW]) else float("nan")
+    return nearest if _are_covered(beams) else nan
+
+
+def is_covered(ranges: Array, direction: float) -> bool:
+    """Whether valid beams look in a direction, in degrees left of ahead, so that it can be clear."""
+    return _are_covered(ranges[_beams(round(direction) % 360)])
 
 
 @cache
@@ -41,6 +46,6 @@ def _beams(direction: int) -> npt.NDArray[np.int64]:
     return (direction + np.arange(-90, 91)) % 360
 
 
-def _is_covered(beams: Array) -> bool:
-    unseen = np.convolve(np.isnan(beams), np.ones(_GAP), "valid")
-    return bool(unseen.max() < _GAP - 0.5)
+def _are_covered(beams: Array) -> bool:
+    unseen = np.isnan(beams[_WINDOW])
+    return not unseen.any() or bool(np.convolve(unseen, np.ones(_GAP), "valid").max() < _GAP - 0.5)

@@ -82,7 +82,7 @@ class Guard:
         self._body, self._people, self._regions = body, people, Regions(zones, body.radius, body.driving.brake)
         self._sensors, self._odometry, self._pose, self._now = sensors, odometry, pose, now
         self._check = OdometryCheck(body)
-        self._checked: OdometryReading | None = None
+        self._checked = -inf  # the stamp of the odometry that was compared last
         self._disagrees = ""
         self._direction = 0.0, 0.0
         # what a sensor said last, how far the robot had gone when it said so first, and when it was asked last
@@ -138,8 +138,8 @@ class Guard:
 
     def _judged(self, linear: float, angular: float, now: float) -> Verdict:
         reading = self._odometry()
-        if reading is not None and not reading.fault and reading is not self._checked:
-            self._checked = reading
+        if reading is not None and not reading.fault and reading.stamp != self._checked:
+            self._checked = reading.stamp
             fault = self._check.fault(reading.pose, reading.stamp)
             self._disagrees = self._disagrees or fault
         direction = copysign(1.0, linear) if linear else 0.0, copysign(1.0, angular) if not linear else 0.0
@@ -186,7 +186,9 @@ class Guard:
             return 0.0, fault, Cause.SENSOR
         side = "behind" if backward else "ahead"
         if isinstance(reading, ContactReading):
-            return (0.0, f"the {reading.source} is pressed", Cause.OBSTACLE) if reading.pressed else (inf, "", Cause.NONE)
+            return (
+                (0.0, f"the {reading.source} is pressed", Cause.OBSTACLE) if reading.pressed else (inf, "", Cause.NONE)
+            )
         if isinstance(reading, RangeReading):
             free = reading.distance
         else:

@@ -1,4 +1,4 @@
-"""What the guard knows: readings of sensors with a time stamp, a source and a reason where they aren't to be believed."""
+"""Readings of sensors, by which the guard judges: each has a time stamp, a source, and a reason if it is invalid."""
 
 from __future__ import annotations
 

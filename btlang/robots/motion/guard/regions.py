@@ -28,7 +28,9 @@ class Regions:
         """Metres a second that are safe straight ahead, or backward, and what zone stops it; inf where none does."""
         if self._version != self._zones.version:
             self._measure()
-        most = min((zone.speed for zone, box in self._slow if _within(box, pose) and self._near(zone, pose)), default=inf)
+        most = min(
+            (zone.speed for zone, box in self._slow if _within(box, pose) and self._near(zone, pose)), default=inf
+        )
         found = ""
         heading = radians(pose.heading + 180.0 * backward)
         direction = cos(heading), sin(heading)

@@ -21,8 +21,9 @@ class StampCheck:
         self._last = 0.0
 
     def fault(self, stamp: float, arrival: float, lags: bool = True) -> str:
-        """Why a stamp can't be true, to be read after the name of the sensor; "" if it can. Without `lags` the time that
-        messages are under way isn't judged, as with clocks that run faster than real time.
+        """Why a stamp can't be true, to be read after the name of the sensor; "" if it can.
+
+        Without `lags` it isn't judged how long messages are under way: their clock may be faster than real time.
         """
         if stamp == 0.0:
             return ""
