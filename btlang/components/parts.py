@@ -15,6 +15,7 @@ from btlang.robots.body import Body
 from btlang.robots.geometry import Pose
 from btlang.robots.hands import Hands
 from btlang.robots.joints import clipped, joint_of
+from btlang.robots.motion.guard.joints import JointProgress
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.parts import JointsPart, Parts
 from btlang.robots.power import NO_CONTACT
@@ -133,12 +134,14 @@ class DeviceJoints:
     def __init__(self, body: Body, devices: Mapping[str, Reads]) -> None:
         self._body, self._devices = body, devices
         self._targets: dict[str, float] = {}
+        self._time = 0.0
+        self._progress = JointProgress(body, lambda: self._time)
 
     @property
     def moving(self) -> bool:
         """True while any joint is on its way, as far as that is known."""
         try:
-            return any(not self._reached(name) for name in tuple(self._targets))
+            return any(abs(self._left(name)) > joint_of(self._body, name).close_enough for name in tuple(self._targets))
         except DeviceError:
             return False
 
@@ -152,11 +155,12 @@ class DeviceJoints:
         for name in wanted:
             self.angle(name)
         self._targets.update(wanted)
+        self._progress.start(wanted)
         self.step(0.0)
 
     def at_target(self, names: tuple[str, ...]) -> bool:
-        """True when none of them is on its way. Raises DeviceSilent."""
-        return all(self._reached(name) for name in names if name in self._targets)
+        """True when none of them is on its way. Raises DeviceSilent, and RobotError where one of them is stuck."""
+        return all(self._progress.has_arrived(name, self._left(name)) for name in names if name in self._targets)
 
     def freeze(self, names: tuple[str, ...] | None = None) -> None:
         """They stay where they are; None: all of them."""
@@ -166,11 +170,12 @@ class DeviceJoints:
 
     def step(self, dt: float) -> None:
         """Commands them again; a joint that has arrived holds its place by itself."""
+        self._time += dt
         for name, target in tuple(self._targets.items()):
             self._devices[name].write(name, JointTarget(target, joint_of(self._body, name).speed))
 
-    def _reached(self, name: str) -> bool:
-        return abs(self.angle(name) - self._targets[name]) <= joint_of(self._body, name).close_enough
+    def _left(self, name: str) -> float:
+        return self._targets[name] - self.angle(name)
 
 
 class Gripping:

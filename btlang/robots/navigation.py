@@ -127,7 +127,7 @@ class Navigator:
     def protect(self) -> None:
         """The base drives no faster than is safe, whoever drives it."""
         wanted = self._base.wanted
-        verdict = self._guard.judge(*wanted)
+        verdict = self._guard.judge(*wanted, may_touch=self.goal is None)
         most = abs(verdict.linear) if verdict.linear != wanted[0] else inf
         self._base.limits = most, abs(verdict.angular) if verdict.angular != wanted[1] else inf
 

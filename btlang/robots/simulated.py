@@ -46,6 +46,7 @@ class SimulatedRobot:
     """Implements `btlang.robots.robot.Robot`. The same commands and the same seed give the same run.
 
     `make_parts` makes its parts, which by default act in the world, of this and what stands there: its `obstacles`.
+    Unless it `sees`, it drives as it is told, past its sensors: whoever commands it has the guard.
     """
 
     moves_by_itself = False
@@ -57,6 +58,7 @@ class SimulatedRobot:
         body: Body | None = None,
         make_parts: Callable[[World, Obstacles, Body], Parts] | None = None,
         obstacles: Obstacles | None = None,
+        sees: bool = True,
     ) -> None:
         self.body = body = body or standard_body()
         self._has = cache(body.has)
@@ -81,8 +83,8 @@ class SimulatedRobot:
             self._idling = Idling(body, self._joints, self._surroundings.where, lambda: self.pose)
         self._sensors, self._scanned = parts.sensors, 0.0
         self._guard = Guard(
-            body, self._surroundings.zones, self._obstacles, sensors=self._readings, odometry=self._odometry,
-            pose=lambda: self._base.pose, now=lambda: self.time,
+            body, self._surroundings.zones, self._obstacles, sensors=self._readings if sees else list,
+            odometry=self._odometry if sees else lambda: None, pose=lambda: self._base.pose, now=lambda: self.time,
         )  # fmt: skip
         self._navigator = Navigator(world, self._base, self._obstacles, self.faults, self._surroundings, self._guard)
         self._choices = Choices()

@@ -246,7 +246,7 @@ class RosBase:
 
 def _at_most(speed: float, most: float) -> float:
     """What is not finite stays so, and is refused."""
-    return max(-most, min(most, speed)) if isfinite(speed) else speed
+    return max(-most, min(most, speed)) + 0.0 if isfinite(speed) else speed
 
 
 def _carried(located: Pose, before: Pose, now: Pose) -> Pose:

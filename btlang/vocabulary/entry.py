@@ -37,8 +37,10 @@ class Entry(Record, uncompared=("span",)):
     quantity of it; the vocabulary makes the phrases that compare it of the `quantity` ones and the words for comparing.
     `instant` and `uninterruptible` are what an action says of itself: that it ends in the tick in which it starts, and
     that it should not be halted half-way. Warnings are made of them; they change nothing in a run. With `thread` the
-    `call`, a plain function, works in a thread of its own, beside the tick. `ros` stands in place of `call` on a robot
-    that speaks ROS 2. With `replaces` its `call` is what runs, whatever other entries of its id say, on any robot.
+    `call`, a plain function, works in a thread of its own, beside the tick. An action that `touches` drives to contact
+    on purpose, and so does a mission that waits for a condition that does, such as a bump. `ros` stands in place of
+    `call` on a robot that speaks ROS 2. With `replaces` its `call` is what runs, whatever other entries of its id say,
+    on any robot.
     `needs` names capabilities and parts of the robot (btlang.vocabulary.capabilities); what an action takes of them for
     itself is among its `resources`. `outputs` are the slots whose ports it writes. An entry that `yields` leaves its
     words to a mission, or another entry, that gives them a meaning. An entry without a `sort` has only phrases: those
@@ -59,6 +61,7 @@ class Entry(Record, uncompared=("span",)):
     instant: bool = False
     uninterruptible: bool = False
     thread: bool = False
+    touches: bool = False
     ros: RosBinding | None = None
     replaces: bool = False
     needs: tuple[str, ...] = ()

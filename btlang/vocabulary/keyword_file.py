@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 _OWN = ("shipped", "yields", "replaces", "action", "condition", "quantity", "noun", "type", "phrases")
 _TOP = {"language", *_OWN, *WORD_LISTS, *SWITCHES, *TABLES}
 _ENTRY = {"phrase", "id", "call", "ros", "slots", "outputs", "resources", "needs", "topic", "help", "example"}
-_FLAGS = ("instant", "uninterruptible", "thread")
-_MORE = {"action": set(_FLAGS), "condition": set[str](), "quantity": {"type"}}
+_FLAGS = ("instant", "uninterruptible", "thread", "touches")
+_MORE = {"action": set(_FLAGS), "condition": {"touches"}, "quantity": {"type"}}
 """The keys that an entry of one sort has beside those of all."""
 _TYPE = {"name", "units", "whole", "least", "open", "values"}
 _NOUN = {"type", "phrase", "slots", "how"}
@@ -120,7 +120,7 @@ class _Reader:
             resources = list(dict.fromkeys((*resources, *resources_of(needs))))
         for key in [key for key in _FLAGS if not isinstance(table.get(key, False), bool)]:
             self.wrong(f"{key} of '{near}' must be true or false", near)
-        instant, uninterruptible, thread = (table.get(key) is True for key in _FLAGS)
+        instant, uninterruptible, thread, touches = (table.get(key) is True for key in _FLAGS)
         if instant and thread:
             self.wrong(f"'{near}' can't be instant: work in a thread ends in a later tick", near)
         topic, help, example = (str(table.get(key, "")) for key in ("topic", "help", "example"))
@@ -130,7 +130,7 @@ class _Reader:
         slots = self.slots(phrases, given, near)
         made = Entry(
             sort, name, tuple(phrases), str(call), slots, tuple(resources), topic, help, example, span=self.span(near),
-            instant=instant, uninterruptible=uninterruptible, thread=thread,
+            instant=instant, uninterruptible=uninterruptible, thread=thread, touches=touches,
             ros=self.ros(table["ros"], sort, slots, near) if "ros" in table else None,
             needs=tuple(needs), outputs=self.outputs(table.get("outputs", []), slots, near),
         )  # fmt: skip

@@ -88,7 +88,7 @@ class Guard:
         # what a sensor said last, how far the robot had gone when it said so first, and when it was asked last
         self._seen: dict[str, tuple[float, float, float]] = {}
         self._stands_since: float | None = None
-        self._touches_until = -inf
+        self._touches_until, self._touches = -inf, False
         self.verdict = Verdict(0.0, 0.0)
         """The latest one."""
 
@@ -119,13 +119,15 @@ class Guard:
         self.rest()
         self._check.forget()
 
-    def judge(self, linear: float, angular: float) -> Verdict:
-        """What may be sent in place of a velocity that is wanted, in metres and degrees a second.
+    def judge(self, linear: float, angular: float, may_touch: bool = True) -> Verdict:
+        """What may be sent in place of a velocity that is wanted, in metres and degrees a second. Not on every way may
+        it touch what is ahead, even if something else wants it to.
 
         Raises RobotError for one that isn't finite, or faster than any robot.
         """
         check_velocity(linear, angular)
         now = self._now()
+        self._touches = may_touch and now < self._touches_until
         verdict = self._judged(linear, angular, now)
         self._check.sent(now, verdict.linear, verdict.angular)
         self.verdict = verdict
@@ -157,7 +159,7 @@ class Guard:
         most, reason, cause, who = self._safe(linear < 0.0, abs(linear), now)
         if most >= abs(linear):
             return Verdict(linear, angular)
-        return Verdict(copysign(most, linear), angular, reason, cause, who)
+        return Verdict(copysign(most, linear) if most else 0.0, angular, reason, cause, who)
 
     def _safe(self, backward: bool, wanted: float, now: float) -> tuple[float, str, Cause, str]:
         """Metres a second that are safe straight ahead, or backward, and what limits it most."""
@@ -206,7 +208,7 @@ class Guard:
             return 0.0, f"{reading.source}: no valid beam looks {side}", Cause.SENSOR
         left = free - self._since_changed(f"{reading.source} {side}", free)
         most = self._before_contact(left - _MARGIN)
-        if now < self._touches_until:
+        if self._touches:
             most = max(most, self._body.contact_speed)
         if left < free - _MARGIN and free > 2 * _MARGIN:
             return most, f"{reading.source}: shows the same for {free - left:.2f} m of the way", Cause.SENSOR
