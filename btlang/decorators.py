@@ -31,6 +31,7 @@ def action(
     accompaniment: bool = False,
     instant: bool = False,
     uninterruptible: bool = False,
+    touches: bool = False,
     thread: bool = False,
     ros: Mapping[str, Any] | None = None,
     replace: bool = False,
@@ -47,7 +48,7 @@ def action(
     """
     return _word("action", phrase, id, slots or {}, ros, replace, needs, resources, topic=topic, help=help,
                  example=example, accompaniment=accompaniment, instant=instant, uninterruptible=uninterruptible,
-                 thread=thread)  # fmt: skip
+                 thread=thread, touches=touches)  # fmt: skip
 
 
 def condition(

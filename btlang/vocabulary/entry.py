@@ -68,9 +68,10 @@ class Entry(Record, uncompared=("span",)):
     every other action is a task, whose result counts. `instant` and `uninterruptible` are what an action says of
     itself: that it ends in the tick in which it starts, and
     that it should not be halted half-way. Warnings are made of them; they change nothing in a run. With `thread` the
-    `call`, a plain function, works in a thread of its own, beside the tick. `ros` stands in place of `call` on a robot
-    that speaks ROS 2. With `replaces` its `call` is what runs, whatever other entries of its id say, on any robot.
-    `verbs` are verbs with their roles, from which the vocabulary makes the first of the `phrases`.
+    `call`, a plain function, works in a thread of its own, beside the tick. An action that `touches` drives to contact
+    on purpose, and so does a mission that waits for a condition that does, such as a bump. `ros` stands in place of
+    `call` on a robot that speaks ROS 2. With `replaces` its `call` is what runs, whatever other entries of its id say,
+    on any robot. `verbs` are verbs with their roles, from which the vocabulary makes the first of the `phrases`.
     `needs` names capabilities and parts of the robot (btlang.vocabulary.capabilities); what an action takes of them for
     itself is among its `resources`. `outputs` are the slots whose ports it writes. An entry that `yields` leaves its
     words to a mission, or another entry, that gives them a meaning. An entry without a `sort` has only phrases: those
@@ -92,6 +93,7 @@ class Entry(Record, uncompared=("span",)):
     instant: bool = False
     uninterruptible: bool = False
     thread: bool = False
+    touches: bool = False
     ros: RosBinding | None = None
     replaces: bool = False
     needs: tuple[str, ...] = ()

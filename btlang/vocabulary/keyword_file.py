@@ -33,23 +33,11 @@ if TYPE_CHECKING:
 _OWN = ("shipped", "yields", "replaces", "action", "condition", "quantity", "noun", "type", "phrases")
 _TOP = {"language", *_OWN, *WORD_LISTS, *SWITCHES, *TABLES}
 _ENTRY = {
-    "phrase",
-    "verb",
-    "roles",
-    "frames",
-    "id",
-    "call",
-    "ros",
-    "slots",
-    "outputs",
-    "resources",
-    "needs",
-    "topic",
-    "help",
+    "phrase", "verb", "roles", "frames", "id", "call", "ros", "slots", "outputs", "resources", "needs", "topic", "help",
     "example",
-}
-_FLAGS = ("accompaniment", "instant", "uninterruptible", "thread")
-_MORE = {"action": set(_FLAGS), "condition": set[str](), "quantity": {"type"}}
+}  # fmt: skip
+_FLAGS = ("accompaniment", "instant", "uninterruptible", "thread", "touches")
+_MORE = {"action": set(_FLAGS), "condition": {"touches"}, "quantity": {"type"}}
 """The keys that an entry of one sort has beside those of all."""
 _TYPE = {"name", "units", "whole", "least", "open", "values"}
 _NOUN = {"type", "phrase", "slots", "how"}
