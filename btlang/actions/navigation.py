@@ -14,6 +14,9 @@ from btlang.robots.likeness import unseen
 from btlang.robots.relations import related_words
 from btlang.robots.robot import Operation
 
+PASSED = 0.5
+"""Metres from a place at which the robot has come past it."""
+
 
 def go_to(
     robot: Navigation,
@@ -22,10 +25,26 @@ def go_to(
     y: float | None = None,
     facing: float | None = None,
     manner: str | None = None,
+    via: str = "",
 ) -> Steps:
-    """Drives to a place and faces as the place says, or to a point."""
+    """Drives to a place and faces as the place says, or to a point; past the places of `via` (`hall; lobby`) first."""
     steps = travel(robot, place) if place is not None else _go_to_point(robot, x, y, facing)
-    yield from paced(robot, manner, steps)
+    yield from paced(robot, manner, _past(robot, [name.strip() for name in via.split(";") if name.strip()], steps))
+
+
+def _past(robot: Navigation, places: list[str], steps: Steps) -> Steps:
+    """Passes each of the places without a stop, then takes the steps."""
+    for name in places:
+        point = robot.locate(name)
+        operation = robot.navigate_to(name)
+        try:
+            while not operation.done and robot.pose.distance_to(point) > PASSED:
+                yield
+        finally:
+            operation.cancel()
+        if operation.done and operation.failure is not None:
+            raise ActionFailed(operation.failure)
+    yield from steps
 
 
 def _go_to_point(robot: Navigation, x: float | None, y: float | None, facing: float | None) -> Steps:

@@ -24,6 +24,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+CONSTRAINTS = {"keep out": "KeepOut", "keep in": "KeepIn"}
 _CHAINS = {"sequence": "Sequence", "all": "Sequence", "fallback": "Fallback", "any": "Fallback", "parallel": "Parallel"}
 
 
@@ -263,6 +264,12 @@ def _try(item: ast.Try, done: list[Lowered], _scope: Scope) -> Lowered:
     return Lowered(new_node("Fallback", [tried, *otherwise], item.span), all(part.can_skip for part in done))
 
 
+def _constrained(item: ast.Constrained, done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, ports = prepared([("zones", "; ".join(item.zones))], scope)
+    node = Node(CONSTRAINTS[item.kind], (done[0].node,), ports, span=item.span)
+    return Lowered(behind(scripts, node), done[0].can_skip and not scripts, done[0].endless)
+
+
 def _check(_item: ast.Check, done: list[Lowered], _scope: Scope) -> Lowered:
     return done[0]
 
@@ -297,6 +304,7 @@ _LOWER: dict[type[ast.Ast], Callable[[Any, list[Lowered], Scope], Lowered]] = {
     ast.Repeat: _repeat,
     ast.Try: _try,
     **TIMED,
+    ast.Constrained: _constrained,
     ast.Check: _check,
     ast.Nothing: _always("AlwaysSuccess"),
     ast.Fail: _always("AlwaysFailure"),

@@ -193,6 +193,15 @@ def _paced(role: str) -> Callable[[Any, list[Doc], Printer], Doc]:
     return said
 
 
+def _constrained(node: ast.Constrained, parts: list[Doc], printer: Printer) -> Doc:
+    """Whatever stands beside it in its statement or bracket would be constrained, too."""
+    role = "without_entering" if node.kind == "keep out" else "without_leaving"
+    zones = [printer.value(zone, "zone") for zone in node.zones]
+    listed = f" {printer.word('and').text} ".join(zones)
+    body = printer.inside(parts[0], parts[0].level < WHOLE)
+    return Doc((body.pieces, Piece(printer.word(role, zone=listed).text, LEAF)), LOOSE)
+
+
 def _wait(node: ast.Wait, _parts: list[Doc], printer: Printer) -> Doc:
     return _leaf(printer.duration("wait", node.seconds).text)
 
@@ -249,6 +258,7 @@ PRINTERS: dict[type[ast.Ast], Callable[[Any, list[Doc], Printer], Doc]] = {
     ast.Every: _paced("every"),
     ast.Apart: _paced("apart"),
     ast.Delay: _timed("delay"),
+    ast.Constrained: _constrained,
     ast.Wait: _wait,
     ast.WaitUntil: _wait_until,
     ast.WaitTime: _wait_time,

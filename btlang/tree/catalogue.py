@@ -193,6 +193,14 @@ CATALOGUE: dict[str, NodeKind] = {
         _decorator("KeepRunningUntilFailure", waits=True, again=ON_SUCCESS, endless=True, skipped="never",
                    tags_3=("KeepRunningUntilFailure",)),
         *(_loop(sort) for sort in ("Int", "Bool", "Double", "String")),
+        _decorator(
+            "KeepOut", ports={"zones": Port()}, waits=True, origin=BTLANG,
+            text="The robot keeps out of the zones (names between semicolons) while the child runs.",
+        ),
+        _decorator(
+            "KeepIn", ports={"zones": Port()}, waits=True, origin=BTLANG,
+            text="The robot stays in the zones (names between semicolons) while the child runs.",
+        ),
         _decorator("Timeout", ports={"msec": _MILLISECONDS}, interrupts=True, tags_3=("Timeout",)),
         _decorator("Delay", ports={"delay_msec": _MILLISECONDS}, takes_time=True, tags_3=("Delay",)),
         _decorator("RateController", ports={"hz": Port("double", "10", unit="Hz")}, takes_time=True, origin=NAV2),

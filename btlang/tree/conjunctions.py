@@ -198,7 +198,7 @@ def _is_endless(node: ast.Ast, commands: Sequence[Traits]) -> bool:
         return node.rounds in ("", "-1")
     if isinstance(node, ast.Apart):
         return node.rounds == "-1" or last
-    if isinstance(node, ast.Delay | ast.Provided | ast.ForEach):
+    if isinstance(node, ast.Delay | ast.Provided | ast.ForEach | ast.Constrained):
         return last
     if isinstance(node, ast.Whenever):
         return True

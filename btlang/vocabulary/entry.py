@@ -29,11 +29,13 @@ MEASURED = "value"
 """The port of such a condition that may name the blackboard key to write what was measured to."""
 
 
-THEME, RECIPIENT, MANNER = "theme", "recipient", "manner"
+THEME, RECIPIENT, PATH, MANNER = "theme", "recipient", "path", "manner"
+VIA = "via"
+"""The slot of what a journey passes."""
 UNMARKED = frozenset((THEME, MANNER, "extent", "duration"))
 """Roles that no word introduces."""
 VERB_ROLES = (
-    THEME, RECIPIENT, "beneficiary", "goal", "source", "path", "location", "instrument", "topic", "extent", "duration",
+    THEME, RECIPIENT, "beneficiary", "goal", "source", PATH, "location", "instrument", "topic", "extent", "duration",
     MANNER,
 )  # fmt: skip
 """The roles that a verb may have."""
@@ -65,7 +67,9 @@ class Entry(Record, uncompared=("span",)):
     `span` is the place of its first phrase in its keyword file. Where `measures` names a type, the `call` gives a
     quantity of it; the vocabulary makes the phrases that compare it of the `quantity` ones and the words for comparing.
     An `accompaniment` can go along with other commands: speech, gestures, lights, driving and turning by a measure;
-    every other action is a task, whose result counts. `instant` and `uninterruptible` are what an action says of
+    every other action is a task, whose result counts.
+    An action that `constrains` others ("keep out", "keep in" of a zone) holds over the statement that it is said in; it
+    is a command of its own only where it stands alone. `instant` and `uninterruptible` are what an action says of
     itself: that it ends in the tick in which it starts, and
     that it should not be halted half-way. Warnings are made of them; they change nothing in a run. With `thread` the
     `call`, a plain function, works in a thread of its own, beside the tick. An action that `touches` drives to contact
@@ -90,6 +94,7 @@ class Entry(Record, uncompared=("span",)):
     quantity: tuple[str, ...] = ()
     measures: str = ""
     accompaniment: bool = False
+    constrains: str = ""
     instant: bool = False
     uninterruptible: bool = False
     thread: bool = False

@@ -37,7 +37,8 @@ _ENTRY = {
     "example",
 }  # fmt: skip
 _FLAGS = ("accompaniment", "instant", "uninterruptible", "thread", "touches")
-_MORE = {"action": set(_FLAGS), "condition": {"touches"}, "quantity": {"type"}}
+_CONSTRAINTS = ("", "keep out", "keep in")
+_MORE = {"action": {*_FLAGS, "constrains"}, "condition": {"touches"}, "quantity": {"type"}}
 """The keys that an entry of one sort has beside those of all."""
 _TYPE = {"name", "units", "whole", "least", "open", "values"}
 _NOUN = {"type", "phrase", "slots", "how"}
@@ -128,6 +129,9 @@ class _Reader:
         for key in [key for key in _FLAGS if not isinstance(table.get(key, False), bool)]:
             self.wrong(f"{key} of '{near}' must be true or false", near)
         flags: dict[str, Any] = {key: table.get(key) is True for key in _FLAGS}
+        constrains = table.get("constrains", "")
+        if constrains not in _CONSTRAINTS:
+            self.wrong(f'constrains of \'{near}\' is "keep out" or "keep in"', near)
         if flags["instant"] and flags["thread"]:
             self.wrong(f"'{near}' can't be instant: work in a thread ends in a later tick", near)
         topic, help, example = (str(table.get(key, "")) for key in ("topic", "help", "example"))
@@ -137,7 +141,7 @@ class _Reader:
         slots = self.slots(phrases, given, near, [role for _, roles in verbs for role in roles])
         made = Entry(
             sort, name, tuple(phrases), str(call), slots, tuple(resources), topic, help, example, span=self.span(near),
-            **flags,
+            constrains=str(constrains), **flags,
             ros=self.ros(table["ros"], sort, slots, near) if "ros" in table else None,
             needs=tuple(needs), outputs=self.outputs(table.get("outputs", []), slots, near), verbs=verbs,
         )  # fmt: skip

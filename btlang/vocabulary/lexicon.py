@@ -21,7 +21,7 @@ from btlang.vocabulary.trie import TrieNode, add, collisions
 from btlang.vocabulary.value_type import ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import Frame, parts_of, phrases_of
-from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS
+from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS, WordTree, insert
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -79,6 +79,12 @@ class Lexicon:
         """The file of the correct words of the language, which need not be there."""
         self.quantifiers, self.halting = frozenset(language["quantifiers"]), frozenset(language["halting"])
         self.asked_once = frozenset(language["asked_once"])
+        self.subjects = frozenset(language["subjects"])
+        """Words that say nothing behind `until` and `before`: `until you go to the lab`."""
+        self.purpose: WordTree = {}
+        """Words between a command and what it is for: `go through the hall to get to the lab`."""
+        for phrase in language["purpose"]:
+            insert(self.purpose, phrase.split(), True)
         """Negations and words for how many, and words like `stop`: corrections are careful about them."""
         self.continuing = frozenset(
             str(form[0]) for role in GOES_ON for phrase in self.roles.get(role, ()) for form in self._forms(phrase)

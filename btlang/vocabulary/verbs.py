@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from btlang.record import Record
 from btlang.text.words import Words
-from btlang.vocabulary.entry import MANNER, RECIPIENT, THEME, UNMARKED, Entry, Meaning, Role
+from btlang.vocabulary.entry import MANNER, PATH, RECIPIENT, THEME, UNMARKED, Entry, Meaning, Role
 from btlang.vocabulary.match import Match, SlotValue
 
 TYPE_CHECKING = False
@@ -168,5 +168,10 @@ class _Filling:
             self._go_on(one.last, {**filled, role.name: one}, has_particle)
             if text.words[one.last] in context.joiners:
                 listed = self._list_of(one)
-                if listed is not None:
+                if listed is not None and role.name == PATH:
+                    if listed.joiner == "and":  # one way through all of them
+                        through = "; ".join((listed.text, *listed.more))
+                        one = listed.replace(text=through, more=(), joiner="")
+                        self._go_on(one.last, {**filled, role.name: one}, has_particle)
+                elif listed is not None:
                     self._go_on(listed.last, {**filled, role.name: listed}, has_particle)

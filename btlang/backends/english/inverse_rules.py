@@ -220,6 +220,15 @@ def _within(node: Node, children: tuple[Candidate, ...], checked: Checked) -> It
         yield from (ast.Within(seconds, part, NOWHERE) for seconds in _seconds(node.port("msec"), checked))
 
 
+def _constrained(kind: str) -> Form:
+    def forms(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
+        zones = tuple(zone.strip() for zone in node.port("zones").split(";"))
+        if len(children) == 1 and not children[0].in_lines and all(zones):
+            yield ast.Constrained(kind, zones, children[0].part, NOWHERE)
+
+    return forms
+
+
 def _delay(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
     if len(children) == 1:
         times = _seconds(node.port("delay_msec"), checked)
@@ -275,6 +284,8 @@ INVERSE_RULES: dict[str, Form] = {
     "Repeat": _repeat,
     "RetryUntilSuccessful": _retry,
     "ForceSuccess": _ignoring_failure,
+    "KeepOut": _constrained("keep out"),
+    "KeepIn": _constrained("keep in"),
     "Timeout": _within,
     "Delay": _delay,
     "Sleep": _wait,

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from typing import TypeAlias
 
     Said: TypeAlias = "Called | Listed | Assigned | Remembered | NodeCall"
-    Value: TypeAlias = "Said | Each | Paced | Header | str | None"
+    Value: TypeAlias = "Said | Each | Paced | Constraint | Header | str | None"
 
 
 class Called(Record):
@@ -80,6 +80,13 @@ class Paced(Record):
 
     rounds: str
     seconds: str
+
+
+class Constraint(Record):
+    """Zones to keep out of, or to stay in: `kind` is "keep out" or "keep in"."""
+
+    kind: str
+    zones: tuple[str, ...]
 
 
 class Each(Record):
@@ -146,6 +153,18 @@ def go_on(tokens: list[Token]) -> None:
     if 0 < kept < len(tokens) and tokens[kept - 1].kind not in ("indent", "open", "define"):
         end = tokens[kept - 1].end
         tokens[kept:] = [Token("stop", end, end)]
+
+
+def constraint_of(token: Token) -> Constraint | None:
+    """What a command asks of the others in its statement, None for any other token."""
+    value = token.value
+    if token.kind != "command" or type(value) not in (Called, Listed):
+        return None
+    entry = value.entry  # type: ignore[union-attr]
+    if not entry.constrains:
+        return None
+    listed = value.arguments if type(value) is Listed else (value.arguments,)  # type: ignore[union-attr]
+    return Constraint(entry.constrains, tuple(text for arguments in listed for _, text in arguments))
 
 
 def begins_condition(tokens: Sequence[Token], at: int) -> bool:

@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 from btlang.frontends.mission.grouping.bodies import begin_otherwise, end_block, paced, separator, set_amount, set_pace
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, STARTS_OPERAND, closes_statement
-from btlang.frontends.mission.grouping.problems import both_readings, is_alone, side_by_side
+from btlang.frontends.mission.grouping.problems import both_readings, found_words, is_alone, side_by_side
 from btlang.frontends.mission.grouping.readings import otherwise_of_another, repeated, twice_more, waits_first
 from btlang.frontends.mission.grouping.scan import ENDS, Scan, Unit
 from btlang.frontends.mission.grouping.stack import StackEntry
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import Token, constraint_of
 from btlang.vocabulary.language_tables import CONNECTIVES
 
 _JOINTS = {"in_parallel": "MEANWHILE", "while_doing": "MEANWHILE", "before": "THEN"}
@@ -68,7 +68,11 @@ def comma(scan: Scan, token: Token) -> None:
     elif following.kind in CONNECTIVES or following.kind == "while_doing":
         scan.at += 1
         _widening(scan, following)
-    elif following.kind == "apart" and scan.raw[scan.at - 1].kind == "count":
+    elif (
+        following.kind == "but"
+        or constraint_of(following) is not None
+        or (following.kind == "apart" and scan.raw[scan.at - 1].kind == "count")
+    ):
         scan.at += 1
     elif following.kind == "stop_when" or closes_statement(scan, scan.at + 1):
         scan.take_statement()
@@ -84,6 +88,20 @@ def comma(scan: Scan, token: Token) -> None:
         entry.begin_chain()
         entry.connective(scan.emit("COMMA", token))
         scan.next(token, True)
+
+
+def but(scan: Scan, token: Token) -> None:
+    """`A but avoid Z`; `A, but first B`: B before it."""
+    following = scan.raw[scan.at + 1]
+    if constraint_of(following) is not None:
+        scan.at += 1
+    elif token.value and following.kind == "command":
+        scan.raw[scan.at] = Token("after", token.start, token.end)
+        scan.stack[-1].settle()
+        connective(scan, scan.raw[scan.at])
+    else:
+        words = scan.words(token)
+        scan.fail("BT020", scan.span(token), wanted="command", word=words, found=found_words(scan, following))
 
 
 def stop(scan: Scan, token: Token) -> None:
@@ -259,6 +277,7 @@ def close_bracket(scan: Scan, token: Token) -> None:
         scan.fail("BT024", scan.span(token), (scan.span(token), "") if groups_nothing else None)
         return
     entry.close_chain()
+    scan.wrap_constraints(entry)
     scan.stack.pop()
     scan.emit("CLOSE", token)
     scan.next(token, False)
@@ -272,6 +291,7 @@ def end_statement(scan: Scan, token: Token) -> None:
         scan.fail("BT023", scan.span(entry.opener or token))
         return
     if entry.statement == "open":
+        scan.wrap_constraints(entry)
         entry.statement = "ended"
         if entry.latest == entry.commands:  # the second one
             waits_first(scan, entry)

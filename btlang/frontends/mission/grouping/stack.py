@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import Constraint, Token
 
 
 class StackEntry:
@@ -16,7 +16,8 @@ class StackEntry:
     at `latest`; `separator` is the token between them. The latest operand begins at `operand`. `joints` are the words
     "and" of the chain that is not over, which begins at `chain`. `is_group`: it holds statements; `is_condition`:
     operands in it are conditions. `commands` is where those of a group begin that no rule follows; `mixed`: rules stand
-    among them. A list `begins` at a raw token and has so many `items` so far.
+    among them. Its `constraints` hold over its newest statement. A list `begins` at a raw token and has so many `items`
+    so far.
     """
 
     __slots__ = (
@@ -25,6 +26,7 @@ class StackEntry:
         "chain",
         "commands",
         "commas",
+        "constraints",
         "count_owner",
         "else_owner",
         "is_condition",
@@ -56,6 +58,7 @@ class StackEntry:
         self.commas: list[Token] = []
         self.last: Token | None = None
         self.joints: list[Token] = []
+        self.constraints: list[Constraint] = []
         self.statement = ""
         self.begins = self.chain = self.operand = self.items = 0
         self.latest: int | None = None

@@ -6,17 +6,18 @@ Both are read as the words that they stand for would be, in a text put together 
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.text.words import END_OF_TEXT, Words
+from btlang.vocabulary.entry import MANNER, VIA
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.match import Match
+from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
 
-BEFORE_DOING = frozenset(("before", "after", "while", "never"))
+BEFORE_DOING = frozenset(("before", "after", "while", "until", "never"))
 """The kinds of tokens behind which a command may have the form of its verb: `after waving`."""
 JOINTS = frozenset(("then", "and", "or", "comma", "otherwise"))
 """Behind these a command may leave out words of the one before it."""
@@ -146,17 +147,38 @@ def left_out(
     """
     rest = _rest(text, at)
     whole = _match(text, [*said, *said[-1:]], {}, tries, context)
-    inside = {place for value in (whole.values if whole else ()) for place in range(value.first + 1, value.last)}
+    values = whole.values if whole else ()
+    places = {number for value in values for number in range(value.first, value.last)}
+    own = [number for value in values if _is_own(value) for number in _with_its_words(value, places)]
+    inside = {number for value in values for number in range(value.first + 1, value.last)}
     for kept in range(len(said), 0, -1):
-        if kept in inside:
+        if kept in inside or kept - 1 in own:
             continue  # a part of a value: `the orange room, then the yellow room`
-        places = [*said[:kept], *rest]
+        front = [place for number, place in enumerate(said[:kept]) if number not in own]
+        places = [*front, *rest]
         match = _match(text, places, {}, tries, context)
-        if match is None or match.last <= kept or match.meaning.role not in ("command", "name"):
+        if match is not None and any(_is_own(value) for value in match.values if value.last <= len(front)):
+            continue
+        if match is not None and all(_is_own(value) for value in match.values if value.last > len(front)):
+            continue
+        if match is None or match.last <= len(front) or match.meaning.role not in ("command", "name"):
             continue
         if all(context.types[value.type].kind != "text" for value in match.values):
             return _relocated(match, places), places[: match.last]
     return None
+
+
+def _is_own(value: SlotValue) -> bool:
+    """Whether a part of a command is never repeated by the next one: its way and its manner."""
+    return value.type == MANNER or value.name == VIA
+
+
+def _with_its_words(value: SlotValue, places: Container[int]) -> range:
+    """The words of a value with those that introduce it."""
+    first = value.first
+    while first > 1 and first - 1 not in places:
+        first -= 1
+    return range(first, value.last)
 
 
 def doing(
