@@ -158,13 +158,10 @@ def go_on(tokens: list[Token]) -> None:
 def constraint_of(token: Token) -> Constraint | None:
     """What a command asks of the others in its statement, None for any other token."""
     value = token.value
-    if token.kind != "command" or type(value) not in (Called, Listed):
+    if token.kind != "command" or not isinstance(value, Called | Listed) or not value.entry.constrains:
         return None
-    entry = value.entry  # type: ignore[union-attr]
-    if not entry.constrains:
-        return None
-    listed = value.arguments if type(value) is Listed else (value.arguments,)  # type: ignore[union-attr]
-    return Constraint(entry.constrains, tuple(text for arguments in listed for _, text in arguments))
+    ports = [value.arguments] if isinstance(value, Called) else value.arguments
+    return Constraint(value.entry.constrains, tuple(text for arguments in ports for _, text in arguments))
 
 
 def begins_condition(tokens: Sequence[Token], at: int) -> bool:

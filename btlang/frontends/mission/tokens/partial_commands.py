@@ -148,8 +148,10 @@ def left_out(
     rest = _rest(text, at)
     whole = _match(text, [*said, *said[-1:]], {}, tries, context)
     values = whole.values if whole else ()
-    places = {number for value in values for number in range(value.first, value.last)}
-    own = [number for value in values if _is_own(value) for number in _with_its_words(value, places)]
+    if values and _is_own(values[-1]) and text.words[at - 1] in context.joiners:
+        return None  # `through the hall or the lobby`
+    of_values = {number for value in values for number in range(value.first, value.last)}
+    own = [number for value in values if _is_own(value) for number in _with_its_words(value, of_values)]
     inside = {number for value in values for number in range(value.first + 1, value.last)}
     for kept in range(len(said), 0, -1):
         if kept in inside or kept - 1 in own:
@@ -157,8 +159,11 @@ def left_out(
         front = [place for number, place in enumerate(said[:kept]) if number not in own]
         places = [*front, *rest]
         match = _match(text, places, {}, tries, context)
-        if match is not None and any(_is_own(value) for value in match.values if value.last <= len(front)):
-            continue
+        if match is not None and any(
+            value.first < len(front) < value.last or (_is_own(value) and value.last <= len(front))
+            for value in match.values
+        ):
+            continue  # a part of a value, or the way of the command before
         if match is not None and all(_is_own(value) for value in match.values if value.last > len(front)):
             continue
         if match is None or match.last <= len(front) or match.meaning.role not in ("command", "name"):
