@@ -40,10 +40,10 @@ def _past(robot: Navigation, places: list[str], steps: Steps) -> Steps:
         try:
             while not operation.done and robot.pose.distance_to(point) > PASSED:
                 yield
+            if operation.done and operation.failure is not None:
+                raise ActionFailed(operation.failure)
         finally:
             operation.cancel()
-        if operation.done and operation.failure is not None:
-            raise ActionFailed(operation.failure)
     yield from steps
 
 

@@ -77,7 +77,9 @@ class Knowledge:
             known = (name for name in self.sight.names(kind) if where(name) or self.obstacles.is_carried(name))
             names = [name for name in known if name in things and things[name].fits(like)]
         else:
-            names = [] if like else list(self.world.names.of(kind))
+            places = self.world.places if kind == "place" else ()
+            fitting = [place.name for place in places if set(like.items()) <= set(place.parts)]
+            names = fitting if like else list(self.world.names.of(kind))
         if len(like) < len(parts):
             relations = Relations(self.world, things, self.where)
             names = [name for name in names if relations.holds(name, parts, pose)]

@@ -107,7 +107,7 @@ class Zones:
         out = {name.lower() for each in self._restrictions if not each.keeps_in for name in each.names}
         self.closed = [zone for zone in zones if zone.name.lower() in out or self._said.get(zone.name, zone.is_closed)]
         self.confines = [[self._zone(name) for name in each.names] for each in self._restrictions if each.keeps_in]
-        self.slow = [zone for zone in zones if zone not in self.closed and not zone.is_closed]
+        self.slow = [zone for zone in zones if zone not in self.closed and zone.is_slow]
 
     def _zone(self, name: str) -> Zone:
         if (zone := self._zones.get(name.lower())) is None:

@@ -69,7 +69,8 @@ class Entry(Record, uncompared=("span",)):
     An `accompaniment` can go along with other commands: speech, gestures, lights, driving and turning by a measure;
     every other action is a task, whose result counts.
     An action that `constrains` others ("keep out", "keep in" of a zone) holds over the statement that it is said in; it
-    is a command of its own only where it stands alone. `instant` and `uninterruptible` are what an action says of
+    is a command of its own only where it stands alone. Of a list of places an action with `first` tries one after the
+    other until it succeeds. `instant` and `uninterruptible` are what an action says of
     itself: that it ends in the tick in which it starts, and
     that it should not be halted half-way. Warnings are made of them; they change nothing in a run. With `thread` the
     `call`, a plain function, works in a thread of its own, beside the tick. An action that `touches` drives to contact
@@ -95,6 +96,7 @@ class Entry(Record, uncompared=("span",)):
     measures: str = ""
     accompaniment: bool = False
     constrains: str = ""
+    first: bool = False
     instant: bool = False
     uninterruptible: bool = False
     thread: bool = False

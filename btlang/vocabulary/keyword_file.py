@@ -36,7 +36,7 @@ _ENTRY = {
     "phrase", "verb", "roles", "frames", "id", "call", "ros", "slots", "outputs", "resources", "needs", "topic", "help",
     "example",
 }  # fmt: skip
-_FLAGS = ("accompaniment", "instant", "uninterruptible", "thread", "touches")
+_FLAGS = ("accompaniment", "first", "instant", "uninterruptible", "thread", "touches")
 _CONSTRAINTS = ("", "keep out", "keep in")
 _MORE = {"action": {*_FLAGS, "constrains"}, "condition": {"touches"}, "quantity": {"type"}}
 """The keys that an entry of one sort has beside those of all."""

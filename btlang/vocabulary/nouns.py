@@ -88,7 +88,7 @@ class Nouns:
         paths: list[tuple[WordTree, int, Parts]] = [(tree, at, ())]
         while paths:
             node, i, parts = paths.pop()
-            if END in node and (best is None or i > best[1]):
+            if END in node and (best is None or i > best[1] or (i == best[1] and parts and not best[0].parts)):
                 kind, how = node[END]
                 best = Description(kind, how, tuple(sorted(parts))), i
             for name, of, child in node.get(SLOTS, ()):

@@ -83,7 +83,8 @@ class Calls:
         value = match.values[lists[0]]
         each = [value.replace(text=text, more=()) for text in (value.text, *value.more)]
         before, behind = match.values[: lists[0]], match.values[lists[0] + 1 :]
-        return Listed(entry, tuple(self.arguments(entry, (*before, one, *behind)) for one in each), value.joiner)
+        joiner = "or" if entry.first and value.type == PLACE else value.joiner
+        return Listed(entry, tuple(self.arguments(entry, (*before, one, *behind)) for one in each), joiner)
 
     def _check_choices(self, entry: Entry, match: Match, at: int) -> None:
         """BT152 where what is chosen would replace another value of the phrase, or is to be compared with."""
