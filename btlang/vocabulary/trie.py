@@ -181,12 +181,12 @@ def _after_manner(
 
 def _sets(root: TrieNode, text: Words, at: int, context: ReadingContext, name: str, kind: str) -> list[SlotValue]:
     """The sets of names of a type that begin at a word; the shortest first."""
-    ways = [(meant, end) for meant, end in context.values.groups(text, at) if meant.type == kind]
+    ways = [(meant, end) for meant, end in context.values.groups(text, at, kind) if meant.type == kind]
     found: list[SlotValue] = []
     for meant, end in ways:
         group = Choice(ALL, kind, context.keys.get(kind, kind), meant.parts).text
         found.append(SlotValue(name, kind, group, at, end, group=group))
-    if ways and context.choice(text, at) is not None:
+    if ways and context.choice(text, at, kind) is not None:
         listed = all_names(root, ways[0][0], text, at, ways[0][1], context, name)
         same = [at for at, value in enumerate(found) if value.last == listed.last]
         if same:

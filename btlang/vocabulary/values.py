@@ -6,7 +6,7 @@ A value becomes the text of a port, in the unit whose factor is 1: `half a meter
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from marshal import dumps, loads  # a copy of a trie, at a tenth of the time that importing `copy` takes
 
 from btlang.text.source import Source
@@ -80,11 +80,12 @@ class Values:
         self._openers: dict[str, frozenset[str]] | None = None
         self._choice_starts: frozenset[str] | None = None
         self._group_starts: frozenset[str] | None = None
+        self._kinds: dict[str, frozenset[str]] | None = None
         self._both = frozenset(language["roles"].get("both", ()))
 
     def add_name(self, kind: str, words: str, name: str) -> None:
         """Lets the words stand for a name of a type."""
-        insert(self._names[kind], words.lower().split(), name)
+        insert(self._names[kind], self._as_read(words), name)
         self._listed.setdefault(kind, {})[name] = None
         self._spoken.setdefault((kind, name), words)
         self._openers = self._choice_starts = self._group_starts = None
@@ -96,6 +97,7 @@ class Values:
         made._listed = {**self._listed, **{kind: dict(self._listed.get(kind, ())) for kind in names}}
         made._names = {**self._names, **{kind: loads(dumps(self._names[kind])) for kind in names}}
         made._features = self._features if features is None else features
+        made._kinds = None
         made._spoken = dict(self._spoken)
         for kind, pairs in names.items():
             for words, name in pairs:
@@ -105,8 +107,15 @@ class Values:
 
     def _has(self, kind: str, words: str) -> bool:
         """Whether words are a name of a type."""
-        found = find(self._names[kind], [*words.lower().split(), "\n"], 0)
-        return found is not None and found[1] == len(words.split())
+        read = self._as_read(words)
+        found = find(self._names[kind], [*read, "\n"], 0)
+        return found is not None and found[1] == len(read)
+
+    def _as_read(self, words: str) -> list[str]:
+        """The words of a name as they are read in a text, with its marks: `nurses' station`."""
+        if words.replace(" ", "").isalnum():
+            return words.lower().split()  # as nearly always
+        return split(Source(words), self._orthography).words[:-2] or words.lower().split()
 
     @property
     def openers(self) -> Mapping[str, frozenset[str]]:
@@ -168,7 +177,7 @@ class Values:
 
     def noun(self, text: Words, at: int) -> tuple[Description, int] | None:
         """All names that a noun such as `places` or `red cup` is for, and where it ends."""
-        return self.phrases.noun(text, at, self.names_tree)
+        return self.phrases.noun(text, at, self.names_tree, self._fitting(""))
 
     @property
     def choice_starts(self) -> frozenset[str]:
@@ -177,9 +186,35 @@ class Values:
             self._choice_starts = self.phrases.starts(self.names_tree)
         return self._choice_starts
 
-    def choice(self, text: Words, at: int) -> tuple[Description, int] | None:
+    def choice(self, text: Words, at: int, kind: str = "") -> tuple[Description, int] | None:
         """Of words such as `every place` and `the red cup` which names they are for, and where they end."""
-        return self.phrases.longest(text, at, self.names_tree) if text.words[at] in self.choice_starts else None
+        if text.words[at] not in self.choice_starts:
+            return None
+        return self.phrases.longest(text, at, self.names_tree, self._fitting(kind))
+
+    def _fitting(self, wanted: str) -> Callable[[str, Parts], bool]:
+        """Whether a description is of the wanted type, "" for any, and of no kind that only another type has."""
+
+        def fits(kind: str, parts: Parts) -> bool:
+            if wanted not in ("", kind):
+                return False
+            of = [value for name, value in parts if name == "kind"]
+            return not of or kind in self._types_of.get(of[0], (kind,))
+
+        return fits
+
+    @property
+    def _types_of(self) -> Mapping[str, frozenset[str]]:
+        """The types of what there is of each kind, as far as the world is known."""
+        if self._kinds is None:
+            found: dict[str, set[str]] = {}
+            for kind, named in self._features.items():
+                for _, parts in named:
+                    for name, value in parts:
+                        if name == "kind":
+                            found.setdefault(value, set()).add(kind)
+            self._kinds = {value: frozenset(types) for value, types in found.items()}
+        return self._kinds
 
     def choices(self, kind: str) -> list[list[str]]:
         """The words that stand for all names of a type, and for those that are chosen, in the first way to say them."""
@@ -230,19 +265,19 @@ class Values:
             self._group_starts = self.phrases.plural_starts(self.names_tree) | self._numbers.keys() | self._both
         return self._group_starts
 
-    def groups(self, text: Words, at: int, is_bare: bool = False) -> Iterator[tuple[Description, int]]:
+    def groups(self, text: Words, at: int, kind: str = "", is_bare: bool = False) -> Iterator[tuple[Description, int]]:
         """The sets that words describe, and where each ends; the shortest first.
 
         `every cup on the table`, `two red cups`, `the cups except the blue one`; where it `is_bare` also `red cup`.
         """
-        found, count = self.choice(text, at), ""
+        found, count = self.choice(text, at, kind), ""
         if found is None or found[0].how != ALL:
             start = at
             if text.words[at] in self._both:
                 count, start = "2", at + 1
             elif (number := self.number(text, at)) is not None and number[0] >= 1 and number[0] == int(number[0]):
                 count, start = str(int(number[0])), number[1]
-            found = self.phrases.plural(text, start, self.names_tree)
+            found = self.phrases.plural(text, start, self.names_tree, self._fitting(kind))
             if found is None or not (count or is_bare or text.words[at] in self.group_starts):
                 return
         meant, end = found
@@ -263,7 +298,8 @@ class Values:
         at = self.exception(text, at)
         if not at:
             return None
-        found = self.phrases.plural(text, at, self.names_tree) or self.choice(text, at)
+        kind = meant.type
+        found = self.phrases.plural(text, at, self.names_tree, self._fitting(kind)) or self.choice(text, at, kind)
         parts = dict(found[0].parts) if found is not None else {}
         named = find(self._names[meant.type], text.words, at)
         if named is not None and (found is None or named[1] >= found[1]):
