@@ -71,7 +71,7 @@ def test_examples_of_conditions_are_asked(name: str, example: str) -> None:
 def test_everything_has_its_topic_help_and_example() -> None:
     said = [item for item in ITEMS if item.sort != "value"]
     phrased = {node_id for node_id, entries in VOCABULARY.entries.items() if entries[0].phrases}
-    assert VOCABULARY.entries.keys() - phrased == {"Choose"}
+    assert VOCABULARY.entries.keys() - phrased == {"Choose", "ChooseAll"}
     assert {name for item in said for name in item.names} == {*phrased, *EXPLAINED}
     for item in said:
         assert item.topic not in ("", "other", "other words"), item
@@ -101,7 +101,7 @@ def test_lines_fit_a_terminal() -> None:
 
 def test_entries_of_the_list() -> None:
     assert (
-        "  go to {place}\n      Drives to a place. Fails if there is no free way.\n"
+        "  go to {place} [through {via}] [{manner}]\n      Drives to a place. Fails if there is no free way.\n"
         "      For example: go to the kitchen\n"
     ) in WHOLE
     assert "  battery is low  (condition)\n" in WHOLE
@@ -177,7 +177,7 @@ charge [to {percent}]
 @pytest.mark.parametrize(
     ("text", "firsts"),
     [
-        ("go to", ["go to {place}", "go to {person}", "approach {object}"]),
+        ("go to", ["go to {place} [through {via}] [{manner}]", "go to {person} [{manner}]", "approach {object} [{manner}]"]),
         ("wall in front", ["wall in front  (condition)"]),
         ("after", ["after", "after {duration}"]),
         (
