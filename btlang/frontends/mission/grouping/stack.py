@@ -15,8 +15,8 @@ class StackEntry:
     "open" or "ended": its newest statement begins in the output at the index `begins`, the newest one that has ended
     at `latest`; `separator` is the token between them. The latest operand begins at `operand`. `joints` are the words
     "and" of the chain that is not over, which begins at `chain`. `is_group`: it holds statements; `is_condition`:
-    operands in it are conditions. `commands` is where those of a group begin that no rule follows; `mixed`: rules stand among them. A list
-    `begins` at a raw token and has so many `items` so far.
+    operands in it are conditions. `commands` is where those of a group begin that no rule follows; `mixed`: rules stand
+    among them. A list `begins` at a raw token and has so many `items` so far.
     """
 
     __slots__ = (
