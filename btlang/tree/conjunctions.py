@@ -108,7 +108,7 @@ class Conjunctions:
         operator = chain.operator
         if operator == "and":
             operator = self._meaning(chain, traits)
-        made = chain
+        made: ast.Ast = chain
         if operator != chain.operator or any(new is not old for new, old in zip(items, chain.items, strict=True)):
             made = _melted(ast.Chain(operator, tuple(items), chain.bracketed, chain.span))
         endless = [each.endless for each in traits]
@@ -142,7 +142,7 @@ class Conjunctions:
     def _traits(self, root: ast.Ast) -> Traits:
         """Those of a command in which each `and` has its meaning; noted, since they are asked for at every depth."""
 
-        def parts(node: ast.Ast) -> Iterable[ast.Ast]:
+        def parts(node: ast.Ast) -> Sequence[ast.Ast]:
             return () if id(node) in self._noted else ast.parts(node)
 
         def one(node: ast.Ast, done: list[tuple[ast.Ast, Traits]]) -> tuple[ast.Ast, Traits]:

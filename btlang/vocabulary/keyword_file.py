@@ -120,8 +120,8 @@ class _Reader:
             resources = list(dict.fromkeys((*resources, *resources_of(needs))))
         for key in [key for key in _FLAGS if not isinstance(table.get(key, False), bool)]:
             self.wrong(f"{key} of '{near}' must be true or false", near)
-        flags = {key: table.get(key) is True for key in _FLAGS}
-        if flags["instant"] and flags["thread"]:
+        accompaniment, instant, uninterruptible, thread = (table.get(key) is True for key in _FLAGS)
+        if instant and thread:
             self.wrong(f"'{near}' can't be instant: work in a thread ends in a later tick", near)
         topic, help, example = (str(table.get(key, "")) for key in ("topic", "help", "example"))
         given = table.get("slots", {})
@@ -130,7 +130,7 @@ class _Reader:
         slots = self.slots(phrases, given, near)
         made = Entry(
             sort, name, tuple(phrases), str(call), slots, tuple(resources), topic, help, example, span=self.span(near),
-            **flags,
+            accompaniment=accompaniment, instant=instant, uninterruptible=uninterruptible, thread=thread,
             ros=self.ros(table["ros"], sort, slots, near) if "ros" in table else None,
             needs=tuple(needs), outputs=self.outputs(table.get("outputs", []), slots, near),
         )  # fmt: skip

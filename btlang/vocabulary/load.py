@@ -129,7 +129,7 @@ def _after_yielding(files: Sequence[KeywordFile], entries: Iterable[Entry]) -> l
     marked = {entry.id for entry in given if entry.accompaniment and entry.yields} & taken
 
     def kept(entry: Entry) -> Entry:
-        return entry.replace(accompaniment=True) if entry.id in marked else entry  # type: ignore[no-any-return]
+        return entry.replace(accompaniment=True) if entry.id in marked else entry
 
     return [
         file.replace(entries=tuple(kept(entry) for entry in file.entries if not (entry.yields and entry.id in taken)))
