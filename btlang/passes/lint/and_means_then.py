@@ -5,7 +5,7 @@ No pass of every compilation: only `btc check` looks for it, in files.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -34,23 +34,32 @@ def _found(mission: ast.Program, vocabulary: Lexicon, joint: str) -> Iterator[Di
     conjunctions = Conjunctions(definitions, vocabulary)
     for body in ast.bodies(mission):
         for node in ast.parents_first(body):
-            if type(node) is not ast.Chain or node.operator != "sequence" or is_list(node):
-                continue
-            for left, right in pairwise(in_order(node.items)):
-                if type(right) is ast.Remember or not _joined_by(joint, left.span, right.span):
-                    continue
-                if conjunctions.are_independent((left, right)):
-                    both = f"{_text(left)} {joint} {_text(right)} {vocabulary.word('in_parallel')}"
-                    place = Span(left.span.source, left.span.start, right.span.end)
-                    yield diagnostic("BT175", place, joint=joint, then=vocabulary.word("then"), both=both)
+            if type(node) is ast.Chain and node.operator == "sequence" and not is_list(node):
+                for items in _joined_by(joint, in_order(node.items)):
+                    if conjunctions.are_independent(items):
+                        yield _note(items, joint, vocabulary)
 
 
-def _joined_by(joint: str, left: Span, right: Span) -> bool:
-    gap = left.source.text[left.end : right.start]
-    return gap.strip(" \t\n,()").lower() == joint
+def _joined_by(joint: str, items: Sequence[ast.Ast]) -> Iterator[Sequence[ast.Ast]]:
+    """Neighbours that the word joins, with the commas before it."""
+    first = end = 0
+    for at, (left, right) in enumerate(pairwise(items), 1):
+        gap = left.span.source.text[left.span.end : right.span.start].strip(" \t,()").lower()
+        if gap not in (joint, "") or type(right) is ast.Remember:  # `and remember` meant `then` before
+            if end > first:
+                yield items[first:end]
+            first = at
+        elif gap == joint:
+            end = at + 1
+    if end > first:
+        yield items[first:end]
 
 
-def _text(node: ast.Ast) -> str:
-    """The words of a command, in brackets where more would join them."""
-    text = node.span.text
-    return f"({text})" if node.parts and not text.startswith("(") else text
+def _note(items: Sequence[ast.Ast], joint: str, vocabulary: Lexicon) -> Diagnostic:
+    first, last = items[0].span, items[-1].span
+    place = Span(first.source, first.start, last.end)
+    words = place.text
+    if items[-1].parts and last.text[:1] != "(":  # what would join more
+        words = f"{words[: last.start - first.start]}({last.text})"
+    both, then = f"{words} {vocabulary.word('in_parallel')}", vocabulary.word("then")
+    return diagnostic("BT175", place, joint=joint, then=then, both=both)
