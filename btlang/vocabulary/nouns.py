@@ -118,7 +118,7 @@ class Nouns:
         """All names that a noun such as `places` or `red cup` is for, and where it ends."""
         kind = find(self._types, text.words, at)
         found = self.longest(text, at, names, fits)
-        if kind is not None and fits(kind[0], ()) and (found is None or found[1] <= kind[1] and not found[0].parts):
+        if kind is not None and fits(kind[0], ()) and (found is None or (found[1] <= kind[1] and not found[0].parts)):
             return Description(kind[0], ALL), kind[1]
         return (found[0].replace(how=ALL), found[1]) if found is not None and found[0].parts else None
 

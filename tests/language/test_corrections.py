@@ -51,7 +51,7 @@ UNCHANGED = [
     "if bumped, wave, within 5 s, nod",
     "nod then wave) 3 times",
     "wave not battery is low",
-    "move foward and trun left",
+    "move foward and trun left at the same time",
     "go to the ktichen then frobnicate",
     'set counter to 3; say "{count}"',
     "move forward 2 mn then nod",

@@ -37,9 +37,9 @@ def test_a_pack_adds_a_phrase_and_a_type(tmp_path: Path) -> None:
 
 def test_a_pack_sets_what_a_connective_means(tmp_path: Path) -> None:
     pack = tmp_path / "referee.toml"
-    pack.write_text('[roles]\nand = ["while also"]\nthen = ["then", "and", "and then"]\n')
+    pack.write_text('[roles]\nand = ["and also"]\nthen = ["then", "and", "and then"]\n')
     assert plain(parse_tree("wave and nod", keywords=[str(pack)]).tree) == "Sequence\n  Wave\n  Nod"
-    assert plain(parse_tree("wave while also nod", keywords=[str(pack)]).tree) == "Parallel\n  Wave\n  Nod"
+    assert plain(parse_tree("wave and also nod", keywords=[str(pack)]).tree) == "Parallel\n  Wave\n  Nod"
 
 
 def test_an_invented_language_is_one_file(tmp_path: Path) -> None:
