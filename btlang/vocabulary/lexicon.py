@@ -272,7 +272,7 @@ class Lexicon:
         if unknown:
             return None
         verbs = tuple((verbs, tuple(map(self._introduced, roles))) for verbs, roles in entry.verbs)
-        said = [phrase for own, roles in verbs for phrase in phrases_of(own, roles)]
+        said = [phrase for own, roles in verbs for phrase in phrases_of(own, roles, self.values.role_words.particles)]
         made: Entry = entry.replace(
             slots=tuple(self._with_port_default(entry, slot) for slot in entry.slots),
             verbs=verbs,

@@ -82,6 +82,7 @@ class Values:
         self._group_starts: frozenset[str] | None = None
         self._kinds: dict[str, frozenset[str]] | None = None
         self._both = frozenset(language["roles"].get("both", ()))
+        self._joining = frozenset((*language["roles"].get("and", ()), *language["roles"].get("or", ())))
 
     def add_name(self, kind: str, words: str, name: str) -> None:
         """Lets the words stand for a name of a type."""
@@ -294,21 +295,33 @@ class Values:
                 yield meant.replace(how=ALL, parts=tuple(sorted((*some, *left_out[0])))), left_out[1]
 
     def _left_out(self, meant: Description, text: Words, at: int) -> tuple[Parts, int] | None:
-        """What stands behind `except` as what the things are not: `the blue one`, `the red cups`."""
-        at = self.exception(text, at)
-        if not at:
-            return None
+        """What stands behind `except` as what the things are not: `the blue one`, `Alice and Bob`."""
+        found: dict[str, list[str]] = {}
+        last = at = self.exception(text, at)
+        while at:
+            one = self._left_out_one(meant, text, at)
+            if one is None:
+                break
+            part, value, last = one
+            found.setdefault(part, []).append(value)
+            at = last + (text.words[last] == ",")
+            at += text.words[at] in self._joining
+            at = at if at > last else 0
+        parts = tuple((part, "; ".join(values)) for part, values in found.items())
+        return (parts, last) if found else None
+
+    def _left_out_one(self, meant: Description, text: Words, at: int) -> tuple[str, str, int] | None:
         kind = meant.type
         found = self.phrases.plural(text, at, self.names_tree, self._fitting(kind)) or self.choice(text, at, kind)
         parts = dict(found[0].parts) if found is not None else {}
-        named = find(self._names[meant.type], text.words, at)
+        named = find(self._names[kind], text.words, at)
         if named is not None and (found is None or named[1] >= found[1]):
-            return (("not_kind", named[0]),), named[1]
+            return "not_kind", named[0], named[1]
         if found is None or not parts.keys() <= {"color", "kind"}:
             return None
         if "color" in parts and parts.get("kind") in (None, dict(meant.parts).get("kind")):
-            return (("not_color", parts["color"]),), found[1]
-        return ((("not_kind", parts["kind"]),), found[1]) if parts.keys() == {"kind"} else None
+            return "not_color", parts["color"], found[1]
+        return ("not_kind", parts["kind"], found[1]) if parts.keys() == {"kind"} else None
 
     def members(self, choice: Choice) -> tuple[str, ...]:
         """The names of a set where what is known of the world decides; () where only the robot can tell."""

@@ -69,13 +69,19 @@ def canonical(verb: str, roles: Sequence[Role]) -> str:
     return " ".join(parts)
 
 
-def phrases_of(verbs: Sequence[str], roles: Sequence[Role]) -> list[str]:
-    """The patterns that say a frame in its own order: the first verb, then the others."""
+def phrases_of(verbs: Sequence[str], roles: Sequence[Role], particles: frozenset[str]) -> list[str]:
+    """The patterns that say a frame in its own order: the first verb, then the others; particles also behind the theme."""
     others = [verb for verb in verbs[1:] if " " not in verb]
     found = [canonical(verbs[0], roles)]
     if others:
         found.append(canonical("/".join(others), roles))
-    return found + [canonical(verb, roles) for verb in verbs[1:] if " " in verb]
+    found += [canonical(verb, roles) for verb in verbs[1:] if " " in verb]
+    theme = roles[0] if roles and roles[0].name == THEME else None
+    split = [parts_of(verb, particles) for verb in verbs] if theme is not None else []
+    for words, particle in split:
+        if theme is not None and particle:
+            found.append(canonical(f"{' '.join(words)} {{{theme.slot}}} {particle}", roles[1:]))
+    return found
 
 
 def parts_of(verb: str, particles: frozenset[str]) -> tuple[tuple[str, ...], str]:

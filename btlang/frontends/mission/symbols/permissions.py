@@ -23,7 +23,8 @@ class Permissions:
         self.problems: list[Diagnostic] = []
         self._allowing = _tree(vocabulary.roles["may"])
         self._staying = _tree(vocabulary.roles["or_stay"])
-        self._fronts = frozenset(word for role in ("if", "once", "then", "and") for word in _firsts(vocabulary, role))
+        self._asking = frozenset(word for role in ("if", "once") for word in _firsts(vocabulary, role))
+        self._fronts = self._asking | {word for role in ("then", "and") for word in _firsts(vocabulary, role)}
         if text.distinct.isdisjoint((*self._allowing, *self._staying)):
             return
         for line in text.lines:
@@ -37,7 +38,7 @@ class Permissions:
             allows, stays = find(self._allowing, words, at), find(self._staying, words, at)
             if allows is None and stays is None:
                 continue
-            begin = self._begin(text, first, at)
+            begin = first if text.words[first] in self._asking else self._begin(text, first, at)
             if begin == first and is_first:
                 continue  # `you may go to the lab` asks for it
             if stays is not None and allows is None and not self._offers(text, begin, last):
