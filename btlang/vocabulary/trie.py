@@ -203,7 +203,8 @@ def all_names(
     left_out: tuple[str, ...] = ()
     kind = meant.type
     last = context.values.exception(text, at)
-    if last and longest(root, text, at, context, lists=False) is None:  # `except if` is another word
+    other = longest(root, text, at, context, lists=False) if last else None
+    if last and (other is None or other.last <= last):  # `except if` is another word
         value = context.read(kind, text, last)
         if value is None:
             return SlotValue(name, kind, "", first, _end_of_unknown(root, text, last, context))
