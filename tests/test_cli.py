@@ -290,17 +290,14 @@ def test_a_log_on_a_full_disk_does_not_hide_how_the_mission_ended(
 
 
 def test_certain_corrections_are_written(btc: Screen, tmp_path: Path) -> None:
-    """What leaves a choice stays as it is, until `--then` chooses."""
+    """What leaves a choice stays as it is."""
     file = tmp_path / "mission.txt"
     file.write_text("go to the kitchenn and look around\nwav then nod\nif bumped, nod. Wave. Otherwise say hi\n")
     assert btc("check", "--fix", str(file)) == 0
     assert btc.out == f"Corrected {file}: 2 changes.\nNo errors found.\n"
     mended = "go to the kitchen and look around\nwave then nod\nif bumped, nod. Wave. Otherwise say hi\n"
     assert file.read_text() == mended
-    assert "BT069" in btc.err
     assert "BT050" in btc.err
-    assert btc("check", "--then", str(file)) == 0
-    assert file.read_text() == mended.replace("kitchen and", "kitchen then")
     assert btc("check", "--fix", "-c", "go to the lbby") == 0
     assert btc.out == "go to the lobby\nNo problems found.\n"
     assert btc("check", "--fix", "-c", "frobnicate") == 2
@@ -310,9 +307,9 @@ def test_certain_corrections_are_written(btc: Screen, tmp_path: Path) -> None:
 
 
 def test_equal_warnings_are_shown_once(btc: Screen) -> None:
-    text = "\n".join(["go to the lab and wave", *["go to the hall and wave"] * 12])
+    text = "\n".join(["wave then nod twice", *["nod then wave twice"] * 12])
     assert btc("check", "-c", text) == 0
-    assert btc.err.count("BT069:") == 2
+    assert btc.err.count("BT050:") == 2
     assert "  And 11 more: lines 3, 4, 5, 6, 7, 8, 9, 10, ...\n" in btc.err
     assert btc("check", "--format", "json", "-c", text) == 0
-    assert btc.out.count('"BT069"') == 13
+    assert btc.out.count('"BT050"') == 13
