@@ -91,7 +91,7 @@ ROUNDS = ["0 work", "1 work ended", "1 work", "2 work ended"]
         ("wait until it is late within 1 s", [], FAILURE, 1),
         ("check it is late", [], FAILURE, 0),
         ("do nothing or fail", [], SUCCESS, 0),
-        ("both is work and play at the same time\nboth", ["0 work", "0 play", "1 work ended", "1 play ended"], SUCCESS, 1),
+        ("p is work and play at the same time\np", ["0 work", "0 play", "1 work ended", "1 play ended"], SUCCESS, 1),
         ("repeat 2 times: work if it is late", [], SUCCESS, 0.1),
     ],
 )  # fmt: skip
