@@ -30,7 +30,6 @@ WORDS = world_vocabulary()
 UNKNOWABLE = {
     "BT044": "`ball` alone is a thing, behind `count` a kind of things",
     "BT068": "a condition behind `when` is checked once",
-    "BT069": "`and` on the way mostly means `then`",
     "BT171": "what follows `as soon as` waits, too",
     "BT172": "of several statements `start over` repeats all",
 }

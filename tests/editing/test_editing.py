@@ -165,7 +165,7 @@ def test_messages_have_offsets_everywhere() -> None:
     [message] = document(Source(text), SHIPPED)["messages"]
     assert text[message["start"] : message["end"]] == message["words"] == "move forwarrd 1 m"
     assert text[message["fix"]["start"] : message["fix"]["end"]] == "move forwarrd"
-    warned = document(Source("go to the lab and wave"), SHIPPED)["messages"]
+    warned = document(Source("when bumped, wave"), SHIPPED)["messages"]
     assert warned[0]["readings"]
     assert all("start" in each for each in (*warned[0]["readings"], *warned[0]["notes"]))
 
