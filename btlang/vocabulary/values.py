@@ -279,7 +279,7 @@ class Values:
             elif (number := self.number(text, at)) is not None and number[0] >= 1 and number[0] == int(number[0]):
                 count, start = str(int(number[0])), number[1]
             found = self.phrases.plural(text, start, self.names_tree, self._fitting(kind))
-            if found is None or not (count or is_bare or text.words[at] in self.group_starts):
+            if found is None or not (count or is_bare or self._is_plural(text, at, found[1], kind)):
                 return
         meant, end = found
         parts: Parts = (*meant.parts, *([(COUNT, count)] if count else []))
@@ -293,6 +293,11 @@ class Values:
             left_out = self._left_out(meant, text, last)
             if left_out is not None:
                 yield meant.replace(how=ALL, parts=tuple(sorted((*some, *left_out[0])))), left_out[1]
+
+    def _is_plural(self, text: Words, at: int, end: int, kind: str) -> bool:
+        """Whether words that describe things are in the plural alone: `cups`, not `cup` or `sheep`."""
+        one = self.choice(text, at, kind)
+        return text.words[at] in self.group_starts and (one is None or one[1] < end)
 
     def _left_out(self, meant: Description, text: Words, at: int) -> tuple[Parts, int] | None:
         """What stands behind `except` as what the things are not: `the blue one`, `Alice and Bob`."""
