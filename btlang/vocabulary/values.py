@@ -14,8 +14,8 @@ from btlang.text.words import Orthography, Words, split
 from btlang.vocabulary.descriptions import NAME, Modifiers
 from btlang.vocabulary.nouns import Description, Features, Noun, noun_phrases
 from btlang.vocabulary.references import ALL, COUNT, DENIED, RELATIONS, Choice, Parts, choice_of
+from btlang.vocabulary.role_words import role_words
 from btlang.vocabulary.value_type import PLACE, ValueType, format_number, with_unit
-from btlang.vocabulary.verbs import role_words
 from btlang.vocabulary.word_tree import END, WordTree, find, insert
 
 TYPE_CHECKING = False

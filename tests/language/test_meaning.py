@@ -23,7 +23,7 @@ def rows() -> list[tuple[str, str]]:
 
 def in_one_line(mission: btlang.Mission) -> str:
     """The tree with a mark for each level."""
-    return " | ".join(plain(mission.tree).replace("  ", "›").splitlines())
+    return " | ".join(plain(mission.tree).replace("  ", ">").splitlines())
 
 
 @pytest.mark.parametrize(("sentence", "tree"), rows(), ids=lambda text: text)
