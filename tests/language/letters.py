@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 from btlang.frontends.mission.reader import read_mission
 from btlang.text.source import Source
@@ -22,7 +23,11 @@ ENTRIES = (
 )
 
 
-MIXED = {"w": {"resources": ("voice",)}, "x": {"accompaniment": False}, "y": {"resources": ("base",)}}
+MIXED: dict[str, dict[str, Any]] = {
+    "w": {"resources": ("voice",)},
+    "x": {"accompaniment": False},
+    "y": {"resources": ("base",)},
+}
 """What is otherwise where `and` depends on the commands: w speaks, x is a task, y moves the robot."""
 
 
