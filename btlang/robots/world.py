@@ -104,7 +104,8 @@ class Person(Thing):
     `walks` is the route, which is walked over and over where `again` is true; who `wanders` walks from place to place.
     `answers` go by a word of the question, "*" by any, and take `answers_after` seconds. `follows` is from 0 to 1, how
     well somebody keeps up when guided: 1 always. What he or she `refuses` isn't taken from the robot. `visits` say when
-    somebody comes in place of `comes` and `leaves`; the `kind` may be "guest"; what somebody `asks` is asked now and then near the robot.
+    somebody comes in place of `comes` and `leaves`; the `kind` may be "guest"; what somebody `asks` is
+    asked now and then near the robot.
     """
 
     comes: float = 0.0

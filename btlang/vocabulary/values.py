@@ -200,7 +200,7 @@ class Values:
             if wanted not in ("", kind):
                 return False
             of = [value for name, value in parts if name == "kind"]
-            return not of or kind in self._types_of.get(of[0], (kind,))
+            return not of or kind in self._types_of.get(of[0], ("object",))
 
         return fits
 

@@ -43,7 +43,8 @@ UNCHANGED = [
     "go to the document then nod",
     "wave at Rob then nod",
     "go to lab2 then nod",
-    "bring the cup then nod",
+    "bring the cap then nod",
+    "nod o wave",
     "move forward 2 feat then nod",
     "wave within 5 parsecs",
     "say hello dear never wave",
@@ -60,7 +61,7 @@ UNCHANGED = [
 
 CORRECTED = [
     ("go t the lab", "go to the lab"),
-    ("nod o wave", "nod or wave"),
+    ("nod orr wave", "nod or wave"),
     ("wave a nd nod", "wave a and nod"),
     ("if anbody is near, wave", "if anybody is near, wave"),
     ("if nbody is near, wave", "if nobody is near, wave"),
