@@ -223,7 +223,7 @@ def test_all_of_the_palette_can_be_put_in(world: str | None) -> None:
         for item in topic["items"]:
             before = text + ("check " if item["sort"] == "condition" else "")
             words.mission(Source(before + item["insert"]))
-    going = next(item for topic in others for item in topic["items"] if item["words"] == "go to {place}")
+    going = next(item for topic in others for item in topic["items"] if item["words"].startswith("go to {place}"))
     assert (going["insert"], going["sort"]) == ("go to barn" if world else "go to the kitchen", "action")
 
 
