@@ -29,7 +29,9 @@ def go_to(
 ) -> Steps:
     """Drives to a place and faces as the place says, or to a point; past the places of `via` (`hall; lobby`) first."""
     steps = travel(robot, place) if place is not None else _go_to_point(robot, x, y, facing)
-    yield from paced(robot, manner, _past(robot, [name.strip() for name in (via or "").split(";") if name.strip()], steps))
+    yield from paced(
+        robot, manner, _past(robot, [name.strip() for name in (via or "").split(";") if name.strip()], steps)
+    )
 
 
 def _past(robot: Navigation, places: list[str], steps: Steps) -> Steps:

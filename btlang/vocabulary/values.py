@@ -1,4 +1,4 @@
-"""Values in slots: numbers in figures and words, units, and names from a list. `reading_context.py` has the others.
+"""Values in slots: names, described things and text. `measures.py` has numbers, `reading_context.py` the others.
 
 A value becomes the text of a port, in the unit whose factor is 1: `half a meter` is "0.5", `two minutes` is "120".
 """
@@ -12,33 +12,26 @@ from marshal import dumps, loads  # a copy of a trie, at a tenth of the time tha
 from btlang.text.source import Source
 from btlang.text.words import Orthography, Words, split
 from btlang.vocabulary.descriptions import NAME, Modifiers
+from btlang.vocabulary.measures import Measures, too_small
 from btlang.vocabulary.nouns import Description, Features, Noun, noun_phrases
 from btlang.vocabulary.references import ALL, COUNT, DENIED, RELATIONS, Choice, Parts, choice_of
 from btlang.vocabulary.role_words import role_words
-from btlang.vocabulary.value_type import PLACE, ValueType, format_number, with_unit
+from btlang.vocabulary.value_type import PLACE, ValueType, format_number
 from btlang.vocabulary.word_tree import END, WordTree, find, insert
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_LARGEST = 1e12  # beyond it no quantity of a robot makes sense, and sums stay exact
-_MOST_NUMBER_WORDS = 12
-_FARTHEST = 1e6  # metres, as in a world file
 
-
-class Values:
+class Values(Measures):
     """Reads values at a place in a text. `types` by name; `language` holds the word tables of the language.
 
     Nothing of it changes once the names are added, so all missions of a process share it.
     """
 
     def __init__(self, types: Mapping[str, ValueType], language: Mapping[str, Any], nouns: Iterable[Noun] = ()) -> None:
-        self.types = dict(types)
-        self._numbers: Mapping[str, float] = language["numbers"]
-        self._multipliers: Mapping[str, float] = language["multipliers"]
-        self._joiner = frozenset(language["unit_joiner"])
-        self._one_each = frozenset(language["one_each"])
+        super().__init__(types, language)
         self._orthography = Orthography(frozenset(language["articles"]))
         # words that an article before them makes no text: `print a then wave`
         self._connectives = frozenset(phrase for phrases in language["roles"].values() for phrase in phrases)
@@ -47,23 +40,11 @@ class Values:
         """The first words of what stands between the values of a list."""
         self.pronouns: Mapping[str, Sequence[str]] = language["pronouns"]
         """Words that stand for the latest value of a type, each with the types that it may be of."""
-        self._fractions: WordTree = {}
-        for phrase, value in language["fractions"].items():
-            insert(self._fractions, phrase.split(), value)
-        self._times: WordTree = {}
-        for phrase, value in language["times"].items():
-            insert(self._times, phrase.split(), value)
-        self._number_starts = frozenset((*self._numbers, *self._multipliers, *self._fractions))
-        self._units: WordTree = {}
         self._names: dict[str, WordTree] = {}
         self._listed: dict[str, dict[str, None]] = {}
         for kind in types.values():
-            for unit in kind.units:
-                for word in unit.words:
-                    insert(self._units, word.split(), (kind.name, unit))
             if kind.kind == "names":
                 self._names[kind.name] = {}
-        self._facing = [phrase.split() for phrase in language["roles"].get("facing", ())]
         self.phrases = noun_phrases(self._names, language, nouns)
         self.modifiers = Modifiers(language)
         self.role_words = role_words(language)
@@ -152,12 +133,6 @@ class Values:
             self._times,
             *({word: {} for word in table} for table in (self._numbers, self._multipliers)),
         ]
-
-    def is_number(self, words: Sequence[str]) -> bool:
-        """Whether the words are a number, and nothing else."""
-        text = split(Source(" ".join(words)), Orthography())
-        number = self.number(text, 0)
-        return number is not None and number[1] == len(text.words) - 2
 
     def names(self, kind: str) -> list[str]:
         """The names that a slot of the type takes, as they are in a tree."""
@@ -370,7 +345,7 @@ class Values:
         value_type = self.types[kind]
         if value_type.kind == "quantity":
             quantity = self.quantity(text, at)
-            if quantity is None or quantity[1] != kind or _too_small(quantity[0], value_type):
+            if quantity is None or quantity[1] != kind or too_small(quantity[0], value_type):
                 return None
             return format_number(quantity[0]), quantity[2]
         if value_type.kind == "number":
@@ -386,140 +361,6 @@ class Values:
         if value_type.kind == "time":
             return self.time_of_day(text, at)
         return self._text(text, at)
-
-    def time_of_day(self, text: Words, at: int) -> tuple[str, int] | None:
-        """`6 pm`, `7:30 am`, `18:30` or `noon` as a port text of 24 hours (18:30), and where it ends."""
-        word = text.words[at]
-        named = find(self._times, text.words, at)
-        if named is not None and isinstance(named[0], str):
-            return named
-        if ":" in word and word[0].isdecimal():
-            hours, _, minutes = word.partition(":")
-            if len(hours) > 2 or len(minutes) != 2 or int(minutes) > 59:
-                return None
-            number: tuple[float, int] | None = float(hours), at + 1
-        else:
-            minutes, number = "", self.number(text, at)
-        if number is None:
-            return None
-        hour, end = number
-        half = self.half_of_day(text, end)
-        if half is not None:
-            hour, end = (hour % 12 + half[0] if 1 <= hour <= 12 else -1), half[1]
-        if hour not in range(24) or not (minutes or half):
-            return None
-        return f"{int(hour):02}:{int(minutes or 0):02}", end
-
-    def half_of_day(self, text: Words, at: int) -> tuple[int, int] | None:
-        """The hours that a word such as `pm` behind a number adds, and where it ends."""
-        found = find(self._times, text.words, at)
-        return found if found is not None and isinstance(found[0], int) else None
-
-    @property
-    def halves_of_day(self) -> list[str]:
-        """The words for which `half_of_day` looks, where they are one word."""
-        return [word for word, node in self._times.items() if isinstance(node.get(END), int)]
-
-    def quantity(self, text: Words, at: int) -> tuple[float, str, int] | None:
-        """A number with a unit: its value in the base unit, the name of the type, and where it ends."""
-        number = self.number(text, at)
-        if number is None:
-            if at not in text.articles and not (at and text.words[at - 1] in self._one_each):
-                return None
-            number = 1.0, at  # "a minute", "every hour"
-        value, after = number
-        if text.words[after] in self._joiner:
-            after += 1
-        unit = find(self._units, text.words, after)
-        if unit is None:
-            return None
-        (kind, unit_of), end = unit
-        half = find(self._fractions, text.words, end)  # "a minute and a half"
-        if half is not None and half[1] > end + 1 and not find(self._units, text.words, half[1]):
-            value, end = value + half[0], half[1]
-        amount = value * unit_of.numerator / unit_of.denominator
-        return (amount, kind, end) if abs(amount) <= _LARGEST else None
-
-    def number(self, text: Words, at: int) -> tuple[float, int] | None:
-        """A number in figures or words, fractions included, and where it ends."""
-        words = text.words
-        word = words[at]
-        if not (word in self._number_starts or word[0].isdecimal() or "-" in word):
-            return None  # as nearly always
-        value, start = self._whole_number(words, at)
-        fraction = find(self._fractions, words, start)
-        if fraction is not None:
-            value, start = (value or 0) + fraction[0], fraction[1]
-        return None if value is None or abs(value) > _LARGEST else (value, start)
-
-    def _whole_number(self, words: Sequence[str], at: int) -> tuple[float | None, int]:
-        word = words[at]
-        if word[0].isdecimal() or (word[0] == "-" and word[1:2].isdecimal()):
-            if ":" in word:
-                return None, at
-            value = float(word)
-            return (value, at + 1) if abs(value) <= _LARGEST else (None, at)
-        total: float | None = None
-        last = at + _MOST_NUMBER_WORDS
-        while True:
-            pieces = words[at].split("-")  # "twenty-five"
-            if at == last or not all(p in self._numbers or p in self._multipliers for p in pieces):
-                return total, at
-            for piece in pieces:
-                if piece in self._multipliers:
-                    total = (total if total is not None else 1) * self._multipliers[piece]
-                else:
-                    total = (total or 0) + self._numbers[piece]
-            at += 1
-
-    def point(self, text: Words, at: int) -> tuple[float, float, float | None, int] | None:
-        """`(x, y)` in metres, with or without a direction in degrees that it faces, and where it ends."""
-        numbers: list[float] = []
-        for mark in ("(", ","):
-            number = self._metres(text, at + 1) if text.words[at] == mark else None
-            if number is None or abs(number[0]) > _FARTHEST:
-                return None
-            numbers.append(number[0])
-            at = number[1]
-        if text.words[at] != ")":
-            return None
-        at += 1
-        for words in self._facing:
-            last = at + len(words)
-            angle = self.quantity(text, last) if text.words[at:last] == words else None
-            if angle is not None and angle[1] == "angle":
-                return numbers[0], numbers[1], angle[0], angle[2]
-        return numbers[0], numbers[1], None, at
-
-    def point_text(self, x: str, y: str, facing: str | None) -> str:
-        """A point as it is written."""
-        where = f"({x}, {y})"
-        if facing is None:
-            return where
-        return f"{where} {' '.join(self._facing[0])} {with_unit(facing, self.types['angle'].units[0].words[0])}"
-
-    def _metres(self, text: Words, at: int) -> tuple[float, int] | None:
-        quantity = self.quantity(text, at)
-        if quantity is not None:
-            return (quantity[0], quantity[2]) if quantity[1] == "length" else None
-        return self.number(text, at)
-
-    def _point_text(self, text: Words, at: int) -> tuple[str, int] | None:
-        point = self.point(text, at)
-        if point is None:
-            return None
-        x, y, facing, end = point
-        angle = None if facing is None else format_number(facing)
-        return self.point_text(format_number(x), format_number(y), angle), end
-
-    def _plain_number(self, value_type: ValueType, text: Words, at: int) -> tuple[str, int] | None:
-        number = self.number(text, at)
-        if number is None or find(self._units, text.words, number[1]):
-            return None
-        value, end = number
-        if (value_type.whole and value != int(value)) or _too_small(value, value_type):
-            return None
-        return format_number(value), end
 
     def _text(self, text: Words, at: int) -> tuple[str, int] | None:
         word = text.words[at]
@@ -546,7 +387,3 @@ def key_of(words: Iterable[str]) -> str:
     """
     key = re.sub(r"\W", "_", "_".join(words))
     return key if key != "name" else "name_"
-
-
-def _too_small(value: float, value_type: ValueType) -> bool:
-    return value_type.least is not None and value < value_type.least
