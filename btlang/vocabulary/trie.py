@@ -184,7 +184,8 @@ def _sets(root: TrieNode, text: Words, at: int, context: ReadingContext, name: s
     ways = [(meant, end) for meant, end in context.values.groups(text, at, kind) if meant.type == kind]
     found: list[SlotValue] = []
     for meant, end in ways:
-        group = Choice(ALL, kind, context.keys.get(kind, kind), meant.parts).text
+        choice = Choice(ALL, kind, context.keys.get(kind, kind), meant.parts)
+        group = "" if context.values.members(choice) == () else choice.text  # nothing is left of it
         found.append(SlotValue(name, kind, group, at, end, group=group))
     if ways and context.choice(text, at, kind) is not None:
         listed = all_names(root, ways[0][0], text, at, ways[0][1], context, name)

@@ -303,16 +303,16 @@ class Values(Measures):
             return "not_color", parts["color"], found[1]
         return ("not_kind", parts["kind"], found[1]) if parts.keys() == {"kind"} else None
 
-    def members(self, choice: Choice) -> tuple[str, ...]:
-        """The names of a set where what is known of the world decides; () where only the robot can tell."""
+    def members(self, choice: Choice) -> tuple[str, ...] | None:
+        """The names of a set where what is known of the world decides; None where only the robot can tell."""
         parts = dict(choice.parts)
         denied = {part: parts.pop(part).split("; ") for part in DENIED if part in parts}
-        if COUNT in parts or parts.keys() & RELATIONS.keys():
-            return ()
+        if COUNT in parts or parts.keys() & RELATIONS.keys() or choice.type not in self._features:
+            return None
         names = self.described(Description(choice.type, ALL, tuple(parts.items())))
         likes = dict(self._features.get(choice.type, ()))
-        if denied.get("not_color") and not all("color" in dict(likes.get(name, ())) for name in names):
-            return ()
+        if not names or (denied.get("not_color") and not all("color" in dict(likes.get(name, ())) for name in names)):
+            return None
 
         def is_denied(name: str) -> bool:
             like = dict(likes.get(name, ()))

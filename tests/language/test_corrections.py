@@ -61,7 +61,7 @@ UNCHANGED = [
 
 CORRECTED = [
     ("go t the lab", "go to the lab"),
-    ("nod orr wave", "nod or wave"),
+    ("nod oor wave", "nod or wave"),
     ("wave a nd nod", "wave a and nod"),
     ("if anbody is near, wave", "if anybody is near, wave"),
     ("if nbody is near, wave", "if nobody is near, wave"),

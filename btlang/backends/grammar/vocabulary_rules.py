@@ -213,7 +213,8 @@ class _VocabularyRules:
     def _further(self, leaf: _Leaf) -> Part:
         """The shortest way to say a command, with the ports that it leaves out."""
         form = min(leaf.forms, key=len)
-        behind = {other[len(form)] for other in leaf.forms if other[: len(form)] == form != other}
+        known = (other for beside in self._actions if beside.entry is leaf.entry for other in beside.forms)
+        behind = {other[len(form)] for other in known if other[: len(form)] == form != other}
         if not behind.isdisjoint(self._vocabulary.roles["with"]):  # `greet Bob with "hello"`
             return NOTHING
         return self._with_ports(self._said(form, leaf), leaf, _slots_of(form))
@@ -290,7 +291,7 @@ class _VocabularyRules:
         known -= {str(form[0]) for leaf in self._conditions for form in leaf.forms}  # `if charging`
         found = []
         for leaf in leaves:
-            for form in leaf.forms:
+            for form in () if leaf.entry.constrains else leaf.forms:  # `while avoiding the lab` constrains
                 verb, *rest = form
                 if isinstance(verb, str):
                     ways = {

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.text.words import END_OF_STATEMENT, Words
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import WordTree, find, insert
 
 _STOPS = frozenset((END_OF_STATEMENT, ";"))
@@ -21,6 +22,7 @@ class Permissions:
     def __init__(self, text: Words, vocabulary: Lexicon) -> None:
         self.ends: dict[int, int] = {}
         self.problems: list[Diagnostic] = []
+        self._trie, self._context = vocabulary.trie, vocabulary.context
         self._allowing = _tree(vocabulary.roles["may"])
         self._staying = _tree(vocabulary.roles["or_stay"])
         self._asking = frozenset(word for role in ("if", "once") for word in _firsts(vocabulary, role))
@@ -44,6 +46,9 @@ class Permissions:
                 continue
             if at > first and words[at - 1] != "," and words[at - 1] not in self._joining and stays is None:
                 continue  # `if you can see somebody`, `until you can`
+            said = longest(self._trie, text, at, self._context)
+            if said is not None and said.meaning.entry is not None:
+                continue  # `you may enter the reading corner`
             begin = first if text.words[first] in self._asking else self._begin(text, first, at)
             if begin == first and is_first:
                 continue  # `you may go to the lab` asks for it
