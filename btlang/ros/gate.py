@@ -55,7 +55,9 @@ class Gate:
             return _NOT_FINITE
         if hypot(*speeds[:2]) > FASTEST or abs(speeds[2]) > FASTEST_TURN:
             return f"says that the robot moves at {hypot(*speeds[:2]):.3g} m/s and turns at {speeds[2]:.3g} rad/s"
-        return self._stamp(message) or self._jump(pose.position.x, pose.position.y, seconds_of(message.header.stamp))
+        jump = self._jump(pose.position.x, pose.position.y, seconds_of(message.header.stamp))
+        stamp = self._stamp(message)
+        return jump or stamp
 
     def _stamp(self, message: Any) -> str:
         return self._stamps.fault(seconds_of(message.header.stamp), time.monotonic(), self._lags)

@@ -43,7 +43,7 @@ class Cause(Enum):
     NONE, OBSTACLE, ZONE, SENSOR, ODOMETRY, PERSON = range(6)
 
 
-_PATIENCE = {Cause.NONE: inf, Cause.OBSTACLE: 1.0, Cause.ZONE: 1.0, Cause.SENSOR: 1.5, Cause.ODOMETRY: 0.0}
+_PATIENCE = {Cause.NONE: inf, Cause.OBSTACLE: 1.0, Cause.ZONE: 1.0, Cause.SENSOR: 2.0, Cause.ODOMETRY: 0.0}
 """Seconds after which a drive that stands for it has failed; for people it has the patience of the body."""
 
 
