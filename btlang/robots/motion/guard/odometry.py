@@ -15,7 +15,7 @@ _EACH = 0.1  # seconds between two comparisons
 _SHARE = 0.5  # of what was commanded: both disagree if they differ by more
 _SLACK, _TURN_SLACK = 0.03, 12.0  # metres and degrees by which they may differ besides
 _AHEAD = 4.0  # times the slack by which more may be measured: robots roll on
-_SETS_OFF = 1.1  # seconds in which a robot has to set off
+_SETS_OFF, _STOPPED = 1.1, 0.65  # seconds without motion until a robot hasn't set off, and isn't under way any more
 _NOTHING = 0.05  # of what is commanded: less is standing still
 _STEP = 0.2  # seconds that a step counts at most: a robot brakes by itself before a command that comes late
 _KEPT = 100  # commands
@@ -36,6 +36,7 @@ class OdometryCheck:
         self._measured = self._turned = 0.0
         self._pose: Pose | None = None
         self._compared = self._moved_at = 0.0
+        self._under_way = False
         self.rolled = 0.0
         """Metres that the odometry has shown in sum, in whatever direction."""
 
@@ -54,6 +55,7 @@ class OdometryCheck:
     def rest(self) -> None:
         """The base is commanded to stand, so nothing is compared: somebody else may move it."""
         self._samples.clear()
+        self._under_way = False
 
     def forget(self) -> None:
         """Compares nothing that was before: somebody else moved the robot, or will."""
@@ -82,9 +84,10 @@ class OdometryCheck:
             found, shown = _disagreement(measured, [way for way, _ in ways], _SLACK), _DROVE
         if found is None:
             return ""
-        if stamp - self._moved_at <= _STANDING:
+        stood = stamp - self._moved_at
+        if stood <= _STANDING:
             return shown.format(*found)
-        return STANDS if stamp - self._moved_at > _SETS_OFF else ""
+        return STANDS if stood > (_STOPPED if self._under_way else _SETS_OFF) else ""
 
     def _add(self, pose: Pose, stamp: float) -> None:
         before, self._pose = self._pose, pose
@@ -98,7 +101,7 @@ class OdometryCheck:
             self.rolled += way
             passed = stamp - self._samples[-1][0] if self._samples else 0.0
             if way > _NOTHING * abs(self._speeds[0]) * passed or abs(turned) > _NOTHING * abs(self._speeds[1]) * passed:
-                self._moved_at = stamp
+                self._moved_at, self._under_way = stamp, True
         self._samples.append((stamp, self._measured, self._turned))
         while len(self._samples) > 1 and self._samples[1][0] <= stamp - _WINDOW:
             self._samples.popleft()
