@@ -63,7 +63,9 @@ class DeviceSensors:
 
             from btlang.robots.scan import around
 
-            ranges = np.asarray(reading.ranges, dtype=np.float64)
+            ranges = np.array(reading.ranges, dtype=np.float64)
+            ranges[ranges == -inf] = 0.0  # too close to be measured
+            ranges[ranges < 0.0] = np.nan
             angles = np.radians(reading.start + reading.step * np.arange(len(ranges)))
             found = around(ranges, angles, self._scanner.pose if self._scanner.frame else CENTRE, abs(reading.step))
             room = -self._radius if np.isnan(found).any() else float(found.min(initial=inf)) - self._radius

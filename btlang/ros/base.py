@@ -189,7 +189,7 @@ class RosBase:
             self.adapt()
         stamp = self._node.get_clock().now().to_msg()
         linear, angular = self._sent
-        message = velocity(_TYPES[self._type], linear, radians(angular), stamp, self._fastest[0])
+        message = velocity(_TYPES[self._type], linear, radians(angular), stamp)
         if self._publisher is not None:
             self._publisher.publish(message)
             self._published = True

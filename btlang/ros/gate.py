@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import time
-from math import hypot, isfinite, sqrt
+from math import degrees, hypot, isfinite, sqrt
 
 import numpy as np
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
+from btlang.robots.motion.guard.guard import FASTEST, FASTEST_TURN
 from btlang.robots.motion.guard.stamps import StampCheck
-from btlang.ros.commands import FASTEST, FASTEST_TURN
 from btlang.ros.scans import echoes
 from btlang.ros.times import seconds_of
 
@@ -53,7 +53,7 @@ class Gate:
         speeds = twist.linear.x, twist.linear.y, twist.angular.z
         if not all(map(isfinite, speeds)):
             return _NOT_FINITE
-        if hypot(*speeds[:2]) > FASTEST or abs(speeds[2]) > FASTEST_TURN:
+        if hypot(*speeds[:2]) > FASTEST or abs(degrees(speeds[2])) > FASTEST_TURN:
             return f"says that the robot moves at {hypot(*speeds[:2]):.3g} m/s and turns at {speeds[2]:.3g} rad/s"
         jump = self._jump(pose.position.x, pose.position.y, seconds_of(message.header.stamp))
         stamp = self._stamp(message)

@@ -19,12 +19,14 @@ from tests.lies.lying_driver import SCENES, WheelsOf, commanded
 from tests.lies.scene import Result, Scene
 
 EMPTY = "[start]\nx = 0\ny = 0\n"
-_WHEELS, _SONAR, _BUMPER, _JOINT = 1, 2, 3, 4
+_WHEELS, _SONAR, _BUMPER, _JOINT, _TILT = 1, 2, 3, 4, 5
+JOINTS = {"head turn": "joint", "head tilt": "joint"}
 CHANNELS = (
     Channel(_WHEELS, "drive", 0.02),
     Channel(_SONAR, "range", 0.05),
     Channel(_BUMPER, "button", 0.02),
     Channel(_JOINT, "joint", 0.02),
+    Channel(_TILT, "joint", 0.02),
 )
 
 
@@ -38,8 +40,9 @@ class LyingBoard(SimulatedBoard):
     def turn(self, now: float) -> None:
         """See BoardModel."""
         scene, passed = self._scene, now - self._turned
-        for command in self.commands.values():
-            commanded(scene, command)
+        for number, command in self.commands.items():
+            if number != _TILT:
+                commanded(scene, command)
         super().turn(now)
         scene.step(passed)
         odometry, distance, pressed, joint = scene.odometry(0.0), scene.sonar(), scene.bumper(), scene.joint()
@@ -63,14 +66,14 @@ def device(name: str, kind: str, driver: str, port: str, options: str = "") -> s
 
 def robot_over_driver(folder: Path, port: str) -> str:
     """A robot file whose devices are those of a scene."""
-    kinds = {"base": "drive", "lidar": "lidar", "sonar": "range", "bumper": "button", "head turn": "joint"}
+    kinds = {"base": "drive", "lidar": "lidar", "sonar": "range", "bumper": "button", **JOINTS}
     made = (device(name, kind, "tests.lies.lying_driver:LyingDriver", port) for name, kind in kinds.items())
     return robot_file(folder, "".join(made))
 
 
 def robot_over_board(folder: Path, port: str) -> str:
     """A robot file whose devices are those of a lying board."""
-    channels = {"base": "drive", "sonar": "range", "bumper": "button", "head turn": "joint"}
+    channels = {"base": "drive", "sonar": "range", "bumper": "button", **JOINTS}
     made = (
         device(name, kind, "serial-board", port, f"options = {{ channel = {number} }}\n")
         for number, (name, kind) in enumerate(channels.items(), 1)
@@ -101,6 +104,7 @@ def run(folder: Path, mission: str, lies: Sequence[Lie], *, board: bool = False,
 def _ran(robot: str, mission: str, scene: Scene) -> Result:
     with btlang.Session(connector(robot, "devices"), world=Source(EMPTY, "empty.toml")) as session:
         run = session.run(btlang.parse_tree(mission), time_limit=20.0)
+        scene.wait_for_rest()
         result = scene.result
     outcome = run.outcome
     assert outcome is not None

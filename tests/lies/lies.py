@@ -60,10 +60,11 @@ Tell = Callable[[Any, Telling], Any]
 
 @dataclass(frozen=True)
 class Lie:
-    """`outcome` says what it asks of the robot: to "stop" at once, to stay clear of the "wall" although it may be hidden
-    or to stop before it early, to go on as if nothing was ("fine"), or to "fail" without moving on.
+    """`outcome` says what it asks of the robot: to "stop" at once, to stay clear of the "wall" although it may be
+    hidden or to stop before it early, to go on as if nothing was ("fine"), or to "fail" without moving on.
 
-    `words` is a pattern of the reason that has to be given; `platforms` are those that can tell it.
+    `words` is a pattern of the reason that has to be given; `platforms` are those that can tell it. A robot that has to
+    stop is at rest within `way` metres and so many `seconds`.
     """
 
     name: str
@@ -73,6 +74,8 @@ class Lie:
     words: str
     platforms: Sequence[str] = ALL
     strength: float = 1.0
+    way: float = 0.5
+    seconds: float = 1.0
 
 
 def _lag(said: Any, telling: Telling) -> Any:
@@ -181,11 +184,19 @@ STAMPED = (ROS,)
 _DISAGREES = r"odom\w* shows -?\d+\.\d\d m where \d+\.\d\d m were commanded"
 _STANDS = r"odom\w* shows that the robot doesn't move"
 _BLIND = r"scanner: no valid beam looks ahead"
-_SEEN = r"scanner: 0\.0\d m ahead"
+SEEN = r"(scanner|sonar): 0\.0\d m ahead"
 LIES: tuple[Lie, ...] = (
     # Odometry
     Lie("odometry lags by 1.5 s", ODOMETRY, _lag, "stop", f"{_DISAGREES}|is 1.\\d s old|{_STANDS}", ALL, 1.5),
-    Lie("odometry lags by 1.5 s with fresh stamps", ODOMETRY, _lag_fresh, "stop", f"{_DISAGREES}|{_STANDS}", STAMPED, 1.5),
+    Lie(
+        "odometry lags by 1.5 s with fresh stamps",
+        ODOMETRY,
+        _lag_fresh,
+        "stop",
+        f"{_DISAGREES}|{_STANDS}",
+        STAMPED,
+        1.5,
+    ),
     Lie("odometry with the wrong sign", ODOMETRY, _scaled, "stop", _DISAGREES, ALL, -1.0),
     Lie("odometry sideways", ODOMETRY, _sideways, "stop", _DISAGREES, (SIMULATED, ROS)),
     Lie("a tenth of the way", ODOMETRY, _scaled, "stop", _DISAGREES, ALL, 0.1),
@@ -199,11 +210,30 @@ LIES: tuple[Lie, ...] = (
     Lie("silent odometry", ODOMETRY, _silent, "stop", "silent|reports nothing new"),
     Lie("frozen stamps of odometry", ODOMETRY, _frozen("stamp"), "stop", "/odom repeats its time stamp", STAMPED),
     Lie("a repeated odometry", ODOMETRY, _frozen("x", "y", "heading", "stamp"), "stop", "/odom repeats", STAMPED),
-    Lie("odometry stamps that go back", ODOMETRY, _with(stamp=_back), "stop", "/odom has time stamps that go back", STAMPED),
-    Lie("odometry stamps 10 s old", ODOMETRY, _with(stamp=lambda at, telling: at - 10.0), "stop",
-        "/odom (is 10.0 s old|has time stamps that go back)", STAMPED),
-    Lie("odometry stamps 10 s ahead", ODOMETRY, _with(stamp=lambda at, telling: at + 10.0), "stop",
-        "/odom has time stamps that are 10.0 s in the future", STAMPED),
+    Lie(
+        "odometry stamps that go back",
+        ODOMETRY,
+        _with(stamp=_back),
+        "stop",
+        "/odom has time stamps that go back",
+        STAMPED,
+    ),
+    Lie(
+        "odometry stamps 10 s old",
+        ODOMETRY,
+        _with(stamp=lambda at, telling: at - 10.0),
+        "stop",
+        "/odom (is 10.0 s old|has time stamps that go back)",
+        STAMPED,
+    ),
+    Lie(
+        "odometry stamps 10 s ahead",
+        ODOMETRY,
+        _with(stamp=lambda at, telling: at + 10.0),
+        "stop",
+        "/odom has time stamps that are 10.0 s in the future",
+        STAMPED,
+    ),
     Lie("odometry of NaN", ODOMETRY, _with(x=nan), "stop", "not finite", STAMPED),
     Lie("odometry of inf", ODOMETRY, _with(x=inf), "stop", "not finite", STAMPED),
     Lie("a speed of NaN", ODOMETRY, _with(speed=nan), "stop", "not finite|not a number", (DEVICES, ROS)),
@@ -218,34 +248,76 @@ LIES: tuple[Lie, ...] = (
     Lie("beams only behind", SCANNER, _behind, "stop", _BLIND, (DEVICES, ROS)),
     Lie("no valid beam ahead", SCANNER, _sector(nan, -30, 31), "stop", _BLIND, (SIMULATED, DEVICES, ROS)),
     Lie("a gap of 12 degrees ahead", SCANNER, _sector(nan, -6, 6), "stop", _BLIND, (SIMULATED, DEVICES, ROS)),
-    Lie("a gap of 3 degrees ahead", SCANNER, _sector(nan, -1, 2), "wall", _SEEN, (SIMULATED, DEVICES, ROS)),
-    Lie("no valid beam behind", SCANNER, _sector(nan, 150, 211), "wall", _SEEN, (SIMULATED, DEVICES, ROS)),
-    Lie("frozen ranges", SCANNER, _frozen("ranges"), "wall", "scanner: shows the same|" + _SEEN, (SIMULATED, DEVICES, ROS)),
+    Lie("a gap of 3 degrees ahead", SCANNER, _sector(nan, -1, 2), "wall", SEEN, (SIMULATED, DEVICES, ROS)),
+    Lie("no valid beam behind", SCANNER, _sector(nan, 150, 211), "wall", SEEN, (SIMULATED, DEVICES, ROS)),
+    Lie(
+        "frozen ranges",
+        SCANNER,
+        _frozen("ranges"),
+        "wall",
+        "scanner: shows the same|" + SEEN,
+        (SIMULATED, DEVICES, ROS),
+    ),
     Lie("a repeated scan", SCANNER, _frozen("ranges", "stamp"), "stop", "/scan repeats its time stamp", STAMPED),
     Lie("scan stamps that go back", SCANNER, _with(stamp=_back), "stop", "/scan has time stamps that go back", STAMPED),
-    Lie("scan stamps 10 s old", SCANNER, _with(stamp=lambda at, telling: at - 10.0), "stop",
-        "/scan (is 10.0 s old|has time stamps that go back)", STAMPED),
-    Lie("scan stamps 10 s ahead", SCANNER, _with(stamp=lambda at, telling: at + 10.0), "stop",
-        "/scan has time stamps that are 10.0 s in the future", STAMPED),
+    Lie(
+        "scan stamps 10 s old",
+        SCANNER,
+        _with(stamp=lambda at, telling: at - 10.0),
+        "stop",
+        "/scan (is 10.0 s old|has time stamps that go back)",
+        STAMPED,
+    ),
+    Lie(
+        "scan stamps 10 s ahead",
+        SCANNER,
+        _with(stamp=lambda at, telling: at + 10.0),
+        "stop",
+        "/scan has time stamps that are 10.0 s in the future",
+        STAMPED,
+    ),
     Lie("scans that lag by 1.5 s", SCANNER, _lag, "stop", "/scan is 1.\\d s old", STAMPED, 1.5),
     Lie("scans of -1 m", SCANNER, _sector(-1.0, 0, 360), "stop", "no valid beam|scanner: 0.00 m ahead", (DEVICES, ROS)),
     Lie("scans of 0 m", SCANNER, _sector(0.0, 0, 360), "stop", "no valid beam|scanner: 0.00 m ahead", (DEVICES, ROS)),
-    Lie("scans from 12 m to 10 m", SCANNER, _with(low=12.0), "stop", "/scan says that it sees from 12 m to 10 m", STAMPED),
+    Lie(
+        "scans from 12 m to 10 m",
+        SCANNER,
+        _with(low=12.0),
+        "stop",
+        "/scan says that it sees from 12 m to 10 m",
+        STAMPED,
+    ),
     Lie("no angle between beams", SCANNER, _with(step=0.0), "stop", "where its beams point|no valid beam", (ROS,)),
     Lie("beams from 1e30 degrees on", SCANNER, _with(start=1e30), "stop", "where its beams point", (ROS,)),
-    Lie("too close to be measured", SCANNER, _sector(-inf, -10, 11), "stop", "scanner: 0.00 m ahead|not a number", (DEVICES, ROS)),
+    Lie(
+        "too close to be measured",
+        SCANNER,
+        _sector(-inf, -10, 11),
+        "stop",
+        "scanner: 0.00 m ahead|not a number",
+        (DEVICES, ROS),
+    ),
     Lie("half of the range", SCANNER, _halved, "wall", r"scanner: 0\.0\d m ahead", (SIMULATED, DEVICES, ROS), 0.5),
-    Lie("a phantom ahead", SCANNER, _sector(0.22, -10, 11), "stop", r"scanner: 0\.02 m ahead", (SIMULATED, DEVICES, ROS)),
-    Lie("a phantom beside", SCANNER, _sector(0.22, 85, 96), "wall", _SEEN, (SIMULATED, DEVICES, ROS)),
-    Lie("a phantom behind", SCANNER, _sector(0.22, 170, 191), "wall", _SEEN, (SIMULATED, DEVICES, ROS)),
+    Lie(
+        "a phantom ahead", SCANNER, _sector(0.22, -10, 11), "stop", r"scanner: 0\.02 m ahead", (SIMULATED, DEVICES, ROS)
+    ),
+    Lie("a phantom beside", SCANNER, _sector(0.22, 85, 96), "wall", SEEN, (SIMULATED, DEVICES, ROS)),
+    Lie("a phantom behind", SCANNER, _sector(0.22, 170, 191), "wall", SEEN, (SIMULATED, DEVICES, ROS)),
     Lie("three beams, none ahead", SCANNER, _few, "stop", _BLIND, (DEVICES, ROS)),
     # Distance sensor and bumper
     Lie("a silent sonar", SONAR, _silent, "stop", "sonar is silent", (DEVICES, BOARD)),
     Lie("a sonar of NaN", SONAR, _number(nan), "stop", "sonar is silent: its distance is not a number", (DEVICES,)),
     Lie("a sonar of 0 m", SONAR, _number(0.0), "stop", r"sonar: 0\.00 m ahead", (DEVICES, BOARD)),
-    Lie("a frozen sonar", SONAR, _frozen_number, "wall", r"sonar: (shows the same|0\.0\d m ahead)|scanner", (DEVICES, BOARD)),
+    Lie(
+        "a frozen sonar",
+        SONAR,
+        _frozen_number,
+        "wall",
+        r"sonar: (shows the same|0\.0\d m ahead)|scanner",
+        (DEVICES, BOARD),
+    ),
     Lie("a phantom for the sonar", SONAR, _number(0.03), "stop", r"sonar: 0\.03 m ahead", (DEVICES, BOARD)),
-    Lie("a sonar that sees nothing", SONAR, _number(inf), "wall", _SEEN, (DEVICES,)),
+    Lie("a sonar that sees nothing", SONAR, _number(inf), "wall", SEEN, (DEVICES,)),
     Lie("a bumper that is always pressed", BUMPER, _number(True), "stop", "bumped|is pressed", (DEVICES, BOARD)),
     Lie("a silent bumper", BUMPER, _silent, "stop", "bumper is silent", (DEVICES, BOARD)),
     Lie("a bumper that is never pressed", BUMPER, _number(False), "wall", r"sonar|scanner", (DEVICES, BOARD)),
@@ -253,7 +325,16 @@ LIES: tuple[Lie, ...] = (
     Lie("wheels that stand", WHEELS, _number(0.0), "fail", f"{_STANDS}|doesn't move|{_DISAGREES}", ALL),
     Lie("wheels that turn the other way", WHEELS, _number(-1.0), "stop", _DISAGREES, (DEVICES, BOARD, ROS)),
     Lie("wheels at a quarter of the speed", WHEELS, _number(0.25), "fail", _DISAGREES, (DEVICES, BOARD, ROS)),
-    Lie("wheels that run three times as fast", WHEELS, _number(3.0), "stop", _DISAGREES, (DEVICES, BOARD, ROS)),
+    Lie(
+        "wheels that run three times as fast",
+        WHEELS,
+        _number(3.0),
+        "stop",
+        _DISAGREES,
+        (DEVICES, BOARD, ROS),
+        way=1.1,
+        seconds=1.4,
+    ),
     # Joints
     Lie("a joint that is stuck", JOINT, _frozen_number, "fail", "head turn doesn't move", (DEVICES, BOARD, ROS)),
     Lie("a joint that is silent", JOINT, _silent, "fail", "silent|doesn't report the joint", (DEVICES, BOARD, ROS)),

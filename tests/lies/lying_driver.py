@@ -75,19 +75,22 @@ class LyingDriver:
     def exchange(self, commands: Mapping[str, Command]) -> Mapping[str, Reading | DeviceError]:
         """See Driver."""
         now = time.monotonic()
-        for command in commands.values():
-            commanded(self._scene, command)
+        for name, command in commands.items():
+            if name != "head tilt":
+                commanded(self._scene, command)
         self._scene.step(now - self._last)
         self._last = now
-        found = {device.name: self._reading(device.kind) for device in self._devices}
+        found = {device.name: self._reading(device.name, device.kind) for device in self._devices}
         return {name: reading for name, reading in found.items() if reading is not None}
 
     def close(self) -> None:
         """See Driver."""
         self._scene.drive(0.0, 0.0)
 
-    def _reading(self, kind: str) -> Reading | None:
+    def _reading(self, name: str, kind: str) -> Reading | None:
         scene = self._scene
+        if name == "head tilt":
+            return JointState(0.0)
         if kind == "drive":
             odometry = scene.odometry(0.0)
             return None if odometry is None else self._wheels.reading(odometry)

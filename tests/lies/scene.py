@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -93,6 +94,12 @@ class Scene:
         """What it says, and where it is."""
         said: float | None = self._liar.says(JOINT, self.robot.joint, self.robot.time)
         return said
+
+    def wait_for_rest(self) -> None:
+        """Waits a second of real time at most until the robot stands; somebody else steps it."""
+        until = time.monotonic() + 1.0
+        while not self.robot.at_rest and time.monotonic() < until:
+            time.sleep(0.01)
 
     @property
     def result(self) -> Result:

@@ -25,7 +25,8 @@ class TrueRobot:
     ) -> None:
         ahead, back, side = wall + RADIUS, -4.0, 4.0
         self.walls: list[Segment] = [
-            (ahead, -side, ahead, side), (ahead, side, back, side), (back, side, back, -side), (back, -side, ahead, -side)
+            (ahead, -side, ahead, side), (ahead, side, back, side),
+            (back, side, back, -side), (back, -side, ahead, -side),
         ]  # fmt: skip
         if clear:
             self.walls = []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from enum import Enum
-from math import copysign, cos, inf, isfinite, isnan, radians, sqrt
+from math import copysign, cos, degrees, inf, isfinite, isnan, radians, sqrt
 
 from btlang.record import Record
 from btlang.robots.body import Body
@@ -24,7 +24,7 @@ from btlang.robots.motion.guard.regions import Regions
 from btlang.robots.robot import RobotError
 from btlang.robots.zones import Zones
 
-FASTEST, FASTEST_TURN = 20.0, 1720.0
+FASTEST, FASTEST_TURN = 20.0, degrees(30.0)
 """Metres and degrees a second that no robot exceeds."""
 FRESH = 0.6
 """Seconds after which a reading says nothing about the way any more."""
@@ -34,6 +34,8 @@ _LOOKS = 60.0  # degrees from the way: sensors that look farther aside say nothi
 _STANDS = 0.02  # metres a second: less is standing
 _TOUCHING = 0.3  # seconds for which it counts that somebody wants to touch what is ahead
 _BESIDE = 1e-3  # metres
+_ROUNDING = 1.0 + 1e-9
+_LATE = 0.05  # metres
 _STEP = 0.3  # metres between two looks at a sensor, after which nothing is known of the time between
 
 
@@ -221,7 +223,8 @@ class Guard:
         if before != free or not isfinite(free) or rolled - asked > _STEP:
             since = rolled
         self._seen[sensor] = free, since, rolled
-        return rolled - since
+        gone = rolled - since
+        return gone + _LATE if gone > _LATE else gone  # it may have been old when it came first
 
     def _before_contact(self, gap: float) -> float:
         """The speed at which it still stands before something so far away, if it brakes a moment later."""
@@ -235,7 +238,7 @@ def check_velocity(linear: float, angular: float) -> None:
     """Raises RobotError for metres and degrees a second that aren't finite, or faster than any robot."""
     if not isfinite(linear) or not isfinite(angular):
         raise RobotError(f"a velocity of {linear:g} m/s and {radians(angular):g} rad/s is not finite")
-    if abs(linear) > FASTEST or abs(angular) > FASTEST_TURN:
+    if abs(linear) > FASTEST or abs(angular) > FASTEST_TURN * _ROUNDING:
         raise RobotError(
             f"a velocity of {linear:.3g} m/s and {radians(angular) + 0.0:.3g} rad/s is beyond the limits of the robot"
         )
