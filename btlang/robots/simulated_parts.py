@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from math import inf
 
 from btlang.robots.base import Base
 from btlang.robots.body import Body
@@ -15,6 +16,8 @@ from btlang.robots.parts import JointsPart, Parts
 from btlang.robots.power import Power
 from btlang.robots.voice import Voice
 from btlang.robots.world import World
+
+_BESIDE = 1e-3  # metres by which a robot may touch what it drives along
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -36,7 +39,12 @@ def simulated_parts(world: World, obstacles: Obstacles, body: Body) -> Parts:
         if scanner is None:
             return []
         look = partial(scan, base.pose)
-        return [ScanReading("scanner", now, "", look, scanner.view, scanner.angle, base.room)]
+        return [ScanReading("scanner", now, "", look, scanner.view, scanner.angle, base.room, inf, free_way)]
+
+    def free_way(direction: float) -> float:
+        pose = base.pose
+        free = obstacles.free_way(pose.x, pose.y, pose.heading + direction, body.radius - _BESIDE)
+        return free if free <= body.range - body.radius else inf
 
     scanner = body.sensor("scanner")
     base, power = Base(world.start, obstacles, body), Power(world.battery, world.all_docks, body)

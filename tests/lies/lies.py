@@ -337,7 +337,7 @@ LIES: tuple[Lie, ...] = (
     ),
     # Joints
     Lie("a joint that is stuck", JOINT, _frozen_number, "fail", "head turn doesn't move", (DEVICES, BOARD, ROS)),
-    Lie("a joint that is silent", JOINT, _silent, "fail", "silent|doesn't report the joint", (DEVICES, BOARD, ROS)),
+    Lie("a joint that is silent", JOINT, _silent, "fail", "silent", (DEVICES, BOARD)),
     Lie("a joint of NaN", JOINT, _number(nan), "fail", "not a number|doesn't report the joint", (DEVICES, ROS)),
 )
 BY_NAME = {lie.name: lie for lie in LIES}

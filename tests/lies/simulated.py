@@ -14,6 +14,7 @@ from btlang.robots.geometry import Pose
 from btlang.robots.motion.guard.readings import ObstacleReading, ScanReading
 from btlang.robots.parts import Parts
 from btlang.robots.robot import SensorSilent
+from btlang.robots.scan import summary
 from btlang.robots.simulated_parts import simulated_parts
 from btlang.robots.simulation import Simulation
 from btlang.robots.world import World
@@ -111,7 +112,7 @@ class LyingScanner:
             ranges = self.read()
         except SensorSilent:
             return [ScanReading("scanner", self._heard, "", self.read)]
-        return [ScanReading("scanner", now, "", lambda: ranges, room=-inf)]
+        return [ScanReading("scanner", now, "", lambda: ranges, 360.0, 0.0, *summary(ranges, RADIUS))]
 
 
 def run(mission: str, lies: Sequence[Lie], wall: float, after: float, end: float = inf) -> Result:

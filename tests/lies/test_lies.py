@@ -32,10 +32,12 @@ def mission(lie: Lie) -> str:
 
 def judge_both(lies: Sequence[Lie], result: Result, late: float = 0.0) -> None:
     """Of two lies at once the stricter outcome counts, and either may be the reason."""
+    print([lie.name for lie in lies], result)
     order = ("stop", "fail", "wall", "fine")
     strictest = min(lies, key=lambda lie: order.index(lie.outcome))
     words = "|".join(lie.words for lie in lies if lie.words)
-    judge(replace(strictest, words=f"{words}|{SEEN}"), result, late)
+    way, seconds = max(lie.way for lie in lies), max(lie.seconds for lie in lies)
+    judge(replace(strictest, words=f"{words}|{SEEN}", way=way, seconds=seconds), result, late)
 
 
 def pairs(platform: str, count: int) -> list[tuple[Lie, Lie]]:

@@ -16,7 +16,7 @@ from btlang.robots.motion.guard.guard import Guard
 from btlang.robots.motion.guard.readings import ObstacleReading, OdometryReading, ScanReading
 from btlang.robots.motion.guard.stamps import StampCheck
 from btlang.robots.progress import Approach
-from btlang.robots.scan import Array, scan
+from btlang.robots.scan import Array, scan, summary
 from btlang.robots.zones import Zones
 from tests.lies.true_robot import RADIUS, TrueRobot
 from tests.profiles import amount
@@ -99,7 +99,9 @@ def drive(truth: Truth, metres: float) -> tuple[str, float, bool]:
 
     def sensors() -> list[ObstacleReading]:
         arrived, fault, ranges = seen["scan"]
-        return [ScanReading("scanner", arrived, fault, lambda: ranges, room=-inf)]  # type: ignore[arg-type,return-value]
+        room, content = summary(ranges, RADIUS)  # type: ignore[arg-type]
+        look = lambda: ranges  # noqa: E731
+        return [ScanReading("scanner", arrived, fault, look, 360.0, 0.0, room, content)]  # type: ignore[arg-type]
 
     def latest() -> OdometryReading | None:
         if "odometry" not in seen:

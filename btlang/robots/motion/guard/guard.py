@@ -195,20 +195,19 @@ class Guard:
             )
         if isinstance(reading, RangeReading):
             free = reading.distance
+            frozen = self._since_changed(reading.source, free)
         else:
             brake = self._body.driving.brake
-            if reading.room - _MARGIN >= wanted * _DELAY + wanted * wanted / (2 * brake):
+            frozen = self._since_changed(reading.source, reading.content)
+            if reading.room - frozen - _MARGIN >= wanted * _DELAY + wanted * wanted / (2 * brake):
                 return inf, "", Cause.NONE
-            assert reading.ranges is not None
-            from btlang.robots.motion.guard.corridor import free_way  # numpy takes longer to import than many missions
-
             try:
-                free = free_way(reading.ranges(), 180.0 if backward else 0.0, self._body.radius - _BESIDE)
+                free = self._free_way(reading, 180.0 if backward else 0.0)
             except RobotError as problem:
                 return 0.0, str(problem), Cause.SENSOR
         if isnan(free):
             return 0.0, f"{reading.source}: no valid beam looks {side}", Cause.SENSOR
-        left = free - self._since_changed(f"{reading.source} {side}", free)
+        left = free - frozen
         most = self._before_contact(left - _MARGIN)
         if self._touches:
             most = max(most, self._body.contact_speed)
@@ -216,13 +215,22 @@ class Guard:
             return most, f"{reading.source}: shows the same for {free - left:.2f} m of the way", Cause.SENSOR
         return most, f"{reading.source}: {max(0.0, free):.2f} m {side}", Cause.OBSTACLE
 
-    def _since_changed(self, sensor: str, free: float) -> float:
+    def _free_way(self, reading: ScanReading, direction: float) -> float:
+        """As `free_way` of btlang.robots.motion.guard.corridor."""
+        if reading.free_way is not None:
+            return reading.free_way(direction)
+        assert reading.ranges is not None
+        from btlang.robots.motion.guard.corridor import free_way  # numpy takes longer to import than many missions
+
+        return free_way(reading.ranges(), direction, self._body.radius - _BESIDE)
+
+    def _since_changed(self, sensor: str, said: float) -> float:
         """Metres that the robot has gone since a sensor said something else: a sensor may be frozen."""
         rolled = self._check.rolled
         before, since, asked = self._seen.get(sensor, (inf, 0.0, 0.0))
-        if before != free or not isfinite(free) or rolled - asked > _STEP:
+        if before != said or not isfinite(said) or rolled - asked > _STEP:
             since = rolled
-        self._seen[sensor] = free, since, rolled
+        self._seen[sensor] = said, since, rolled
         gone = rolled - since
         return gone + _LATE if gone > _LATE else gone  # it may have been old when it came first
 
