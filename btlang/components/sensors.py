@@ -26,9 +26,8 @@ class DeviceSensors:
         self._readers, self._lidar, self._radius = devices.readers, lidar, radius
         self._scanner = scanner or Sensor("scanner", "")
         self._near = [device for name, device in devices.devices.items() if device.kind == "range" or name in bumpers]
-        self._seen: tuple[Scan, Array, float, float] | None = (
-            None  # the latest scan, around the centre, and its summary
-        )
+        # the latest scan, around the centre, and its summary
+        self._seen: tuple[Scan, Array, float, float] | None = None
 
     def scan(self) -> Array:
         """The distances around the centre; see btlang.robots.capabilities.Sensors. Raises DeviceSilent."""

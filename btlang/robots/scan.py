@@ -85,8 +85,8 @@ def _covered(angles: Array, step: float) -> npt.NDArray[np.int64]:
 
 
 def summary(ranges: Array, radius: float) -> tuple[float, float]:
-    """Of a scan around a robot with a radius: metres that are free around its rim at least, none where a direction isn't
-    covered, and a number that changes whenever the ranges do.
+    """Give two figures of a scan around a robot: metres that are free around its rim, -inf if a beam is missing, and a
+    number that changes whenever the ranges do.
     """
     room = -inf if np.isnan(ranges).any() else float(ranges.min()) - radius
     return room, float(ranges[np.isfinite(ranges)].sum())
