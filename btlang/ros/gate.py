@@ -30,20 +30,29 @@ _NOT_FINITE = "sends numbers that are not finite"
 class Gate:
     """For the messages of one topic, in the order in which they come.
 
-    Without `lags` it doesn't judge how long they were under way: the clock of their stamps may be a faster one.
+    Without `lags` it doesn't judge how long they were under way: the clock of their stamps may be a faster one. With
+    `all_stamps` those of all kinds of messages count, else those of odometry and scans.
     """
 
-    def __init__(self, kind: type, lags: bool = True) -> None:
+    def __init__(self, kind: Any, lags: bool = True, all_stamps: bool = False) -> None:
         self._stamps, self._lags = StampCheck(), lags
         self._before: tuple[float, float, float, float] | None = None  # x, y, stamp and arrival
         checks: dict[type, Callable[[Any], str]] = {
             Odometry: self._odometry,
             PoseStamped: lambda message: pose_fault(message.pose),
             PoseWithCovarianceStamped: lambda message: _covariance(message.pose) or pose_fault(message.pose.pose),
-            LaserScan: lambda message: _scan(message) or self._stamp(message),
+            LaserScan: _scan,
         }
-        self.refuses = checks.get(kind, lambda message: "")
+        self._check = checks.get(kind, lambda message: "")
+        self._stamped = kind in (Odometry, LaserScan) or (all_stamps and hasattr(kind, "header"))
+
+    def refuses(self, message: Any) -> str:
         """Why a message is not to be believed, to be read behind the name of its topic; "" where it is."""
+        reason = self._check(message)
+        if not self._stamped:
+            return reason
+        stamp = self._stamps.fault(seconds_of(message.header.stamp), time.monotonic(), self._lags)
+        return reason or stamp
 
     def _odometry(self, message: Any) -> str:
         pose, twist = message.pose.pose, message.twist.twist
@@ -55,12 +64,7 @@ class Gate:
             return _NOT_FINITE
         if hypot(*speeds[:2]) > FASTEST or abs(degrees(speeds[2])) > FASTEST_TURN:
             return f"says that the robot moves at {hypot(*speeds[:2]):.3g} m/s and turns at {speeds[2]:.3g} rad/s"
-        jump = self._jump(pose.position.x, pose.position.y, seconds_of(message.header.stamp))
-        stamp = self._stamp(message)
-        return jump or stamp
-
-    def _stamp(self, message: Any) -> str:
-        return self._stamps.fault(seconds_of(message.header.stamp), time.monotonic(), self._lags)
+        return self._jump(pose.position.x, pose.position.y, seconds_of(message.header.stamp))
 
     def _jump(self, x: float, y: float, stamp: float) -> str:
         """The next message is compared with this one: odometry that restarted is believed again."""

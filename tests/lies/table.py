@@ -50,7 +50,7 @@ def main() -> None:
         peer = Peer("liar", domain=domain)
         peer.expect("ready")
         with closing(Client(domain)) as client:
-            node = LyingRobot(peer, client)
+            node = LyingRobot(peer, client, domain)
             tell: dict[str, Callable[[Lie], Result]] = {
                 SIMULATED: lambda lie: simulated.run(mission(lie), [lie], **scene(lie)),
                 DEVICES: lambda lie: devices.run(Path(folder, "d", lie.name), mission(lie), [lie], **scene(lie)),

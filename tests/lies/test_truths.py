@@ -147,7 +147,7 @@ def drive(truth: Truth, metres: float) -> tuple[str, float, bool]:
 
 @pytest.mark.long
 def test_who_says_the_truth_is_not_stopped() -> None:
-    for seed in range(amount(40, 1000)):
+    for seed in range(amount(15, 1000)):
         truth = drawn(seed)
         reason, x, touched = drive(truth, 3.0)
         assert (reason, touched) == ("", False), truth
