@@ -38,6 +38,11 @@ class DeviceSensors:
         found = [self._reading(device.name, device.angle, now) for device in self._near]
         if self._lidar:
             view, angle = self._scanner.view, self._scanner.angle
+            if (exact := getattr(self._readers[self._lidar], "exact", None)) is not None:
+                return [
+                    *found,
+                    ScanReading("scanner", now, "", self.scan, view, angle, exact.room, inf, exact.free_way),
+                ]
             try:
                 _, room, content = self._look()
             except DeviceError as problem:

@@ -17,8 +17,6 @@ from btlang.robots.power import Power
 from btlang.robots.voice import Voice
 from btlang.robots.world import World
 
-_BESIDE = 1e-3  # metres by which a robot may touch what it drives along
-
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.scan import Array, Scanner
@@ -39,12 +37,7 @@ def simulated_parts(world: World, obstacles: Obstacles, body: Body) -> Parts:
         if scanner is None:
             return []
         look = partial(scan, base.pose)
-        return [ScanReading("scanner", now, "", look, scanner.view, scanner.angle, base.room, inf, free_way)]
-
-    def free_way(direction: float) -> float:
-        pose = base.pose
-        free = obstacles.free_way(pose.x, pose.y, pose.heading + direction, body.radius - _BESIDE)
-        return free if free <= body.range - body.radius else inf
+        return [ScanReading("scanner", now, "", look, scanner.view, scanner.angle, base.room, inf, base.free_way)]
 
     scanner = body.sensor("scanner")
     base, power = Base(world.start, obstacles, body), Power(world.battery, world.all_docks, body)

@@ -20,6 +20,7 @@ from tests.lies.scene import Result, Scene
 
 EMPTY = "[start]\nx = 0\ny = 0\n"
 _WHEELS, _SONAR, _BUMPER, _JOINT, _TILT = 1, 2, 3, 4, 5
+_MEASURES = 0.01  # seconds
 JOINTS = {"head turn": "joint", "head tilt": "joint"}
 CHANNELS = (
     Channel(_WHEELS, "drive", 0.02),
@@ -34,7 +35,7 @@ class LyingBoard(SimulatedBoard):
     """The form of the liar that is a board."""
 
     def __init__(self, scene: Scene) -> None:
-        self._scene, self._wheels = scene, WheelsOf()
+        self._scene, self._wheels, self._measured = scene, WheelsOf(), 0.0
         super().__init__("liar", CHANNELS)
 
     def turn(self, now: float) -> None:
@@ -45,6 +46,9 @@ class LyingBoard(SimulatedBoard):
                 commanded(scene, command)
         super().turn(now)
         scene.step(passed)
+        if now - self._measured < _MEASURES:
+            return
+        self._measured = now
         odometry, distance, pressed, joint = scene.odometry(0.0), scene.sonar(), scene.bumper(), scene.joint()
         if odometry is not None:
             self.readings[_WHEELS] = self._wheels.reading(odometry)
