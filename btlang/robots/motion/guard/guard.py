@@ -28,6 +28,10 @@ FASTEST, FASTEST_TURN = 20.0, degrees(30.0)
 """Metres and degrees a second that no robot exceeds."""
 FRESH = 0.6
 """Seconds after which a reading says nothing about the way any more."""
+_BLIND, _OFTEN = (
+    0.3,
+    0.25,
+)  # metres that it may go without news of a sensor, and the seconds between these that are usual
 _MARGIN = 0.035  # metres that stay free: less than planners keep beside the robot
 _DELAY = 0.1  # seconds until it brakes
 _LOOKS = 60.0  # degrees from the way: sensors that look farther aside say nothing about it
@@ -156,6 +160,8 @@ class Guard:
             return Verdict(0.0, 0.0, f"{reading.source} {self._disagrees}", Cause.ODOMETRY)
         if reading is not None and (fault := _fault(reading, now)):
             return Verdict(0.0, 0.0, fault, Cause.SENSOR)
+        if reading is not None and (blind := _blind_speed(reading, now)) < abs(linear):
+            linear = copysign(blind, linear)
         if linear == 0.0:
             return Verdict(0.0, angular)
         most, reason, cause, who = self._safe(linear < 0.0, abs(linear), now)
@@ -193,6 +199,9 @@ class Guard:
             return (
                 (0.0, f"the {reading.source} is pressed", Cause.OBSTACLE) if reading.pressed else (inf, "", Cause.NONE)
             )
+        blind = _blind_speed(reading, now)
+        if blind < wanted:
+            return blind, f"{reading.source} is silent for {now - reading.stamp:.1f} s", Cause.SENSOR
         if isinstance(reading, RangeReading):
             free = reading.distance
             frozen = self._since_changed(reading.source, free)
@@ -222,7 +231,8 @@ class Guard:
         assert reading.ranges is not None
         from btlang.robots.motion.guard.corridor import free_way  # numpy takes longer to import than many missions
 
-        return free_way(reading.ranges(), direction, self._body.radius - _BESIDE)
+        view = reading.view - 2 * abs(wrap(reading.angle - direction)) if reading.view < 360.0 else 360.0
+        return free_way(reading.ranges(), direction, self._body.radius - _BESIDE, view)
 
     def _since_changed(self, sensor: str, said: float) -> float:
         """Metres that the robot has gone since a sensor said something else: a sensor may be frozen."""
@@ -258,6 +268,12 @@ def _looks(reading: ObstacleReading, backward: bool) -> bool:
     if isinstance(reading, ScanReading):
         return away <= reading.view / 2
     return cos(radians(away)) >= cos(radians(_LOOKS)) - 1e-9
+
+
+def _blind_speed(reading: SensorReading, now: float) -> float:
+    """The speed at which a robot doesn't go too far until it hears from a sensor again, or stops."""
+    age = now - reading.stamp
+    return _BLIND / age if age > _OFTEN else inf
 
 
 def _fault(reading: SensorReading, now: float) -> str:
