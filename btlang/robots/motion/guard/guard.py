@@ -91,8 +91,9 @@ class Guard:
         self._checked = -inf  # the stamp of the odometry that was compared last
         self._disagrees = ""
         self._direction = 0.0, 0.0
-        # what a sensor said last, how far the robot had gone when it said so first, and when it was asked last
-        self._seen: dict[str, tuple[float, float, float]] = {}
+        # what a sensor said last, how far the robot had gone when it said so first (by odometry, by commands), and how
+        # far when it was asked last
+        self._seen: dict[str, tuple[float, float, float, float]] = {}
         self._stands_since: float | None = None
         self._touches_until, self._touches = -inf, False
         self.verdict = Verdict(0.0, 0.0)
@@ -236,12 +237,12 @@ class Guard:
 
     def _since_changed(self, sensor: str, said: float) -> float:
         """Metres that the robot has gone since a sensor said something else: a sensor may be frozen."""
-        rolled = self._check.rolled
-        before, since, asked = self._seen.get(sensor, (inf, 0.0, 0.0))
+        rolled, commanded = self._check.rolled, self._check.commanded
+        before, since, commanded_since, asked = self._seen.get(sensor, (inf, 0.0, 0.0, 0.0))
         if before != said or not isfinite(said) or rolled - asked > _STEP:
-            since = rolled
-        self._seen[sensor] = said, since, rolled
-        gone = rolled - since
+            since, commanded_since = rolled, commanded
+        self._seen[sensor] = said, since, commanded_since, rolled
+        gone = max(rolled - since, commanded - commanded_since)  # either may lie
         return gone + _LATE if gone > _LATE else gone  # it may have been old when it came first
 
     def _before_contact(self, gap: float) -> float:

@@ -41,8 +41,8 @@ class OdometryCheck:
         self._under_way = False
         self._tops: deque[tuple[float, float]] = deque()  # times and metres a second that were commanded
         self._drives_since = 0.0
-        self.rolled = 0.0
-        """Metres that the odometry has shown in sum, in whatever direction."""
+        self.rolled = self.commanded = 0.0
+        """Metres that the odometry has shown in sum, in whatever direction, and that the commands come to."""
 
     def sent(self, now: float, linear: float, angular: float) -> None:
         """The base has been commanded so, in metres and degrees a second, since the last call."""
@@ -51,6 +51,7 @@ class OdometryCheck:
         speed = _towards(self._speeds[0], linear, driving.acceleration * passed, driving.brake * passed)
         spin = _towards(self._speeds[1], angular, turning.acceleration * passed, turning.brake * passed)
         self._speeds, self._way = (speed, spin), (self._way[0] + speed * passed, self._way[1] + spin * passed)
+        self.commanded += abs(speed) * passed
         self._tops.append((now, abs(linear)))
         while self._tops[0][0] < now - _TOP:
             self._tops.popleft()
