@@ -187,7 +187,15 @@ _BLIND = r"scanner: no valid beam looks ahead"
 SEEN = r"(scanner|sonar): 0\.0\d m ahead"
 LIES: tuple[Lie, ...] = (
     # Odometry
-    Lie("odometry lags by 1.5 s", ODOMETRY, _lag, "stop", f"{_DISAGREES}|is 1.\\d s old|{_STANDS}", ALL, 1.5),
+    Lie(
+        "odometry lags by 1.5 s",
+        ODOMETRY,
+        _lag,
+        "stop",
+        f"{_DISAGREES}|is 1.\\d s old|repeats its time stamp|{_STANDS}",
+        ALL,
+        1.5,
+    ),
     Lie(
         "odometry lags by 1.5 s with fresh stamps",
         ODOMETRY,

@@ -6,12 +6,14 @@ import json
 import time
 from collections.abc import Iterator
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from std_msgs.msg import String
 
 import btlang
+from btlang.diagnostics.errors import MissionError
 from tests.lies.lies import ROS, Lie
 from tests.lies.scene import Result
 from tests.lies.test_lies import judge, judge_both, mission, pairs, scene, scene_of_both, some
@@ -32,7 +34,10 @@ class LyingRobot:
         """A mission while these lies are told."""
         self.begin(names, **scene)
         with btlang.Session("ros") as session:
-            outcome = session.run(btlang.parse_tree(text), time_limit=limit).outcome
+            try:
+                outcome = session.run(btlang.parse_tree(text), time_limit=limit).outcome
+            except MissionError as refused:  # it lies from the start
+                return replace(self.result, reason=str(refused))
         time.sleep(0.3)  # until it stands
         result = self.result
         assert outcome is not None

@@ -63,7 +63,6 @@ class OdometryCheck:
     def rest(self) -> None:
         """The base is commanded to stand, so nothing is compared: somebody else may move it."""
         self._samples.clear()
-        self._under_way = False
 
     def forget(self) -> None:
         """Compares nothing that was before: somebody else moved the robot, or will."""
@@ -77,6 +76,7 @@ class OdometryCheck:
         self._add(pose, stamp)
         if len(self._samples) == 1:
             self._moved_at = self._drives_since = stamp
+            self._under_way = False
         first = self._samples[0]
         if fault := self._too_fast(stamp):
             return fault
