@@ -182,7 +182,7 @@ def _back(value: float, telling: Telling) -> float:
 
 STAMPED = (ROS,)
 _DISAGREES = r"odom\w* shows -?\d+\.\d\d m where \d+\.\d\d m were commanded"
-_STANDS = r"odom\w* shows that the robot doesn't move"
+STANDS = r"odom\w* shows that the robot doesn't move"
 _BLIND = r"scanner: no valid beam looks ahead"
 SEEN = r"(scanner|sonar): 0\.0\d m ahead"
 LIES: tuple[Lie, ...] = (
@@ -192,7 +192,7 @@ LIES: tuple[Lie, ...] = (
         ODOMETRY,
         _lag,
         "stop",
-        f"{_DISAGREES}|is 1.\\d s old|repeats its time stamp|{_STANDS}",
+        f"{_DISAGREES}|is 1.\\d s old|repeats its time stamp|{STANDS}",
         ALL,
         1.5,
     ),
@@ -201,7 +201,7 @@ LIES: tuple[Lie, ...] = (
         ODOMETRY,
         _lag_fresh,
         "stop",
-        f"{_DISAGREES}|{_STANDS}",
+        f"{_DISAGREES}|{STANDS}",
         STAMPED,
         1.5,
     ),
@@ -212,7 +212,7 @@ LIES: tuple[Lie, ...] = (
     Lie("three times the way", ODOMETRY, _scaled, "stop", _DISAGREES, ALL, 3.0),
     Lie("ten times the way", ODOMETRY, _scaled, "stop", _DISAGREES, ALL, 10.0),
     Lie("nine tenths of the way", ODOMETRY, _scaled, "fine", "", ALL, 0.9),
-    Lie("a frozen pose", ODOMETRY, _frozen("x", "y", "heading"), "stop", f"{_STANDS}|{_DISAGREES}", ALL),
+    Lie("a frozen pose", ODOMETRY, _frozen("x", "y", "heading"), "stop", f"{STANDS}|{_DISAGREES}", ALL),
     Lie("a pose of noise", ODOMETRY, _noise, "stop", f"{_DISAGREES}|jumps", (SIMULATED, ROS), 0.5),
     Lie("a heading that spins", ODOMETRY, _spin, "stop", f"{_DISAGREES}", (ROS,)),
     Lie("silent odometry", ODOMETRY, _silent, "stop", "silent|reports nothing new"),
@@ -330,7 +330,7 @@ LIES: tuple[Lie, ...] = (
     Lie("a silent bumper", BUMPER, _silent, "stop", "bumper is silent", (DEVICES, BOARD)),
     Lie("a bumper that is never pressed", BUMPER, _number(False), "wall", r"sonar|scanner", (DEVICES, BOARD)),
     # Wheels that do something else than they are told
-    Lie("wheels that stand", WHEELS, _number(0.0), "fail", f"{_STANDS}|doesn't move|{_DISAGREES}", ALL),
+    Lie("wheels that stand", WHEELS, _number(0.0), "fail", f"{STANDS}|doesn't move|{_DISAGREES}", ALL),
     Lie("wheels that turn the other way", WHEELS, _number(-1.0), "stop", _DISAGREES, (DEVICES, BOARD, ROS)),
     Lie("wheels at a quarter of the speed", WHEELS, _number(0.25), "fail", _DISAGREES, (DEVICES, BOARD, ROS)),
     Lie(

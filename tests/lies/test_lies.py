@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from tests.lies import devices, simulated
-from tests.lies.lies import BOARD, DEVICES, LIES, SEEN, SIMULATED, Lie
+from tests.lies.lies import BOARD, DEVICES, LIES, SEEN, SIMULATED, STANDS, Lie
 from tests.lies.scene import Result
 from tests.profiles import amount
 
@@ -37,7 +37,11 @@ def judge_both(lies: Sequence[Lie], result: Result, late: float = 0.0) -> None:
     strictest = min(lies, key=lambda lie: order.index(lie.outcome))
     words = "|".join(lie.words for lie in lies if lie.words)
     way, seconds = max(lie.way for lie in lies), max(lie.seconds for lie in lies)
-    judge(replace(strictest, words=f"{words}|{SEEN}|nothing has arrived on", way=way, seconds=seconds), result, late)
+    judge(
+        replace(strictest, words=f"{words}|{SEEN}|{STANDS}|nothing has arrived on", way=way, seconds=seconds),
+        result,
+        late,
+    )
 
 
 def pairs(platform: str, count: int) -> list[tuple[Lie, Lie]]:
