@@ -82,7 +82,8 @@ def _points(robot: Sensors, direction: float) -> tuple[npt.NDArray[np.float64], 
     from btlang.robots.motion.guard.corridor import is_covered
 
     ranges = np.asarray(robot.scan())
-    if not is_covered(ranges, direction):
+    scanner = robot.body.sensor("scanner")
+    if not is_covered(ranges, direction, scanner.view if scanner is not None and direction == scanner.angle else 360.0):
         raise SensorSilent(f"the scanner has no valid beam {_SIDES.get(direction % 360.0, 'there')}")
     seen = np.isfinite(ranges)
     angles = np.radians(np.flatnonzero(seen)) - radians(direction)

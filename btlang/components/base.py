@@ -6,15 +6,17 @@ from collections.abc import Callable, Mapping
 from math import cos, degrees, hypot, inf, radians, sin
 
 from btlang.devices.device_set import Reads, reader
-from btlang.devices.driver import DeviceError
+from btlang.devices.driver import DeviceError, DeviceSilent
 from btlang.devices.kinds import Motion, Pressed, Wheels, WheelSpeeds
 from btlang.robots.base import at_most, clipped_speed, towards
 from btlang.robots.body import Body
 from btlang.robots.geometry import Pose, wrap
+from btlang.robots.motion.guard.guard import FASTEST
 
 _STUCK_AFTER = 1.0
 _REST = 0.002  # metres a second: less is noise of the encoders
 _FREE_AGAIN = 0.03
+_JUMP = 1.0  # metres
 
 
 class DeviceBase:
@@ -52,6 +54,7 @@ class DeviceBase:
         self._heading: float | None = None
         self._pressed: set[str] = set()
         self._contact: Pose | None = None
+        self._jump = ""
         self._idle = 0.0
 
     @property
@@ -71,7 +74,7 @@ class DeviceBase:
             self._read()
         except DeviceError as problem:
             return str(problem)
-        return None
+        return self._jump or None
 
     @property
     def bumped(self) -> bool:
@@ -111,6 +114,7 @@ class DeviceBase:
         self._advance(dt)
         try:
             wheels = self._read()
+            self._check_jump(wheels, dt)
         except DeviceError:
             self._seen = self._velocity = None
             self._speeds = (0.0, 0.0)
@@ -142,6 +146,14 @@ class DeviceBase:
         wheels = reader(self._devices, self._drive, "base").read(self._drive)
         assert isinstance(wheels, Wheels)
         return wheels
+
+    def _check_jump(self, wheels: Wheels, dt: float) -> None:
+        """Raises DeviceSilent where the wheels have rolled farther than any can, as where their board has restarted."""
+        before = self._seen or wheels
+        way = max(abs(wheels.left - before.left), abs(wheels.right - before.right))
+        self._jump = f"the {self._drive} jumps by {way:.3g} m" if way > _JUMP + FASTEST * dt else ""
+        if self._jump:
+            raise DeviceSilent(self._jump)
 
     def _write(self, speeds: WheelSpeeds) -> None:
         if self._drive in self._devices:

@@ -26,7 +26,8 @@ class DeviceSensors:
         self._readers, self._lidar, self._radius = devices.readers, lidar, radius
         self._scanner = scanner or Sensor("scanner", "")
         self._near = [device for name, device in devices.devices.items() if device.kind == "range" or name in bumpers]
-        self._seen: tuple[Scan, Array, float] | None = None  # the latest scan, around the centre, and the room it shows
+        # the latest scan, around the centre, and its summary
+        self._seen: tuple[Scan, Array, float, float] | None = None
 
     def scan(self) -> Array:
         """The distances around the centre; see btlang.robots.capabilities.Sensors. Raises DeviceSilent."""
@@ -37,12 +38,17 @@ class DeviceSensors:
         found = [self._reading(device.name, device.angle, now) for device in self._near]
         if self._lidar:
             view, angle = self._scanner.view, self._scanner.angle
+            if (exact := getattr(self._readers[self._lidar], "exact", None)) is not None:
+                return [
+                    *found,
+                    ScanReading("scanner", now, "", self.scan, view, angle, exact.room, inf, exact.free_way),
+                ]
             try:
-                _, room = self._look()
+                _, room, content = self._look()
             except DeviceError as problem:
                 found.append(ScanReading("scanner", now, str(problem), self.scan, view, angle))
             else:
-                found.append(ScanReading("scanner", now, "", self.scan, view, angle, room))
+                found.append(ScanReading("scanner", now, "", self.scan, view, angle, room, content))
         return found
 
     def _reading(self, name: str, angle: float, now: float) -> ObstacleReading:
@@ -55,17 +61,18 @@ class DeviceSensors:
         assert isinstance(reading, Distance)
         return RangeReading(name, now, "", reading.distance, angle)
 
-    def _look(self) -> tuple[Array, float]:
+    def _look(self) -> tuple[Array, float, float]:
         reading = reader(self._readers, self._lidar, "lidar").read(self._lidar)
         assert isinstance(reading, Scan)
         if self._seen is None or self._seen[0] is not reading:
             import numpy as np  # most missions need none
 
-            from btlang.robots.scan import around
+            from btlang.robots.scan import around, summary
 
-            ranges = np.asarray(reading.ranges, dtype=np.float64)
+            ranges = np.array(reading.ranges, dtype=np.float64)
+            ranges[ranges == -inf] = 0.0  # too close to be measured
+            ranges[ranges < 0.0] = np.nan
             angles = np.radians(reading.start + reading.step * np.arange(len(ranges)))
             found = around(ranges, angles, self._scanner.pose if self._scanner.frame else CENTRE, abs(reading.step))
-            room = -self._radius if np.isnan(found).any() else float(found.min(initial=inf)) - self._radius
-            self._seen = reading, found, room
-        return self._seen[1], self._seen[2]
+            self._seen = reading, found, *summary(found, self._radius)
+        return self._seen[1:]

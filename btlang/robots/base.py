@@ -12,6 +12,7 @@ from btlang.robots.robot import RobotError
 _SUBSTEP = 0.02
 _STUCK_AFTER = 1.0
 _FREE_AGAIN = 0.03
+_BESIDE = 1e-3  # metres by which it may touch what it drives along
 _ROOM = 0.2  # metres: with more there is no need to look how much exactly
 
 
@@ -105,6 +106,12 @@ class Base:
         if not obstacles.walking:
             return self._free
         return min(self._free, obstacles.nearest_walking(pose.x, pose.y)[0] - self._radius)
+
+    def free_way(self, direction: float) -> float:
+        """Metres that are free in a direction (degrees left of ahead), inf beyond the range of the scanner."""
+        pose = self.pose
+        free = self._obstacles.free_way(pose.x, pose.y, pose.heading + direction, self._radius - _BESIDE)
+        return free if free <= self.body.range - self._radius else inf
 
     def _forget_trouble(self) -> None:
         """A new attempt to move gets its own second until it is stuck, and counts as its own bump."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot, inf, sqrt
+from math import cos, hypot, inf, radians, sin, sqrt
 
 from btlang.robots.geometry import Point, Segment
 from btlang.robots.world import Box, Door, Thing, World
@@ -108,6 +108,26 @@ class Obstacles:
                 distance, name = gap, person
         return distance, name
 
+    def free_way(self, x: float, y: float, heading: float, radius: float) -> float:
+        """Metres that a disc can move from a point in a direction (degrees) until it touches something; inf if nothing
+        is there.
+        """
+        c, s = cos(radians(heading)), sin(radians(heading))
+        free = inf
+        for disc_x, disc_y, disc_radius in (*self.discs, *self.walking.values()):
+            ahead, left = (disc_x - x) * c + (disc_y - y) * s, (disc_y - y) * c - (disc_x - x) * s
+            reach = radius + disc_radius
+            if ahead > 0.0 and abs(left) < reach:
+                free = min(free, ahead - sqrt(reach * reach - left * left))
+        for ax, ay, bx, by in self.segments:
+            left_a, left_b = (ay - y) * c - (ax - x) * s, (by - y) * c - (bx - x) * s
+            if (left_a >= radius and left_b >= radius) or (left_a <= -radius and left_b <= -radius):
+                continue
+            ahead_a, ahead_b = (ax - x) * c + (ay - y) * s, (bx - x) * c + (by - y) * s
+            if ahead_a > 0.0 or ahead_b > 0.0:
+                free = min(free, _to_segment(ahead_a, left_a, ahead_b, left_b, radius))
+        return max(0.0, free)
+
     def wall_between(self, a: Point, b: Point) -> bool:
         """True when a wall or a closed door (not furniture) crosses the straight line from a to b."""
         dx, dy = b[0] - a[0], b[1] - a[1]
@@ -149,6 +169,23 @@ class Obstacles:
         ]
         self._names = [thing.name for thing in standing]
         self.discs = [(thing.x, thing.y, thing.radius) for thing in standing]
+
+
+def _to_segment(ax: float, ay: float, bx: float, by: float, radius: float) -> float:
+    """Metres that a disc at the origin can move along x until it touches a segment."""
+    ends = ((ax, ay), (bx, by))
+    free = min((x - sqrt(radius * radius - y * y) for x, y in ends if x > 0.0 and abs(y) < radius), default=inf)
+    dx, dy = bx - ax, by - ay
+    length = hypot(dx, dy)
+    if dy == 0.0 or length == 0.0:
+        return free  # it moves along the segment, and can only touch an end of it
+    nx, ny = -dy / length, dx / length
+    if nx > 0.0:
+        nx, ny = -nx, -ny  # towards the disc
+    way = (radius + nx * ax + ny * ay) / nx
+    touched_x, touched_y = way - radius * nx, -radius * ny
+    share = ((touched_x - ax) * dx + (touched_y - ay) * dy) / (length * length)
+    return min(free, way) if 0.0 <= share <= 1.0 and touched_x > 0.0 else free
 
 
 def _length2(dx: float, dy: float) -> float:

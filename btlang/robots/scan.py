@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 import numpy as np
 import numpy.typing as npt
 
@@ -80,6 +82,14 @@ def _covered(angles: Array, step: float) -> npt.NDArray[np.int64]:
     middles = np.rint(np.degrees(angles)).astype(int)
     covered: npt.NDArray[np.int64] = (middles[:, None] + np.arange(-half, half + 1)).ravel() % 360
     return covered
+
+
+def summary(ranges: Array, radius: float) -> tuple[float, float]:
+    """Give two figures of a scan around a robot: metres that are free around its rim, -inf if a beam is missing, and a
+    number that changes whenever the ranges do.
+    """
+    room = -inf if np.isnan(ranges).any() else float(ranges.min()) - radius
+    return room, float(ranges[np.isfinite(ranges)].sum())
 
 
 def as_measured(ranges: Array, at: Pose) -> Array:

@@ -20,7 +20,7 @@ from btlang.robots.motion.guard.guard import Guard
 from btlang.robots.motion.guard.readings import ObstacleReading, OdometryReading, ScanReading
 from btlang.robots.navigation import NavigationGoal, Navigator
 from btlang.robots.obstacles import Obstacles
-from btlang.robots.parts import IdlePart, Parts
+from btlang.robots.parts import BasePart, IdlePart, Parts
 from btlang.robots.power import stations
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, SensorSilent
 from btlang.robots.simulated_parts import simulated_parts
@@ -189,6 +189,11 @@ class SimulatedRobot:
     def way(self) -> Sequence[Point]:
         """The points of the way that it follows, in metres from where it was planned; none where it follows none."""
         return self._navigator.way
+
+    @property
+    def base(self) -> BasePart:
+        """Its wheels, of which those in a world know what is really around them."""
+        return self._base
 
     @property
     def velocity(self) -> tuple[float, float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from math import inf
 
 from btlang.robots.base import Base
 from btlang.robots.body import Body
@@ -36,7 +37,7 @@ def simulated_parts(world: World, obstacles: Obstacles, body: Body) -> Parts:
         if scanner is None:
             return []
         look = partial(scan, base.pose)
-        return [ScanReading("scanner", now, "", look, scanner.view, scanner.angle, base.room)]
+        return [ScanReading("scanner", now, "", look, scanner.view, scanner.angle, base.room, inf, base.free_way)]
 
     scanner = body.sensor("scanner")
     base, power = Base(world.start, obstacles, body), Power(world.battery, world.all_docks, body)

@@ -188,8 +188,8 @@ class RosBase:
         if self._publisher is None:
             self.adapt()
         stamp = self._node.get_clock().now().to_msg()
-        linear, angular = map(_at_most, self._wanted, self.limits)
-        message = velocity(_TYPES[self._type], linear, radians(angular), stamp, self._fastest[0])
+        linear, angular = self._sent
+        message = velocity(_TYPES[self._type], linear, radians(angular), stamp)
         if self._publisher is not None:
             self._publisher.publish(message)
             self._published = True
@@ -203,6 +203,10 @@ class RosBase:
             return  # whoever asks for the pose gets the error
         if self._publisher is None or not self._publisher.get_subscription_count():
             return
+        sent = self._sent
+        if sent == (0.0, 0.0):  # the guard lets it stand
+            self._idle, self._seen = 0.0, None
+            return
         before, self._passed = self._seen, self._passed + dt
         if before is not None and before[0] is message:
             return
@@ -211,7 +215,7 @@ class RosBase:
         passed, self._passed = self._passed, 0.0
         if before is None:
             return
-        least = _STUCK_SHARE * self._arc(*self._wanted)
+        least = _STUCK_SHARE * self._arc(*sent)
         turned = wrap(pose.heading - before[1].heading)
         if self._arc(before[1].distance_to((pose.x, pose.y)), turned) >= least * passed:
             self._idle, self._under_way = 0.0, True
@@ -220,6 +224,11 @@ class RosBase:
             sets_off = not self._under_way and speed >= least
             self._idle = 0.0 if sets_off else self._idle + passed  # how long the command took to arrive is not counted
             self._under_way |= sets_off
+
+    @property
+    def _sent(self) -> tuple[float, float]:
+        """What of the wanted velocity may be sent."""
+        return _at_most(self._wanted[0], self.limits[0]), _at_most(self._wanted[1], self.limits[1])
 
     def _arc(self, way: float, angle: float) -> float:
         """Metres that the rim of the robot moves, of metres and degrees."""

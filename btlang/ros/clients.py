@@ -27,6 +27,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Protocol, TypeAlias
 
+    from btlang.robots.motion.guard.guard import Verdict
+
     Missing: TypeAlias = Callable[[], str]
     Key: TypeAlias = tuple[str, str, str, bool]  # kind, name and type of a Need; whether it is latched
 
@@ -68,6 +70,8 @@ class Clients:
         self.executor = ExecutorThread(node)
         self.endings: list[Ending] = []
         """What was halted and may not have ended yet."""
+        self.judge: Callable[[str, float, float], Verdict | None] = lambda topic, linear, angular: None
+        """The verdict of the guard about metres and degrees a second on a topic; None if it doesn't guard that one."""
         self.lease: Lease | None = None
         """That of the goals, once there is an action."""
         self._publishers: list[Any] = []
@@ -96,12 +100,15 @@ class Clients:
 
         return self._once(("listener", name, type_name(cls), latched), make)
 
+    def _gate(self, cls: Any) -> Gate:
+        return Gate(cls, lags=not getattr(self.node.get_clock(), "ros_time_is_active", True))
+
     def latest(self, cls: Any, name: str, latched: bool = False) -> Latest:
         """The latest message of a topic. One that is not latched is heard from reliable and other publishers."""
         name = self._claim("publisher", cls, name)
 
         def make() -> tuple[Latest, Missing]:
-            made = Latest(name, self.clock.now, lambda: no_publisher(self.node, cls, name), Gate(cls).refuses)
+            made = Latest(name, self.clock.now, lambda: no_publisher(self.node, cls, name), self._gate(cls).refuses)
             qos = _qos(True) if latched else QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
             self.node.create_subscription(cls, name, made.store, qos)
             return made, made.why_not

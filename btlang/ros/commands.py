@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from math import isfinite
+from math import degrees
 from typing import Any
 
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from btlang.record import Record
+from btlang.robots.motion.guard.guard import check_velocity
 from btlang.robots.robot import RobotError
 from btlang.ros.poses import BASE
 from btlang.ros.times import duration
 
-FASTEST, FASTEST_TURN = 20.0, 30.0
-"""Metres and radians a second that no robot exceeds."""
 _ABSURD = 1e4  # radians or metres of a joint
 _ROUNDING = 1.05  # of a limit
 
@@ -28,14 +27,9 @@ class Reach(Record):
     speed: float
 
 
-def velocity(kind: Any, linear: float, angular: float, stamp: Any, fastest: float = FASTEST) -> Any:
+def velocity(kind: Any, linear: float, angular: float, stamp: Any) -> Any:
     """A Twist or a TwistStamped, in metres and radians a second. Raises RobotError for what is no velocity."""
-    if not isfinite(linear) or not isfinite(angular):
-        raise RobotError(f"a velocity of {linear:g} m/s and {angular:g} rad/s is not finite")
-    if abs(linear) > fastest or abs(angular) > FASTEST_TURN:
-        raise RobotError(
-            f"a velocity of {linear:.3g} m/s and {angular + 0.0:.3g} rad/s is beyond the limits of the robot"
-        )
+    check_velocity(linear, degrees(angular))
     message = twist = kind()
     if hasattr(message, "header"):
         message.header.stamp, message.header.frame_id = stamp, BASE

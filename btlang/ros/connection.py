@@ -76,6 +76,7 @@ class RosConnection:
             if sim_time:
                 self.robot.subscriptions.listen(CLOCK.name, ClockMessage, "simulated time")
             self._clients = Clients(self._spun.node)
+            self._clients.judge = self.robot.judge
             self.robot.pending = self._clients.left
             self._spun.start()
         except BaseException:

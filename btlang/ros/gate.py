@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import time
-from math import hypot, isfinite, sqrt
+from math import degrees, hypot, isfinite, sqrt
 
 import numpy as np
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
+from btlang.robots.motion.guard.guard import FASTEST, FASTEST_TURN
 from btlang.robots.motion.guard.stamps import StampCheck
-from btlang.ros.commands import FASTEST, FASTEST_TURN
 from btlang.ros.scans import echoes
 from btlang.ros.times import seconds_of
 
@@ -30,20 +30,29 @@ _NOT_FINITE = "sends numbers that are not finite"
 class Gate:
     """For the messages of one topic, in the order in which they come.
 
-    Without `lags` it doesn't judge how long they were under way: the clock of their stamps may be a faster one.
+    Without `lags` it doesn't judge how long they were under way: the clock of their stamps may be a faster one. With
+    `all_stamps` those of all kinds of messages count, else those of odometry and scans.
     """
 
-    def __init__(self, kind: type, lags: bool = True) -> None:
+    def __init__(self, kind: Any, lags: bool = True, all_stamps: bool = False) -> None:
         self._stamps, self._lags = StampCheck(), lags
         self._before: tuple[float, float, float, float] | None = None  # x, y, stamp and arrival
         checks: dict[type, Callable[[Any], str]] = {
             Odometry: self._odometry,
             PoseStamped: lambda message: pose_fault(message.pose),
             PoseWithCovarianceStamped: lambda message: _covariance(message.pose) or pose_fault(message.pose.pose),
-            LaserScan: lambda message: _scan(message) or self._stamp(message),
+            LaserScan: _scan,
         }
-        self.refuses = checks.get(kind, lambda message: "")
+        self._check = checks.get(kind, lambda message: "")
+        self._stamped = kind in (Odometry, LaserScan) or (all_stamps and hasattr(kind, "header"))
+
+    def refuses(self, message: Any) -> str:
         """Why a message is not to be believed, to be read behind the name of its topic; "" where it is."""
+        reason = self._check(message)
+        if not self._stamped:
+            return reason
+        stamp = self._stamps.fault(seconds_of(message.header.stamp), time.monotonic(), self._lags)
+        return reason or stamp
 
     def _odometry(self, message: Any) -> str:
         pose, twist = message.pose.pose, message.twist.twist
@@ -53,12 +62,9 @@ class Gate:
         speeds = twist.linear.x, twist.linear.y, twist.angular.z
         if not all(map(isfinite, speeds)):
             return _NOT_FINITE
-        if hypot(*speeds[:2]) > FASTEST or abs(speeds[2]) > FASTEST_TURN:
+        if hypot(*speeds[:2]) > FASTEST or abs(degrees(speeds[2])) > FASTEST_TURN:
             return f"says that the robot moves at {hypot(*speeds[:2]):.3g} m/s and turns at {speeds[2]:.3g} rad/s"
-        return self._stamp(message) or self._jump(pose.position.x, pose.position.y, seconds_of(message.header.stamp))
-
-    def _stamp(self, message: Any) -> str:
-        return self._stamps.fault(seconds_of(message.header.stamp), time.monotonic(), self._lags)
+        return self._jump(pose.position.x, pose.position.y, seconds_of(message.header.stamp))
 
     def _jump(self, x: float, y: float, stamp: float) -> str:
         """The next message is compared with this one: odometry that restarted is believed again."""

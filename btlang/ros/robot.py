@@ -39,6 +39,7 @@ from btlang.ros.perception import RosPerception
 from btlang.ros.places import Places
 from btlang.ros.power import RosPower, make_docking_clients
 from btlang.ros.pursuit import Pursuit
+from btlang.ros.robot_interface import VELOCITY
 from btlang.ros.sensors import RosSensors
 from btlang.ros.services import Services
 from btlang.ros.speech import RosSpeech
@@ -132,6 +133,7 @@ class RosRobot:
         self.pending: Callable[[], Iterable[str]] = tuple
         """Further reasons why it may be moved on, beside its journeys."""
         self._stops_for = 0.0
+        self._driven = False  # by somebody else, since the latest step
         self._closed = False
 
     def prepare_navigation(self) -> None:
@@ -157,7 +159,9 @@ class RosRobot:
             self._stops_for -= dt
             self._rest()  # again: something else may drive the robot on, such as a server that ignores a cancel
         self._latch.step()
-        self._judge(*self._base.wanted)
+        if not self._driven:
+            self._judge(*self._base.wanted)
+        self._driven = False
         self._base.step(dt)
         self._voice.step(dt)
         here = self._base.where()
@@ -301,6 +305,14 @@ class RosRobot:
         most = abs(verdict.linear) if verdict.linear != linear else inf
         self._base.limits = most, abs(verdict.angular) if verdict.angular != angular else inf
         return verdict
+
+    def judge(self, topic: str, linear: float, angular: float) -> Verdict | None:
+        """What of a velocity that somebody else sends the guard allows; None for a topic that isn't this robot's."""
+        resolve = self._node.resolve_topic_name
+        if resolve(topic) != resolve(VELOCITY):
+            return None
+        self._driven = True
+        return self._guard.judge(linear, angular)
 
     @property
     def held_back(self) -> str:

@@ -16,7 +16,7 @@ from btlang.robots.geometry import CENTRE, Pose
 from btlang.robots.motion.guard.guard import FRESH
 from btlang.robots.motion.guard.readings import ObstacleReading, ScanReading
 from btlang.robots.robot import SensorSilent
-from btlang.robots.scan import around
+from btlang.robots.scan import around, summary
 from btlang.ros.base import RosBase
 from btlang.ros.poses import BASE
 from btlang.ros.scans import echoes
@@ -38,7 +38,9 @@ class RosSensors:
     ) -> None:
         self._subscriptions, self._base, self._emit = subscriptions, base, emit
         self._scanner, self._radius = body.sensor("scanner") or Sensor("scanner", BASE), body.radius
-        self._seen: tuple[Any, npt.NDArray[np.float64], float] | None = None  # a scan, around the centre, and its room
+        self._seen: tuple[Any, npt.NDArray[np.float64], float, float] | None = (
+            None  # a scan, around the centre, and its summary
+        )
         self._looked, self._published = -inf, False
         self._contact: Pose | None = None
         self._unknown_frame = ""
@@ -68,17 +70,16 @@ class RosSensors:
         message, arrived, fault = found
         if self._seen is None or self._seen[0] is not message:
             ranges = self._around(message)
-            room = -inf if np.isnan(ranges).any() else float(ranges.min(initial=inf)) - self._radius
-            self._seen = message, ranges, room
-        _, ranges, room = self._seen
-        return [ScanReading("scanner", arrived, fault, lambda: ranges, scanner.view, scanner.angle, room)]
+            self._seen = message, ranges, *summary(ranges, self._radius)
+        _, ranges, room, content = self._seen
+        return [ScanReading("scanner", arrived, fault, lambda: ranges, scanner.view, scanner.angle, room, content)]
 
     def _never(self, now: float) -> str:
         """Why no scan has come, although something publishes them."""
         if now - self._looked >= _LOOK_AGAIN:
             self._looked = now
             self._published = self._subscriptions.is_published(SCAN)
-        return f"nothing has arrived on {self._subscriptions.shown(SCAN)} yet" if self._published else ""
+        return self._subscriptions.why_not(SCAN) if self._published else ""
 
     @property
     def bumped(self) -> bool:

@@ -13,7 +13,7 @@ from std_msgs.msg import Bool
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.robot import RobotError
 from btlang.robots.world import Zone, said
-from btlang.robots.zones import Zones
+from btlang.robots.zones import Zones, zone_names
 from btlang.ros.available import optional_interface
 from btlang.ros.names import graph_names
 from btlang.ros.node import LATCHED
@@ -89,8 +89,13 @@ class RosZones:
         if not self._plan or self._checked == self.zones.version or self._time - self._changed < _NEW_PLAN:
             return ""
         self._checked = self.zones.version
+        if self._goal is None:
+            return ""
+        left = next((zones for zones in self.zones.confines if leaves(self._plan, zones)), None)
+        if left is not None:
+            return f"the way to {said(self._goal[0])} leads out of {zone_names(left)}, where the robot has to stay"
         zone = next((zone for zone in self.zones.closed if enters(self._plan, zone)), None)
-        if zone is None or self._goal is None:
+        if zone is None:
             return ""
         return f"the way to {said(self._goal[0])} leads through the {zone.name}, where the robot may not go"
 
@@ -144,6 +149,12 @@ def enters(plan: Sequence[Point], zone: Zone) -> bool:
                 return True
             was_inside = inside
     return False
+
+
+def leaves(plan: Sequence[Point], zones: Sequence[Zone]) -> bool:
+    """Whether a plan leads out of zones, so that it is in none of them any more; one that only leads in doesn't."""
+    inside = [any(zone.contains(point) for zone in zones) for point in plan]
+    return any(before and not after for before, after in pairwise(inside)) or not inside[-1]
 
 
 def _fault(message: Path) -> str:

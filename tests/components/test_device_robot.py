@@ -120,6 +120,17 @@ def test_the_gate_stops_before_a_wall(tmp_path: Path, sensor: str) -> None:
     assert outcome.seconds < 40
 
 
+@pytest.mark.parametrize("ends", [0.0, 2.0])
+def test_a_lidar_alone_stops_it_before_a_wall(tmp_path: Path, ends: float) -> None:
+    """Also one that falls silent."""
+    lidar = device("lidar", "lidar", **({"silent": f"[{ends}, 1000]"} if ends else {}))
+    robot = connector(robot_file(tmp_path, lidar), "devices", simulate=[ALL])
+    outcome, events = run("move forward 9 m", robot, time_limit=60.0)
+    assert "bump" not in [event.tag for event in events]
+    reason = "the lidar is silent" if ends else "scanner: 0.04 m ahead"
+    assert reason in outcome.why()
+
+
 def test_the_watchdog_stops_a_twin_that_nobody_commands(tmp_path: Path) -> None:
     from btlang.devices.device_set import DeviceSet
     from btlang.devices.kinds import WheelSpeeds

@@ -16,9 +16,9 @@ from btlang.devices import kinds
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
 from btlang.devices.drivers import driver_class
 from btlang.devices.kinds import KINDS
-from btlang.ros.devices.client import Freshness
 from btlang.ros.devices.setting import Setting, topic_name
 from btlang.ros.devices.translations import TRANSLATIONS
+from btlang.ros.gate import Gate
 from btlang.ros.times import stamp
 
 SETTING = Setting("elbow", wheel_gap=0.3, range=4.0)
@@ -119,17 +119,20 @@ def test_commands_that_are_none() -> None:
 
 def test_stamps_that_stand_still_go_back_or_fall_behind(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [500.0]
-    monkeypatch.setattr("btlang.ros.devices.client.time.monotonic", lambda: now[0])
-    freshness, message = Freshness(), Range()
-    assert freshness.fault(message) == ""  # without a stamp nothing is known
+    monkeypatch.setattr("btlang.ros.gate.time.monotonic", lambda: now[0])
+    gate, message = Gate(Range, all_stamps=True), Range()
+    assert gate.refuses(message) == ""  # without a stamp nothing is known
     faults = []
     for at, stamped in ((500.0, 90.0), (500.1, 90.1), (500.2, 90.1), (503.0, 90.5), (503.1, 20.0), (503.2, 20.1)):
         now[0], message.header.stamp = at, stamp(stamped)
-        faults.append(freshness.fault(message))
+        faults.append(gate.refuses(message))
     assert faults == [
-        "", "", "sends the same message again", "sends messages that are 2.5 s old",
-        "sends an older message than before", "",
+        "", "", "repeats its time stamp", "is 2.5 s old", "has time stamps that go back by 70.50 s", "is 73.1 s old",
     ]  # fmt: skip
+    for step in range(40):  # its clock was set: what is steady counts again
+        now[0], message.header.stamp = 503.3 + 0.1 * step, stamp(20.2 + 0.1 * step)
+        fault = gate.refuses(message)
+    assert fault == ""
 
 
 @pytest.mark.parametrize(

@@ -134,8 +134,14 @@ def test_bad_odometry_is_missing_before_the_run(lab: Lab) -> None:
 
 
 def test_a_command_that_arrives_late_makes_nobody_stuck(lab: Lab) -> None:
-    lab.misbehave("late=2")
+    lab.misbehave("late=0.5")
     assert lab.run("move forward 2 m", limit=2.5, stopped="time limit") == ""
+
+
+def test_where_the_odometry_shows_no_motion_for_long_it_stops(lab: Lab) -> None:
+    """The command may be late, or what the odometry says: the robot may be driving already."""
+    lab.misbehave("late=2")
+    assert lab.run("move forward 2 m") == "stuck after 0.00 m: /odom shows that the robot doesn't move"
 
 
 def test_joints_without_positions(lab: Lab) -> None:

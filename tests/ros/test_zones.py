@@ -100,6 +100,20 @@ def test_a_zone_that_is_closed_on_the_way_leaves_time_for_a_new_plan(graph: Grap
     assert zones.step(1.1, HERE) == "the way to the lab leads through the carpet, where the robot may not go"
 
 
+def test_a_plan_out_of_the_zone_to_stay_in_is_not_followed(graph: Graph, zones: RosZones) -> None:
+    graph.plans = [path((5.5, 0.5), (6.5, 0.5), (5.2, 0.5))]
+    with zones.zones.keep_in("carpet"):
+        with pytest.raises(RobotError, match=r"^the lab is outside the carpet, where the robot has to stay$"):
+            zones.set_out("lab", Pose(4.0, 0.5))
+        zones.set_out("sofa", Pose(5.2, 0.5))
+        zones.step(1.1, HERE)
+        graph.plans = [path((5.5, 0.5), (6.5, 0.5), (5.2, 0.5))]
+        reason = "the way to the sofa leads out of the carpet, where the robot has to stay"
+        assert zones.step(1.1, HERE) == reason
+        graph.plans = [path((5.5, 0.5), (5.2, 0.5))]
+        assert zones.step(1.1, HERE) == ""
+
+
 def test_slow_zones_limit_the_speed(graph: Graph, zones: RosZones) -> None:
     pytest.importorskip("nav2_msgs.msg._speed_limit")
     assert (zones.limit(HERE), zones.limit(Pose(5.5, 0.5)), zones.limit(None)) == (inf, 0.2, inf)

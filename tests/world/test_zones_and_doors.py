@@ -66,6 +66,24 @@ def test_a_mission_closes_and_opens_zones() -> None:
     assert not life.robot.zones.is_closed("stairs")
 
 
+def test_it_stays_in_the_zones_that_it_is_confined_to() -> None:
+    hall = '[[zones]]\nname = "hall"\nkind = "slow"\nspeed = 5\npoints = [[0, 0], [4, 0], [4, 4], [0, 4]]\n'
+    life = Life(rooms(hall))
+    robot = life.robot
+    robot.put(Pose(1, 2))
+    with robot.zones.keep_in("hall"):
+        assert robot.navigate_to("east").failure == "the east is outside the hall, where the robot has to stay"
+        goal = robot.navigate_to_pose(Pose(3, 3))
+        life.until(lambda: goal.done, 30)
+        assert goal.failure is None
+        robot.put(Pose(3, 2))
+        robot.drive(0.5, 0.0)
+        life.after(5)
+        assert 3.6 < robot.pose.x <= 3.8
+    life.after(2)
+    assert robot.pose.x > 4.0
+
+
 def test_a_door_is_a_wall_until_it_is_opened() -> None:
     life = Life(rooms(DOOR))
     assert life.robot.navigate_to("east").failure == "there is no free way to the east"

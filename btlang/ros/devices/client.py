@@ -18,38 +18,13 @@ from btlang.robots.robot import RobotError
 from btlang.ros.devices.setting import TopicDevice
 from btlang.ros.devices.translations import TRANSLATIONS
 from btlang.ros.node import LATCHED, SpunNode
-from btlang.ros.times import seconds_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
 _MOST = 50  # messages of one topic that wait for a cycle
-_OLD = 1.0  # seconds that a message may be later than the fastest one
 _LAST_WORD = 0.1  # seconds that the last command gets to be heard
-
-
-class Freshness:
-    """Whether messages are news, by their stamps: the clock of their computer may be another one than ours."""
-
-    def __init__(self) -> None:
-        self._before, self._least = -math.inf, math.inf
-
-    def fault(self, message: Any) -> str:
-        """Why a message is none, to be read behind its name; "" where it is."""
-        header = getattr(message, "header", None)
-        stamp = seconds_of(header.stamp) if header is not None else 0.0
-        if stamp == 0.0:
-            return ""
-        behind, before, self._before = time.monotonic() - stamp, self._before, stamp
-        if stamp < before:  # its clock was set, or it restarted: what follows counts
-            self._least = math.inf
-            return "sends an older message than before"
-        if stamp == before:
-            return "sends the same message again"
-        self._least = min(self._least, behind)
-        late = behind - self._least
-        return f"sends messages that are {late:.1f} s old" if late > _OLD else ""
 
 
 class TopicClient:
@@ -58,7 +33,6 @@ class TopicClient:
     def __init__(self, device: TopicDevice, node: Node) -> None:
         self._device, self._kind = device, KINDS[device.kind]
         self._translation = TRANSLATIONS[device.kind](device.setting)
-        self._freshness = Freshness()
         self._messages: deque[tuple[Any, float]] = deque(maxlen=_MOST)
         self._latest: tuple[Reading | None, float] = None, -math.inf
         self._given, self._refused = -math.inf, ""
@@ -110,9 +84,6 @@ class TopicClient:
 
     def _read(self, message: Any) -> tuple[str, Reading | None]:
         """The reading of a message, or why there is none."""
-        fault = self._freshness.fault(message)
-        if fault:
-            return f"{self._device.topic} {fault}", None
         try:
             return "", self._translation.reading(message)
         except DeviceError as problem:

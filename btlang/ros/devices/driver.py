@@ -8,6 +8,7 @@ from btlang.devices.driver import Device, DeviceError
 from btlang.devices.kinds import KINDS, Command, Reading
 from btlang.devices.loop import SILENCE
 from btlang.diagnostics.errors import MissionError
+from btlang.robots.motion.guard.guard import FRESH
 from btlang.ros.available import require_ros
 from btlang.ros.devices.setting import COMMANDS, Setting, TopicDevice, topic_name
 
@@ -67,7 +68,7 @@ def _topic_device(device: Device) -> TopicDevice:
     topic = _text(device, options, "topic", f"/{topic_name(device.name)}")
     usual = f"{topic}/{COMMANDS}" if kind.reading is not None else topic
     command = _text(device, options, COMMANDS, usual) if kind.command is not None else ""
-    silence = _number(device, options, "silence", SILENCE if kind.moves else _SLOW, SILENCE)
+    silence = _number(device, options, "silence", _usual_silence(device.kind), SILENCE)
     gap = _number(device, options, "wheel_gap", 0.0, 0.01) if device.kind == "drive" else 0.0
     own = _OF_KINDS.get(device.kind, ())
     joint = _text(device, options, "joint", topic_name(device.name)) if "joint" in own else ""
@@ -79,6 +80,11 @@ def _topic_device(device: Device) -> TopicDevice:
         raise DeviceError(f'unknown option "{name}" of the {device.name}; it has {known}')
     reads = topic if kind.reading is not None else ""
     return TopicDevice(device.name, device.kind, reads, command, silence, Setting(joint, slides, gap))
+
+
+def _usual_silence(kind: str) -> float:
+    """Seconds: what moves, and what the guard drives by, is silent sooner than the others."""
+    return SILENCE if KINDS[kind].moves else FRESH if kind in ("lidar", "range") else _SLOW
 
 
 def _text(device: Device, options: dict[str, Any], name: str, usual: str) -> str:

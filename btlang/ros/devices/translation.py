@@ -26,7 +26,7 @@ class Translation:
 
     def __init__(self, setting: Setting) -> None:
         self._setting = setting
-        self._gate = Gate(self.reads)
+        self._gate = Gate(self.reads, all_stamps=True)
 
     def reading(self, message: Any) -> Reading:
         """What a message says. Raises DeviceSilent where that can't be true."""

@@ -42,9 +42,14 @@ def drive_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
     publisher = clients.publisher(cls, name)
     odometry = clients.latest(Odometry, word.ros.get("odometry", "odom"))
 
-    def send(speed: float, turning: float = 0.0) -> None:
+    def send(speed: float, turning: float = 0.0) -> str:
+        """Returns why the guard lets it drive slower, "" where it doesn't."""
         speeds = (0.0, speed) if turns else (speed, turning)
+        verdict = clients.judge(name, speeds[0], math.degrees(speeds[1]))
+        if verdict is not None:
+            speeds = verdict.linear, math.radians(verdict.angular)
         publisher.publish(velocity(cls, *speeds, clients.clock.message()))
+        return "" if verdict is None else verdict.reason
 
     def drive(**values: Any) -> Generator[None, None, bool]:
         way_to_go = sign * amount(values)
@@ -54,7 +59,8 @@ def drive_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
         travelled = _turned if turns else _driven
         start = pose = _pose(odometry.take(_ODOMETRY_AGE))
         done, shown = 0.0, math.degrees if turns else float
-        bounds = Progress(shown(way_to_go), shown(close), turns, clients.clock.now, patience)
+        reason = ""
+        bounds = Progress(shown(way_to_go), shown(close), turns, clients.clock.now, patience, lambda: reason)
         try:
             while True:
                 before, pose = pose, _pose(odometry.take(_ODOMETRY_AGE))
@@ -63,7 +69,7 @@ def drive_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
                 if abs(left) <= close:
                     return True
                 bounds.check(shown(left), shown(done) if turns else math.dist(start[:2], pose[:2]))
-                send(approach.velocity(left), 0.0 if turns else -_GAIN * _turned(start, pose))
+                reason = send(approach.velocity(left), 0.0 if turns else -_GAIN * _turned(start, pose))
                 yield
         finally:
             send(0.0)

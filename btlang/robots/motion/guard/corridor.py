@@ -12,33 +12,32 @@ Array = npt.NDArray[np.float64]
 
 _ANGLES = np.radians(np.arange(-90.0, 91.0))
 _COS, _SIN = np.cos(_ANGLES), np.sin(_ANGLES)
-_WINDOW = slice(65, 116)  # degrees to both sides that beams must cover: the corridor from 0.3 m before the rim on
+_SIDES = 25  # degrees to both sides that beams must cover: the corridor from 0.3 m before the rim on
 _GAP = 6  # degrees in a row that no beam covers; less hides nothing that matters, and scanners miss beams now and then
 
 
-def free_way(ranges: Array, direction: float, radius: float, wide: float = 0.0) -> float:
+def free_way(ranges: Array, direction: float, radius: float, view: float = 360.0) -> float:
     """Metres that a robot of this radius can drive in a direction before it touches something; NaN where beams don't
     cover that direction, inf where nothing is in range.
 
     `ranges` are those of btlang.robots.motion.guard.readings.ScanReading, the direction is in degrees left of ahead.
-    The corridor is `wide` metres wider than the robot on each side.
+    The scanner looks `view` degrees wide around it.
     """
     beams = ranges[_beams(round(direction) % 360)]
     seen = np.isfinite(beams)
-    echoes, half = beams[seen], radius + wide
-    across, along = echoes * _SIN[seen], echoes * _COS[seen]
-    touching = np.abs(across) < half
+    across, along = beams[seen] * _SIN[seen], beams[seen] * _COS[seen]
+    touching = np.abs(across) < radius
     if touching.any():
-        beside = np.minimum(np.abs(across[touching]), radius)
+        beside = across[touching]
         nearest = max(0.0, float((along[touching] - np.sqrt(radius * radius - beside * beside)).min()))
     else:
         nearest = inf
-    return nearest if _are_covered(beams) else nan
+    return nearest if _are_covered(beams, view) else nan
 
 
-def is_covered(ranges: Array, direction: float) -> bool:
+def is_covered(ranges: Array, direction: float, view: float = 360.0) -> bool:
     """Whether valid beams look in a direction, in degrees left of ahead, so that it can be clear."""
-    return _are_covered(ranges[_beams(round(direction) % 360)])
+    return _are_covered(ranges[_beams(round(direction) % 360)], view)
 
 
 @cache
@@ -46,6 +45,8 @@ def _beams(direction: int) -> npt.NDArray[np.int64]:
     return (direction + np.arange(-90, 91)) % 360
 
 
-def _are_covered(beams: Array) -> bool:
-    unseen = np.isnan(beams[_WINDOW])
-    return not unseen.any() or bool(np.convolve(unseen, np.ones(_GAP), "valid").max() < _GAP - 0.5)
+def _are_covered(beams: Array, view: float) -> bool:
+    sides = max(0, min(_SIDES, int(view / 2) - 1))
+    unseen = np.isnan(beams[90 - sides : 91 + sides])
+    gap = min(_GAP, len(unseen))
+    return not unseen.any() or bool(np.convolve(unseen, np.ones(gap), "valid").max() < gap - 0.5)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from enum import Enum
-from math import copysign, cos, inf, isfinite, isnan, radians, sqrt
+from math import copysign, cos, degrees, inf, isfinite, isnan, radians, sqrt
 
 from btlang.record import Record
 from btlang.robots.body import Body
@@ -24,16 +24,22 @@ from btlang.robots.motion.guard.regions import Regions
 from btlang.robots.robot import RobotError
 from btlang.robots.zones import Zones
 
-FASTEST, FASTEST_TURN = 20.0, 1720.0
+FASTEST, FASTEST_TURN = 20.0, degrees(30.0)
 """Metres and degrees a second that no robot exceeds."""
 FRESH = 0.6
 """Seconds after which a reading says nothing about the way any more."""
+_BLIND, _OFTEN = (
+    0.3,
+    0.25,
+)  # metres that it may go without news of a sensor, and the seconds between these that are usual
 _MARGIN = 0.035  # metres that stay free: less than planners keep beside the robot
 _DELAY = 0.1  # seconds until it brakes
 _LOOKS = 60.0  # degrees from the way: sensors that look farther aside say nothing about it
 _STANDS = 0.02  # metres a second: less is standing
 _TOUCHING = 0.3  # seconds for which it counts that somebody wants to touch what is ahead
 _BESIDE = 1e-3  # metres
+_ROUNDING = 1.0 + 1e-9
+_LATE = 0.05  # metres
 _STEP = 0.3  # metres between two looks at a sensor, after which nothing is known of the time between
 
 
@@ -43,7 +49,7 @@ class Cause(Enum):
     NONE, OBSTACLE, ZONE, SENSOR, ODOMETRY, PERSON = range(6)
 
 
-_PATIENCE = {Cause.NONE: inf, Cause.OBSTACLE: 1.0, Cause.ZONE: 1.0, Cause.SENSOR: 1.5, Cause.ODOMETRY: 0.0}
+_PATIENCE = {Cause.NONE: inf, Cause.OBSTACLE: 1.0, Cause.ZONE: 1.0, Cause.SENSOR: 2.0, Cause.ODOMETRY: 0.0}
 """Seconds after which a drive that stands for it has failed; for people it has the patience of the body."""
 
 
@@ -85,8 +91,9 @@ class Guard:
         self._checked = -inf  # the stamp of the odometry that was compared last
         self._disagrees = ""
         self._direction = 0.0, 0.0
-        # what a sensor said last, how far the robot had gone when it said so first, and when it was asked last
-        self._seen: dict[str, tuple[float, float, float]] = {}
+        # what a sensor said last, how far the robot had gone when it said so first (by odometry, by commands), and how
+        # far when it was asked last
+        self._seen: dict[str, tuple[float, float, float, float]] = {}
         self._stands_since: float | None = None
         self._touches_until, self._touches = -inf, False
         self.verdict = Verdict(0.0, 0.0)
@@ -154,6 +161,8 @@ class Guard:
             return Verdict(0.0, 0.0, f"{reading.source} {self._disagrees}", Cause.ODOMETRY)
         if reading is not None and (fault := _fault(reading, now)):
             return Verdict(0.0, 0.0, fault, Cause.SENSOR)
+        if reading is not None and (blind := _blind_speed(reading, now)) < abs(linear):
+            linear = copysign(blind, linear)
         if linear == 0.0:
             return Verdict(0.0, angular)
         most, reason, cause, who = self._safe(linear < 0.0, abs(linear), now)
@@ -191,22 +200,24 @@ class Guard:
             return (
                 (0.0, f"the {reading.source} is pressed", Cause.OBSTACLE) if reading.pressed else (inf, "", Cause.NONE)
             )
+        blind = _blind_speed(reading, now)
+        if blind < wanted:
+            return blind, f"{reading.source} is silent for {now - reading.stamp:.1f} s", Cause.SENSOR
         if isinstance(reading, RangeReading):
             free = reading.distance
+            frozen = self._since_changed(reading.source, free)
         else:
             brake = self._body.driving.brake
-            if reading.room - _MARGIN >= wanted * _DELAY + wanted * wanted / (2 * brake):
+            frozen = self._since_changed(reading.source, reading.content)
+            if reading.room - frozen - _MARGIN >= wanted * _DELAY + wanted * wanted / (2 * brake):
                 return inf, "", Cause.NONE
-            assert reading.ranges is not None
-            from btlang.robots.motion.guard.corridor import free_way  # numpy takes longer to import than many missions
-
             try:
-                free = free_way(reading.ranges(), 180.0 if backward else 0.0, self._body.radius - _BESIDE)
+                free = self._free_way(reading, 180.0 if backward else 0.0)
             except RobotError as problem:
                 return 0.0, str(problem), Cause.SENSOR
         if isnan(free):
             return 0.0, f"{reading.source}: no valid beam looks {side}", Cause.SENSOR
-        left = free - self._since_changed(f"{reading.source} {side}", free)
+        left = free - frozen
         most = self._before_contact(left - _MARGIN)
         if self._touches:
             most = max(most, self._body.contact_speed)
@@ -214,14 +225,25 @@ class Guard:
             return most, f"{reading.source}: shows the same for {free - left:.2f} m of the way", Cause.SENSOR
         return most, f"{reading.source}: {max(0.0, free):.2f} m {side}", Cause.OBSTACLE
 
-    def _since_changed(self, sensor: str, free: float) -> float:
+    def _free_way(self, reading: ScanReading, direction: float) -> float:
+        """As `free_way` of btlang.robots.motion.guard.corridor."""
+        if reading.free_way is not None:
+            return reading.free_way(direction)
+        assert reading.ranges is not None
+        from btlang.robots.motion.guard.corridor import free_way  # numpy takes longer to import than many missions
+
+        view = reading.view - 2 * abs(wrap(reading.angle - direction)) if reading.view < 360.0 else 360.0
+        return free_way(reading.ranges(), direction, self._body.radius - _BESIDE, view)
+
+    def _since_changed(self, sensor: str, said: float) -> float:
         """Metres that the robot has gone since a sensor said something else: a sensor may be frozen."""
-        rolled = self._check.rolled
-        before, since, asked = self._seen.get(sensor, (inf, 0.0, 0.0))
-        if before != free or not isfinite(free) or rolled - asked > _STEP:
-            since = rolled
-        self._seen[sensor] = free, since, rolled
-        return rolled - since
+        rolled, commanded = self._check.rolled, self._check.commanded
+        before, since, commanded_since, asked = self._seen.get(sensor, (inf, 0.0, 0.0, 0.0))
+        if before != said or not isfinite(said) or rolled - asked > _STEP:
+            since, commanded_since = rolled, commanded
+        self._seen[sensor] = said, since, commanded_since, rolled
+        gone = max(rolled - since, commanded - commanded_since)  # either may lie
+        return gone + _LATE if gone > _LATE else gone  # it may have been old when it came first
 
     def _before_contact(self, gap: float) -> float:
         """The speed at which it still stands before something so far away, if it brakes a moment later."""
@@ -235,7 +257,7 @@ def check_velocity(linear: float, angular: float) -> None:
     """Raises RobotError for metres and degrees a second that aren't finite, or faster than any robot."""
     if not isfinite(linear) or not isfinite(angular):
         raise RobotError(f"a velocity of {linear:g} m/s and {radians(angular):g} rad/s is not finite")
-    if abs(linear) > FASTEST or abs(angular) > FASTEST_TURN:
+    if abs(linear) > FASTEST or abs(angular) > FASTEST_TURN * _ROUNDING:
         raise RobotError(
             f"a velocity of {linear:.3g} m/s and {radians(angular) + 0.0:.3g} rad/s is beyond the limits of the robot"
         )
@@ -247,6 +269,12 @@ def _looks(reading: ObstacleReading, backward: bool) -> bool:
     if isinstance(reading, ScanReading):
         return away <= reading.view / 2
     return cos(radians(away)) >= cos(radians(_LOOKS)) - 1e-9
+
+
+def _blind_speed(reading: SensorReading, now: float) -> float:
+    """The speed at which a robot doesn't go too far until it hears from a sensor again, or stops."""
+    age = now - reading.stamp
+    return _BLIND / age if age > _OFTEN else inf
 
 
 def _fault(reading: SensorReading, now: float) -> str:

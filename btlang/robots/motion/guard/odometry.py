@@ -14,8 +14,10 @@ _LATER = (0.0, 0.25, 0.5)  # seconds that a command may take until the odometry 
 _EACH = 0.1  # seconds between two comparisons
 _SHARE = 0.5  # of what was commanded: both disagree if they differ by more
 _SLACK, _TURN_SLACK = 0.03, 12.0  # metres and degrees by which they may differ besides
+_SHORT, _SHORT_SLACK = 0.25, 0.03  # seconds and metres for robots that are too fast
+_TOP, _ROLLS_ON = 1.0, 0.6  # seconds in which it is still as fast as it was commanded, or moved before
 _AHEAD = 4.0  # times the slack by which more may be measured: robots roll on
-_SETS_OFF = 1.1  # seconds in which a robot has to set off
+_SETS_OFF, _STOPPED = 1.1, 0.65  # seconds without motion until a robot hasn't set off, and isn't under way any more
 _NOTHING = 0.05  # of what is commanded: less is standing still
 _STEP = 0.2  # seconds that a step counts at most: a robot brakes by itself before a command that comes late
 _KEPT = 100  # commands
@@ -36,8 +38,11 @@ class OdometryCheck:
         self._measured = self._turned = 0.0
         self._pose: Pose | None = None
         self._compared = self._moved_at = 0.0
-        self.rolled = 0.0
-        """Metres that the odometry has shown in sum, in whatever direction."""
+        self._under_way = False
+        self._tops: deque[tuple[float, float]] = deque()  # times and metres a second that were commanded
+        self._drives_since = 0.0
+        self.rolled = self.commanded = 0.0
+        """Metres that the odometry has shown in sum, in whatever direction, and that the commands come to."""
 
     def sent(self, now: float, linear: float, angular: float) -> None:
         """The base has been commanded so, in metres and degrees a second, since the last call."""
@@ -46,6 +51,10 @@ class OdometryCheck:
         speed = _towards(self._speeds[0], linear, driving.acceleration * passed, driving.brake * passed)
         spin = _towards(self._speeds[1], angular, turning.acceleration * passed, turning.brake * passed)
         self._speeds, self._way = (speed, spin), (self._way[0] + speed * passed, self._way[1] + spin * passed)
+        self.commanded += abs(speed) * passed
+        self._tops.append((now, abs(linear)))
+        while self._tops[0][0] < now - _TOP:
+            self._tops.popleft()
         self._times.append(now)
         self._ways.append(self._way)
         if len(self._times) > 2 * _KEPT:
@@ -66,8 +75,11 @@ class OdometryCheck:
         """Why a new pose can't be true, to be read after the name of the odometry; "" if it can."""
         self._add(pose, stamp)
         if len(self._samples) == 1:
-            self._moved_at = stamp
+            self._moved_at = self._drives_since = stamp
+            self._under_way = False
         first = self._samples[0]
+        if fault := self._too_fast(stamp):
+            return fault
         if not self._times or stamp - first[0] < _WINDOW or stamp - self._compared < _EACH:
             return ""
         self._compared = stamp
@@ -82,9 +94,20 @@ class OdometryCheck:
             found, shown = _disagreement(measured, [way for way, _ in ways], _SLACK), _DROVE
         if found is None:
             return ""
-        if stamp - self._moved_at <= _STANDING:
+        stood = stamp - self._moved_at
+        if stood <= _STANDING:
             return shown.format(*found)
-        return STANDS if stamp - self._moved_at > _SETS_OFF else ""
+        return STANDS if stood > (_STOPPED if self._under_way else _SETS_OFF) else ""
+
+    def _too_fast(self, stamp: float) -> str:
+        """A robot is never faster than it was commanded a while ago, however late it obeys."""
+        if stamp - self._drives_since < _ROLLS_ON or not self._tops:
+            return ""
+        before = next((each for each in reversed(self._samples) if each[0] <= stamp - _SHORT), None)
+        if before is None:
+            return ""
+        way, most = abs(self._measured - before[1]), max(top for _, top in self._tops) * (stamp - before[0])
+        return _DROVE.format(way, most) if way > (1.0 + _SHARE) * most + _SHORT_SLACK else ""
 
     def _add(self, pose: Pose, stamp: float) -> None:
         before, self._pose = self._pose, pose
@@ -98,7 +121,7 @@ class OdometryCheck:
             self.rolled += way
             passed = stamp - self._samples[-1][0] if self._samples else 0.0
             if way > _NOTHING * abs(self._speeds[0]) * passed or abs(turned) > _NOTHING * abs(self._speeds[1]) * passed:
-                self._moved_at = stamp
+                self._moved_at, self._under_way = stamp, True
         self._samples.append((stamp, self._measured, self._turned))
         while len(self._samples) > 1 and self._samples[1][0] <= stamp - _WINDOW:
             self._samples.popleft()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import inf
 
 from btlang.record import Record
 from btlang.robots.geometry import Pose
@@ -29,13 +30,16 @@ class ScanReading(SensorReading):
 
     `ranges` gives 360 metres from the centre of the robot, index = degrees left of its heading: inf where a valid beam
     found nothing, NaN where no valid beam looked. It is only called where it matters: `room` metres around the rim are
-    known to be free without it.
+    known to be free without it. With `free_way`, the metres that are free in a direction are known without it, too.
+    `content` is a number that changes whenever the ranges do, inf if they can't be frozen.
     """
 
     ranges: Callable[[], Array] | None = None
     view: float = 360.0
     angle: float = 0.0
     room: float = 0.0
+    content: float = inf
+    free_way: Callable[[float], float] | None = None
 
 
 class RangeReading(SensorReading):
