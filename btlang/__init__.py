@@ -16,20 +16,21 @@ if TYPE_CHECKING:
     from btlang.decorators import action, condition, quantity
     from btlang.diagnostics.diagnostic import Diagnostic
     from btlang.diagnostics.errors import MissionError
-    from btlang.engine.leaves.leaf import ActionFailed, Unknown
+    from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown
     from btlang.run.runner import Outcome
     from btlang.run.statuses import Status
     from btlang.session import Run, Session
 
 __all__ = [
-    "ActionFailed", "Component", "Diagnostic", "Mission", "MissionError", "Outcome", "Parameter", "Run", "Session",
-    "Status", "Unknown", "action", "condition", "parse_file", "parse_tree", "quantity",
+    "ActionFailed", "Component", "Diagnostic", "Failed", "Mission", "MissionError", "Outcome", "Parameter", "Run",
+    "Session", "Status", "Unknown", "action", "condition", "parse_file", "parse_tree", "quantity",
 ]  # fmt: skip
 
 _HOMES = {
     "ActionFailed": "btlang.engine.leaves.leaf",
     "Component": "btlang.components.component",
     "Diagnostic": "btlang.diagnostics.diagnostic",
+    "Failed": "btlang.engine.leaves.leaf",
     "MissionError": "btlang.diagnostics.errors",
     "Outcome": "btlang.run.runner",
     "Parameter": "btlang.components.component",
