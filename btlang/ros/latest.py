@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 
 from btlang.engine.leaves.leaf import Unknown
 from btlang.ros.awake import AWAKE
+from btlang.ros.steady_time import SteadyTime
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -15,39 +15,27 @@ if TYPE_CHECKING:
 
 AGE = 5.0
 """Seconds after which what came last no longer counts, where a table says nothing else."""
-_STANDING = 1.0  # real seconds for which the clock of a simulation may stand still, as it does between its ticks
 
 
 class NodeClock:
     """The clock of a node in seconds, from any thread.
 
-    Without simulated time those are real ones in which this process is awake. If simulated time stands still because
-    nobody publishes it, real time counts on; if it restarts, it goes on from there: a limit is always reached.
+    Without simulated time those are real ones in which this process is awake; else those of SteadyTime: a limit is
+    always reached.
     """
 
     def __init__(self, node: Any) -> None:
         self._clock = node.get_clock()
-        self._simulated = getattr(self._clock, "ros_time_is_active", True)
-        # what the clock said, when it said so first, and how far `now` is ahead of it; replaced as one
-        self._seen: tuple[float, float, float] | None = None
-
-    def now(self) -> float:
+        simulated = getattr(self._clock, "ros_time_is_active", True)
+        self.now: Callable[[], float] = SteadyTime(self._seconds).now if simulated else AWAKE.now
         """Seconds of the node's clock."""
-        if not self._simulated:
-            return AWAKE.now()
-        said = self._clock.now().nanoseconds * 1e-9
-        real = time.monotonic()
-        before, since, ahead = self._seen or (said, real, 0.0)
-        stood = max(0.0, real - since - _STANDING)
-        if said != before:
-            ahead += max(0.0, before + stood - said)  # never back: what is compared with it would be young for long
-            since, stood = real, 0.0
-        self._seen = said, since, ahead
-        return float(said + ahead + stood)
 
     def message(self) -> Any:
         """The time as builtin_interfaces/Time."""
         return self._clock.now().to_msg()
+
+    def _seconds(self) -> float:
+        return float(self._clock.now().nanoseconds) * 1e-9
 
 
 class Latest:

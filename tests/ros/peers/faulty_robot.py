@@ -1,4 +1,4 @@
-"""A plain robot without a watchdog, whose sensors misbehave as they are told. `faulty_robot.py [NAMESPACE]`
+"""A plain robot without a watchdog, whose sensors misbehave as they are told. `faulty_robot.py [FAULT ...]`
 
 It drives at the velocity that it heard last, for ever. A text on /misbehave is a list of faults, which take the place
 of those before and put the robot back to where it began:
@@ -8,6 +8,8 @@ of those before and put the robot back to where it began:
 - `scan=FAULT`: nan, negative, zero, empty, flat (no angle between the beams), close (-inf), free (+inf), silent
 - `battery=FAULT`: nan, high (a percentage of 80), silent
 - `joint=FAULT`: nan
+- `clock=FAULT` of simulated time: backward, standing, slow (a thousandth of real time), twice (one that is 1000 s ahead
+  in turn with the right one); with `@moving` from the first velocity on
 - `late=SECONDS`: a velocity takes effect so much later
 
 It prints `faults ...` when it has heard of them, `drive LINEAR ANGULAR` for each other velocity, and `not finite`.
@@ -16,16 +18,19 @@ It prints `faults ...` when it has heard of them, `drive LINEAR ANGULAR` for eac
 from __future__ import annotations
 
 import math
+import sys
 import time
 
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import BatteryState, JointState, LaserScan
 from std_msgs.msg import String
 from trajectory_msgs.msg import JointTrajectory
 
+from btlang.ros.times import stamp
 from tests.ros.peers.peer import serve, tell
 
 PERIOD = 0.02
@@ -47,10 +52,12 @@ class FaultyRobot:
         self.node = node
         self.faults: dict[str, str] = {}
         self.joints = dict.fromkeys(JOINTS, 0.0)
-        self.begin("")
+        self.begin(" ".join(sys.argv[1:]))
         node.create_subscription(Twist, "cmd_vel", self.drive, 10)
         node.create_subscription(JointTrajectory, "joint_trajectory", self.move, 10)
         node.create_subscription(String, "misbehave", lambda message: self.begin(message.data), 10)
+        self.clock = node.create_publisher(Clock, "/clock", 10)
+        self.time = 1000.0
         self.odometry = node.create_publisher(Odometry, "odom", 10)
         self.scans = node.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
         self.batteries = node.create_publisher(BatteryState, "battery_state", 10)
@@ -95,6 +102,7 @@ class FaultyRobot:
         self.yaw += self.angular * passed
         self.x += self.linear * math.cos(self.yaw) * passed
         self.y += self.linear * math.sin(self.yaw) * passed
+        self.publish_clock(self.has("clock"), passed)
         self.publish_odometry(self.has("odom"))
         self.publish_scan(self.has("scan"))
         if self.has("battery") != "silent":
@@ -102,6 +110,12 @@ class FaultyRobot:
             self.batteries.publish(BatteryState(percentage=share))
         positions = [math.nan if self.has("joint") else at for at in self.joints.values()]
         self.states.publish(JointState(name=list(self.joints), position=positions))
+
+    def publish_clock(self, fault: str, passed: float) -> None:
+        self.time += {"backward": -1.0, "standing": 0.0, "slow": 0.001}.get(fault, 1.0) * passed
+        self.clock.publish(Clock(clock=stamp(self.time)))
+        if fault == "twice":
+            self.clock.publish(Clock(clock=stamp(self.time + 1000.0)))
 
     def publish_odometry(self, fault: str) -> None:
         if fault == "silent":
