@@ -28,8 +28,10 @@ def action(
     topic: str = "",
     help: str = "",
     example: str = "",
+    accompaniment: bool = False,
     instant: bool = False,
     uninterruptible: bool = False,
+    touches: bool = False,
     thread: bool = False,
     ros: Mapping[str, Any] | None = None,
     replace: bool = False,
@@ -45,7 +47,8 @@ def action(
     Without it a second function for the same id is an error (BT064).
     """
     return _word("action", phrase, id, slots or {}, ros, replace, needs, resources, topic=topic, help=help,
-                 example=example, instant=instant, uninterruptible=uninterruptible, thread=thread)  # fmt: skip
+                 example=example, accompaniment=accompaniment, instant=instant, uninterruptible=uninterruptible,
+                 thread=thread, touches=touches)  # fmt: skip
 
 
 def condition(

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 import os
 import threading
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cache, partial
 
 from btlang.backends.engine import bind_leaf
+from btlang.backends.touching import awaited
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.blackboard import Blackboard
@@ -370,7 +371,7 @@ class Run:
         for sink in sinks:
             self.bus.add(sink)
         connection.begin(self.bus)
-        bind = cache(partial(_bind, mission.vocabulary, connection))
+        bind = cache(partial(_bind, mission.vocabulary, connection, awaited(mission.tree)))
         try:
             return traced_engine(
                 mission.tree, bind, bus=self.bus, services={"robot": connection.robot}, proxies={"robot": RobotProxy},
@@ -388,9 +389,9 @@ class Run:
             return [refused]
         from btlang.backends.checking import tree_problems  # most trees are sound
 
-        bind = cache(partial(_bind, mission.vocabulary, connection))
+        bind = cache(partial(_bind, mission.vocabulary, connection, ()))
         return tree_problems(mission.tree, mission.vocabulary, bind, {"robot": connection.robot}) or [refused]
 
 
-def _bind(vocabulary: Lexicon, connection: Connection, node_id: str) -> Any:
-    return bind_leaf(node_id, vocabulary, connection.bind)
+def _bind(vocabulary: Lexicon, connection: Connection, waits_for: Collection[str], node_id: str) -> Any:
+    return bind_leaf(node_id, vocabulary, connection.bind, waits_for)

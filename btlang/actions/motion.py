@@ -12,7 +12,7 @@ from btlang.actions.points import where
 from btlang.actions.watch import BaseWatch, Driving
 from btlang.engine.leaves.leaf import ActionFailed, unheard
 from btlang.robots.geometry import wrap
-from btlang.robots.progress import PATIENCE, Approach, Progress
+from btlang.robots.progress import Approach, Progress
 
 Steps = Generator[None, None, None]
 Report = Callable[[float], object]
@@ -65,9 +65,9 @@ def turn_around(robot: Driving) -> Steps:
 
 
 def stop(robot: Driving) -> Steps:
-    """Brings the base to rest. Fails where it does not come to rest within 5 seconds."""
+    """Brings the base to rest. Fails if it does not come to rest within the patience of the robot."""
     robot.drive(0.0, 0.0)
-    until = robot.time + PATIENCE
+    until = robot.time + robot.body.patience
     while (velocity := robot.velocity) != (0.0, 0.0):
         if robot.time > until:
             raise ActionFailed(
@@ -94,7 +94,7 @@ def face_object(robot: Driving, object: str) -> Steps:
 def drive_straight(robot: Driving, distance: float, speed: float | None = None, progress: Report = unheard) -> Steps:
     """Drives `distance` metres along the heading (negative: backwards), keeps the course, and brakes."""
     start, watch = robot.pose, BaseWatch(robot)
-    bounds = Progress(distance, _CLOSE_ENOUGH, False, lambda: robot.time)
+    bounds = Progress(distance, _CLOSE_ENOUGH, False, lambda: robot.time, robot.body.patience, lambda: robot.limited_by)
     driving = robot.body.driving
     limit = min(driving.speed if speed is None else abs(speed), driving.top_speed)
     approach = Approach(limit, 3.0, driving.slowing, _SLOWEST)
@@ -120,7 +120,7 @@ def turn(robot: Driving, angle: float, progress: Report = unheard) -> Steps:
     heading, turned, watch = robot.pose.heading, 0.0, BaseWatch(robot)
     turning = robot.body.turning
     approach = Approach(turning.speed, 4.0, turning.slowing, _SLOWEST_TURN)
-    bounds = Progress(angle, _ANGLE_CLOSE_ENOUGH, True, lambda: robot.time)
+    bounds = Progress(angle, _ANGLE_CLOSE_ENOUGH, True, lambda: robot.time, robot.body.patience)
     try:
         while True:
             turned += wrap(robot.pose.heading - heading)

@@ -10,7 +10,12 @@ from btlang.actions.points import where
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.capabilities import Base, Navigation
 from btlang.robots.geometry import Pose
+from btlang.robots.likeness import unseen
+from btlang.robots.relations import related_words
 from btlang.robots.robot import Operation
+
+PASSED = 0.5
+"""Metres from a place at which the robot has come past it."""
 
 
 def go_to(
@@ -20,10 +25,26 @@ def go_to(
     y: float | None = None,
     facing: float | None = None,
     manner: str | None = None,
+    via: str = "",
 ) -> Steps:
-    """Drives to a place and faces as the place says, or to a point."""
+    """Drives to a place and faces as the place says, or to a point; past the places of `via` (`hall; lobby`) first."""
     steps = travel(robot, place) if place is not None else _go_to_point(robot, x, y, facing)
-    yield from paced(robot, manner, steps)
+    yield from paced(robot, manner, _past(robot, [name.strip() for name in via.split(";") if name.strip()], steps))
+
+
+def _past(robot: Navigation, places: list[str], steps: Steps) -> Steps:
+    """Passes each of the places without a stop, then takes the steps."""
+    for name in places:
+        point = robot.locate(name)
+        operation = robot.navigate_to(name)
+        try:
+            while not operation.done and robot.pose.distance_to(point) > PASSED:
+                yield
+            if operation.done and operation.failure is not None:
+                raise ActionFailed(operation.failure)
+        finally:
+            operation.cancel()
+    yield from steps
 
 
 def _go_to_point(robot: Navigation, x: float | None, y: float | None, facing: float | None) -> Steps:
@@ -52,15 +73,24 @@ def choose(
     type: str,
     how: str,
     output: Callable[[str], object],
-    clothing: str = "",
-    color: str = "",
-    gesture: str = "",
-    kind: str = "",
-    use: str = "",
+    **parts: str,
 ) -> None:
-    """Puts out the "nearest", a "random" name and so on of a type. Fails if there is none with these parts."""
-    parts = {"clothing": clothing, "color": color, "gesture": gesture, "kind": kind, "use": use}
+    """Puts out the "nearest", a "random" name and so on of a type. Fails if there is none with these parts.
+
+    The parts are those of a description: what it is like, what it isn't, and how it stands to something else.
+    """
     output(robot.choose(type, how, {name: text for name, text in parts.items() if text}))
+
+
+def choose_all(robot: Base, type: str, output: Callable[[str], object], count: str = "", **parts: str) -> None:
+    """Puts out the names of a type with these parts, the nearest first. Fails if there are none, or too few."""
+    wanted = {name: text for name, text in parts.items() if text}
+    names = robot.described(type, wanted)
+    if not names:
+        raise ActionFailed(unseen(type, wanted, related_words(wanted)) if wanted else f"there's no {type}")
+    if count and len(names) < int(count):
+        raise ActionFailed(f"{count} are needed, but there's only {', '.join(names)}")
+    output(";".join(names[: int(count)] if count else names))
 
 
 def accomplish(operation: Operation) -> Steps:

@@ -6,7 +6,7 @@ from math import inf, radians
 
 from btlang.actions.points import where
 from btlang.robots.capabilities import Base, Docking, Hands, Power, Sensors
-from btlang.robots.robot import RobotError
+from btlang.robots.robot import RobotError, SensorSilent
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ SUFFICIENT_BATTERY = 30.0
 FULL_BATTERY = 99.5
 
 _SIDE_MARGIN = 0.03
+_SIDES = {0.0: "ahead", 90.0: "to the left", 180.0: "behind", 270.0: "to the right"}
 
 
 def wall_in_front(robot: Sensors) -> bool:
@@ -53,7 +54,7 @@ def is_blocked(robot: Sensors, direction: float) -> bool:
     """Whether a scan point lies in the strip that the robot would sweep in a direction (degrees left of its heading).
 
     The strip is as wide as the robot and a margin, and NEAR_WALL metres beyond its rim: after False, 0.5 m in
-    that direction cannot bump. What a silent scanner does not see counts as blocked.
+    that direction cannot bump. What the scanner doesn't see counts as blocked, since no valid beam looks there.
     """
     try:
         along, across = _points(robot, direction)
@@ -64,7 +65,10 @@ def is_blocked(robot: Sensors, direction: float) -> bool:
 
 
 def distance_ahead(robot: Sensors) -> float:
-    """Metres that the robot can drive straight ahead before it touches something; inf beyond the scanner's range."""
+    """Metres that the robot can drive straight ahead before it touches something; inf beyond the scanner's range.
+
+    Raises SensorSilent where the scanner doesn't see it.
+    """
     along, across = _points(robot, 0.0)
     touching = (along > 0.0) & (abs(across) < robot.body.radius)
     bulge = (robot.body.radius**2 - across[touching] ** 2) ** 0.5
@@ -72,10 +76,14 @@ def distance_ahead(robot: Sensors) -> float:
 
 
 def _points(robot: Sensors, direction: float) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Scan points in metres along and across a direction."""
+    """Scan points in metres along and across a direction. Raises SensorSilent where no valid beam looks there."""
     import numpy as np  # takes longer to import than many missions that sense something else
 
+    from btlang.robots.motion.guard.corridor import is_covered
+
     ranges = np.asarray(robot.scan())
+    if not is_covered(ranges, direction):
+        raise SensorSilent(f"the scanner has no valid beam {_SIDES.get(direction % 360.0, 'there')}")
     seen = np.isfinite(ranges)
     angles = np.radians(np.flatnonzero(seen)) - radians(direction)
     return ranges[seen] * np.cos(angles), ranges[seen] * np.sin(angles)

@@ -8,6 +8,8 @@ from typing import Protocol
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.capabilities import Base, Machine, Power, Sensors
 
+STUCK = "the wheels turn but the robot doesn't move"
+
 
 class Driving(Base, Sensors, Power, Protocol):
     """A base that says what keeps it from driving on, as far as it has a bumper and a battery."""
@@ -48,5 +50,8 @@ class BaseWatch(Watch):
             raise ActionFailed(f"bumped into something after {so_far}")
         if self._robot.battery_empty:
             raise ActionFailed(f"the battery is empty after {so_far}")
+        reason = self._robot.held_back
         if self._robot.stuck:
-            raise ActionFailed(f"stuck after {so_far}: the wheels turn but the robot doesn't move")
+            raise ActionFailed(f"stuck after {so_far}: {reason or STUCK}")
+        if reason:
+            raise ActionFailed(f"stopped after {so_far}: {reason}")

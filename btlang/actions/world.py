@@ -89,6 +89,11 @@ def avoid_zone(robot: Cautious, zone: str) -> None:
     robot.zones.close(zone)
 
 
+def stay_in_zone(robot: Cautious, zone: str) -> None:
+    """Stays in a zone until the mission ends."""
+    robot.zones.keep_in(zone).begin()
+
+
 def open_zone(robot: Cautious, zone: str) -> None:
     """The robot may go into a zone again."""
     robot.zones.open(zone)

@@ -9,6 +9,7 @@ from importlib.util import find_spec
 from types import ModuleType
 
 from btlang.backends.comparing import comparing
+from btlang.backends.touching import touching
 from btlang.engine.instance import EngineError
 from btlang.engine.leaves.leaf import LeafBinding, described
 from btlang.engine.script.values import as_text
@@ -19,17 +20,21 @@ from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Collection, Mapping
     from typing import Any
 
 
 def bind_leaf(
-    node_id: str, vocabulary: Lexicon, own: Callable[[Entry, Lexicon], LeafBinding | None] | None = None
+    node_id: str,
+    vocabulary: Lexicon,
+    own: Callable[[Entry, Lexicon], LeafBinding | None] | None = None,
+    awaited: Collection[str] = (),
 ) -> LeafBinding | None:
     """None where no keyword entry has the id. Raises EngineError where its `call` leads nowhere or is of no use.
 
     `own` is how the robot of the run binds an entry; what it leaves is bound by `call`. The latest entry that it binds
     counts, so that a keyword file can bind words that ship. An entry that replaces the others goes before the robot.
+    `awaited` are the ids of conditions for which the mission waits: see btlang.backends.touching.
     """
     entries = vocabulary.entries.get(node_id, ())
     replacing = [entry for entry in entries if entry.replaces]
@@ -41,7 +46,10 @@ def bind_leaf(
         return None
     entry = (replacing or entries)[-1 if replacing else 0]
     slots = {slot.name: slot for other in entries for slot in other.slots}
-    return leaf_binding(entry, vocabulary, _imported(entry), tuple(slots.values()))
+    call = _imported(entry)
+    if entry.touches and (entry.sort == "action" or node_id in awaited):
+        call = touching(call)
+    return leaf_binding(entry, vocabulary, call, tuple(slots.values()))
 
 
 def leaf_binding(

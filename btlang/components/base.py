@@ -1,15 +1,14 @@
-"""The base over devices: odometry from the encoders, limited acceleration, and a gate for what would hit something."""
+"""The base over devices: odometry from the encoders, and limited acceleration."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from math import cos, degrees, hypot, inf, radians, sin
 
-from btlang.components.safety import Safety
 from btlang.devices.device_set import Reads, reader
 from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import Motion, Pressed, Wheels, WheelSpeeds
-from btlang.robots.base import clipped_speed, towards
+from btlang.robots.base import at_most, clipped_speed, towards
 from btlang.robots.body import Body
 from btlang.robots.geometry import Pose, wrap
 
@@ -37,18 +36,17 @@ class DeviceBase:
         wheels: str,
         imu: str = "",
         bumpers: tuple[str, ...] = (),
-        safety: Safety | None = None,
         locate: Callable[[], Pose] | None = None,
         advance: Callable[[float], object] = lambda seconds: None,
     ) -> None:
         self._pose, self.body = pose, body
         self._devices, self._drive, self._imu, self._bumpers = devices, wheels, imu, bumpers
-        self._safety, self._locate, self._advance = safety or Safety((), body), locate, advance
+        self._locate, self._advance = locate, advance
         self._gap = body.base.wheel_gap if body.base is not None else 1.0
         self.travelled, self.wheels = 0.0, (0.0, 0.0)
         self.bumps, self.bumped_into = 0, ""
         self.wanted = self._speeds = (0.0, 0.0)
-        self.most = inf
+        self.limits = inf, inf
         self._velocity: tuple[float, float] | None = None
         self._seen: Wheels | None = None
         self._heading: float | None = None
@@ -122,7 +120,8 @@ class DeviceBase:
         if self._locate is not None:
             self._pose = self._locate()
         self._feel()
-        wanted = min(self.most, abs(self.wanted[0])) + self.body.radius * radians(abs(self.wanted[1]))
+        wanted = min(self.limits[0], abs(self.wanted[0]))
+        wanted += self.body.radius * radians(min(self.limits[1], abs(self.wanted[1])))
         way = before.distance_to((self._pose.x, self._pose.y))
         turn = abs(wrap(self._pose.heading - before.heading))
         moved = way + self.body.radius * radians(turn)
@@ -130,8 +129,7 @@ class DeviceBase:
 
     def _command(self, dt: float) -> None:
         driving, turning = self.body.driving, self.body.turning
-        most = max(-self.most, min(self.most, self.wanted[0]))
-        wanted = self._safety.limited(most, self.wanted[1], bool(self._pressed))
+        wanted = tuple(at_most(value, most) for value, most in zip(self.wanted, self.limits, strict=True))
         linear = towards(self._speeds[0], wanted[0], driving.acceleration * dt, driving.brake * dt)
         angular = towards(self._speeds[1], wanted[1], turning.acceleration * dt, turning.brake * dt)
         if self._velocity is None:
@@ -182,7 +180,7 @@ class DeviceBase:
             try:
                 reading = self._devices[name].read(name)
             except DeviceError:
-                continue  # the safety gate lets nobody drive by a bumper that is silent
+                continue  # the guard lets nobody drive by a bumper that is silent
             if isinstance(reading, Pressed) and reading.pressed and name not in self._pressed:
                 self._pressed.add(name)
                 self.bumps, self.bumped_into, self._contact = self.bumps + 1, "something", self._pose

@@ -61,7 +61,7 @@ class DeviceSimulation(Simulation):
     def _parts(self, world: World, obstacles: Obstacles, body: Body) -> Parts:
         sees = body if body.range else body.replace(sensors=(*body.sensors, _EYES))
         plain = tuple(joint.replace(acceleration=0.0, jerk=0.0) for joint in body.joints)  # they go where commanded
-        self._twin = SimulatedRobot(world, None, sees.replace(joints=plain), None, obstacles)
+        self._twin = SimulatedRobot(world, None, sees.replace(joints=plain), None, obstacles, sees=False)
         self.devices = DeviceSet(body, self._twin, self._report)
         drive = self.devices.first("drive")
         self._drives = bool(drive) and self.devices.devices[drive].driver == SIMULATED

@@ -6,15 +6,16 @@ from collections.abc import Callable, Mapping, Sequence
 from math import inf
 
 from btlang.components.base import DeviceBase
-from btlang.components.safety import Guard, Safety
+from btlang.components.sensors import DeviceSensors
 from btlang.components.servos import servo_angle
 from btlang.devices.device_set import DeviceSet, Reads, reader
 from btlang.devices.driver import DeviceError
-from btlang.devices.kinds import Charge, Grip, GripTarget, JointTarget, Play, Scan, Shown
-from btlang.robots.body import Body, Sensor
-from btlang.robots.geometry import CENTRE, Pose
+from btlang.devices.kinds import Charge, Grip, GripTarget, JointTarget, Play, Shown
+from btlang.robots.body import Body
+from btlang.robots.geometry import Pose
 from btlang.robots.hands import Hands
 from btlang.robots.joints import clipped, joint_of
+from btlang.robots.motion.guard.joints import JointProgress
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.parts import JointsPart, Parts
 from btlang.robots.power import NO_CONTACT
@@ -25,7 +26,6 @@ from btlang.robots.world import World, said
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.capabilities import Operation
-    from btlang.robots.scan import Array
 
 BUMPER = "bumper"
 _FULL = 100.0  # percent
@@ -46,42 +46,24 @@ def device_parts(
     """
     readers = devices.readers
     bumpers = tuple(name for name, device in devices.devices.items() if device.kind == "button" and BUMPER in name)
-    safety = Safety(
-        [
-            Guard(name, readers[name], device.angle)
-            for name, device in devices.devices.items()
-            if device.kind == "range" or name in bumpers
-        ],
-        body,
-    )
     base = DeviceBase(
         world.start, body, readers, wheels=devices.first("drive"), imu=devices.first("imu"), bumpers=bumpers,
-        safety=safety, locate=locate, advance=advance,
+        locate=locate, advance=advance,
     )  # fmt: skip
     lidar = devices.first("lidar")
+    sensors = DeviceSensors(devices, bumpers, lidar, body.sensor("scanner"), body.radius)
     face = body.mouth.display if body.mouth is not None else ""
     displays = [name for name, device in devices.devices.items() if device.kind == "display" and name != face]
     joints = joints_over(body, readers)
     return Parts(
         base,
         DevicePower(devices.first("battery"), readers),
-        lambda pose: _scan(lidar, readers, body.sensor("scanner")),
+        lambda pose: sensors.scan(),
         joints,
         DeviceHands(body, readers, Hands(obstacles, world.names.objects, body)),
         DeviceVoice(body, readers, devices.first("speaker"), displays, joints),
+        sensors.readings,
     )
-
-
-def _scan(lidar: str, readers: Mapping[str, Reads], scanner: Sensor | None) -> Array:
-    import numpy as np  # most missions need none
-
-    from btlang.robots.scan import around
-
-    reading = reader(readers, lidar, "lidar").read(lidar)
-    assert isinstance(reading, Scan)
-    ranges = np.asarray(reading.ranges, dtype=np.float64)
-    angles = np.radians(reading.start + reading.step * np.arange(len(ranges)))
-    return around(ranges, angles, CENTRE if scanner is None else scanner.pose)
 
 
 class DevicePower:
@@ -152,12 +134,14 @@ class DeviceJoints:
     def __init__(self, body: Body, devices: Mapping[str, Reads]) -> None:
         self._body, self._devices = body, devices
         self._targets: dict[str, float] = {}
+        self._time = 0.0
+        self._progress = JointProgress(body, lambda: self._time)
 
     @property
     def moving(self) -> bool:
         """True while any joint is on its way, as far as that is known."""
         try:
-            return any(not self._reached(name) for name in tuple(self._targets))
+            return any(abs(self._left(name)) > joint_of(self._body, name).close_enough for name in tuple(self._targets))
         except DeviceError:
             return False
 
@@ -171,11 +155,12 @@ class DeviceJoints:
         for name in wanted:
             self.angle(name)
         self._targets.update(wanted)
+        self._progress.start(wanted)
         self.step(0.0)
 
     def at_target(self, names: tuple[str, ...]) -> bool:
-        """True when none of them is on its way. Raises DeviceSilent."""
-        return all(self._reached(name) for name in names if name in self._targets)
+        """True when none of them is on its way. Raises DeviceSilent, and RobotError where one of them is stuck."""
+        return all(self._progress.has_arrived(name, self._left(name)) for name in names if name in self._targets)
 
     def freeze(self, names: tuple[str, ...] | None = None) -> None:
         """They stay where they are; None: all of them."""
@@ -185,11 +170,12 @@ class DeviceJoints:
 
     def step(self, dt: float) -> None:
         """Commands them again; a joint that has arrived holds its place by itself."""
+        self._time += dt
         for name, target in tuple(self._targets.items()):
             self._devices[name].write(name, JointTarget(target, joint_of(self._body, name).speed))
 
-    def _reached(self, name: str) -> bool:
-        return abs(self.angle(name) - self._targets[name]) <= joint_of(self._body, name).close_enough
+    def _left(self, name: str) -> float:
+        return self._targets[name] - self.angle(name)
 
 
 class Gripping:

@@ -17,6 +17,7 @@ from btlang.robots.body import Body
 from btlang.robots.gesture import Gesture, joints_of
 from btlang.robots.joints import joint_of
 from btlang.robots.motion.course import PERIOD
+from btlang.robots.motion.guard.joints import JointProgress
 from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.robot import RobotError
 
@@ -41,6 +42,8 @@ class ServoJoints:
         self._is_real = any(isinstance(devices.get(joint.name), DeviceLoop) for joint in body.joints)
         self._commanded: frozenset[str] = frozenset()
         self._lets_go = False
+        self._time = 0.0
+        self._progress = JointProgress(body, lambda: self._time)
         self._thread: threading.Thread | None = None
 
     @property
@@ -90,8 +93,13 @@ class ServoJoints:
         return self._smooth.lead(wanted)
 
     def at_target(self, names: tuple[str, ...]) -> bool:
-        """True when none of them is on its way. Raises DeviceSilent."""
-        return self._smooth.at_target(names) and self._have_reached(name for name in names if name in self._commanded)
+        """True when none of them is on its way. Raises DeviceSilent, and RobotError where one of them is stuck."""
+        if not self._smooth.at_target(names):
+            self._progress.start(names)  # where it stands by then counts from the end of its movement on
+            return False
+        planned = self._smooth.angles
+        own = [name for name in names if name in self._commanded]
+        return all(self._progress.has_arrived(name, planned[name] - self.angle(name)) for name in own)
 
     def freeze(self, names: tuple[str, ...] | None = None) -> None:
         """They come to rest, and stay there; None: all of them, which takes no lock."""
@@ -100,6 +108,7 @@ class ServoJoints:
 
     def step(self, dt: float) -> None:
         """Commands them again; a joint that has arrived holds its place by itself."""
+        self._time += dt
         if self._smooth.timeline.rests():
             self._write()
             return

@@ -25,7 +25,10 @@ class Distance(Reading):
 
 
 class Scan(Reading):
-    """Of a lidar: metres, inf where nothing is in range; `start` degrees left of ahead, then every `step` degrees."""
+    """Of a lidar: metres, inf where nothing is in range, NaN for a beam without a valid measurement.
+
+    The first one is `start` degrees left of ahead, then every `step` degrees.
+    """
 
     ranges: Sequence[float]
     start: float = 0.0

@@ -42,10 +42,10 @@ def wrong_content(reading: Reading) -> str:
     """Why the beams of a scan or the pixels of a picture can't be used, "" where they can."""
     if isinstance(reading, Scan):
         try:
-            wrong = isnan(fsum(reading.ranges))
+            all_invalid = isnan(fsum(reading.ranges)) and all(map(isnan, reading.ranges))
         except (TypeError, ValueError):  # ValueError: infinity of both signs
-            wrong = True
-        return "its ranges have what is not a number" if wrong else ""
+            return "its ranges have what is not a number"
+        return "its scan has no valid beam" if all_invalid else ""
     if isinstance(reading, Image):
         size, wanted = len(reading.pixels), 3 * reading.width * reading.height
         if reading.width <= 0 or size != wanted:

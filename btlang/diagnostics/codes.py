@@ -21,6 +21,7 @@ from btlang.record import Record
 class Code(Record):
     """The texts of a code; words in braces are filled by the arguments of the diagnostic.
 
+    `severity` is "error", "warning" or "note": a note says how something was understood, and nothing need be changed.
     `since` is the version that has it first; `status` is stable, preview or deprecated.
     """
 
@@ -120,8 +121,6 @@ _ALL = (
     Code("BT067", "There's no command before '{words}' that it could go on with.",
          "Put a command before it, or start with what to do."),
     Code("BT068", "'{words}' is checked only once, when the mission gets here.", "{advice}", "warning", "asked once"),
-    Code("BT069", "'{joint}' means at the same time here, on the way or while waiting.",
-         "To keep that, write: {both}\nTo do one after the other, write: {after}", "warning", "and"),
     Code("BT070", "This world file can't be used: {reason}."),
     Code("BT071", "This robot file can't be used: {reason}."),
     Code("BT072", "The robot '{robot}' has no {parts}, which '{words}' needs.", "Leave it out, or choose another robot with --robot."),
@@ -187,6 +186,8 @@ _ALL = (
          "To keep that, write: {taken}\nIf not, write: {other}", "warning", "repeated"),
     Code("BT173", "'{words}' has only rules, so it goes on for ever here, and other commands don't run meanwhile.",
          "To let it watch beside them, write: {fixed}", "warning", "only rules"),
+    Code("BT174", "'{joint}' means '{then}' here: '{first}' and '{second}' both need the {resource}.", "", "note", "shared part"),
+    Code("BT176", "'{words}' only permits something, so it is left out.", "", "note", "permission"),
     Code("BT180", "'{words}' isn't a line of a test.", "Write for example: {wanted}"),
     Code("BT181", "This test can't run: {reason}.", "Write for example: {example}"),
     Code("BT182", "'{words}' {reason}."),

@@ -26,7 +26,7 @@ def as_json(problems: Iterable[Diagnostic]) -> str:
 def as_data(problem: Diagnostic) -> dict[str, Any]:
     """The object of one diagnostic.
 
-    - `code`, `severity` ("error" or "warning"), `message`, `hint` (lines joined by line ends, "" for none);
+    - `code`, `severity` ("error", "warning" or "note"), `message`, `hint` (lines joined by line ends, "" for none);
     - `file`, `line`, `column`, `end_line`, `end_column`: where it is. Lines and columns count from 1, columns in
       characters (Unicode code points); the end is exclusive: the place just after the last character;
     - `words`: the text at that place;

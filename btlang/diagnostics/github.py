@@ -25,4 +25,5 @@ def _command(problem: Diagnostic) -> str:
         del properties["col"], properties["endColumn"]
     parameters = ",".join(f"{name}={str(value).translate(_IN_PROPERTIES)}" for name, value in properties.items())
     message = "\n".join(line for line in (problem.message, problem.hint) if line)
-    return f"::{data['severity']} {parameters}::{message.translate(_IN_DATA)}"
+    command = "notice" if data["severity"] == "note" else data["severity"]
+    return f"::{command} {parameters}::{message.translate(_IN_DATA)}"

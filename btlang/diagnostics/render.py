@@ -9,7 +9,7 @@ from btlang.text.escaping import CYAN, PLAIN, RED, YELLOW, one_line
 from btlang.text.source import NOWHERE, Span
 
 # Not by rich: `btc check` would start later by its import, more than all that it does takes.
-_COLOURS = {"error": RED, "warning": YELLOW}
+_COLOURS = {"error": RED, "warning": YELLOW, "note": CYAN}
 _WIDEST = 120
 
 

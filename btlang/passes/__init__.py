@@ -21,7 +21,6 @@ from btlang.passes.lint.starts_again import starts_again
 from btlang.passes.lint.two_readings import two_readings
 from btlang.passes.lint.unreachable import never_runs
 from btlang.passes.lint.unused import unused_names
-from btlang.passes.lint.while_it_travels import while_it_travels
 from btlang.passes.lower import lower_names
 from btlang.passes.names import order_names
 from btlang.passes.resources import check_resources
@@ -43,7 +42,6 @@ PASSES = (
     Pass("two readings", two_readings, needs_text=True),
     Pass("asked once", asked_once, needs_text=True),
     Pass("starts again", starts_again, needs_text=True),
-    Pass("and", while_it_travels, needs_text=True),
     Pass("only rules", only_rules, needs_text=True),
     Pass("unused", unused_names, needs_text=True),
     Pass("never runs", never_runs),

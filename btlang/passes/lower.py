@@ -12,18 +12,19 @@ from btlang.passes.scope import Scope
 from btlang.passes.scripts import assignment, behind, chosen, comparison, prepared
 from btlang.text.source import Span
 from btlang.tree import ast
-from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, ON_SUCCESS, SUBTREE
+from btlang.tree.catalogue import SUBTREE, never_ends
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.entry import MEASURED
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.references import choice_of
+from btlang.vocabulary.references import ALL, choice_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+CONSTRAINTS = {"keep out": "KeepOut", "keep in": "KeepIn"}
 _CHAINS = {"sequence": "Sequence", "all": "Sequence", "fallback": "Fallback", "any": "Fallback", "parallel": "Parallel"}
 
 
@@ -140,7 +141,14 @@ def _remember(item: ast.Remember, _done: list[Lowered], scope: Scope) -> Lowered
 
 
 def _for_each(item: ast.ForEach, done: list[Lowered], scope: Scope) -> Lowered:
-    """One instance of the body for each value."""
+    """One instance of the body for each value; of a set the body in a loop over the names that the robot finds."""
+    choice = choice_of(item.values[0])
+    if choice is not None and choice.how == ALL:
+        names, key = f"{{{item.key}_names}}", f"{{{item.key}}}"
+        ports = (("type", choice.type), ("output", names), *choice.parts)
+        found = Node("ChooseAll", (), ports)
+        loop = new_node("LoopString", [done[0].node], item.span, queue=names, value=key)
+        return Lowered(Node("Sequence", (found, loop), span=item.span), False, done[0].endless)
     name = scope.new_name(item.key)
     scope.bodies.append((name, done[0].node))
     shared = tuple((key, f"{{{key}}}") for key in scope.needs(item.body, [item.key]))
@@ -256,6 +264,12 @@ def _try(item: ast.Try, done: list[Lowered], _scope: Scope) -> Lowered:
     return Lowered(new_node("Fallback", [tried, *otherwise], item.span), all(part.can_skip for part in done))
 
 
+def _constrained(item: ast.Constrained, done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, ports = prepared([("zones", "; ".join(item.zones))], scope)
+    node = Node(CONSTRAINTS[item.kind], (done[0].node,), ports, span=item.span)
+    return Lowered(behind(scripts, node), done[0].can_skip and not scripts, done[0].endless)
+
+
 def _check(_item: ast.Check, done: list[Lowered], _scope: Scope) -> Lowered:
     return done[0]
 
@@ -263,18 +277,8 @@ def _check(_item: ast.Check, done: list[Lowered], _scope: Scope) -> Lowered:
 def _exact(item: ast.Exact, done: list[Lowered], scope: Scope) -> Lowered:
     """Nothing is added to it, not even where it can be skipped."""
     node = Node(item.id, tuple(part.node for part in done), item.ports, item.name, item.span)
-    return Lowered(node, False, _never_ends(node, [part.endless for part in done], scope))
-
-
-def _never_ends(node: Node, endless: Sequence[bool], scope: Scope) -> bool:
-    kind = CATALOGUE.get(node.id)
-    if kind is None or not endless:
-        return node.id == SUBTREE and node.port("ID") in scope.endless
-    if kind.goes_on == ON_FAILURE or kind.at_once:
-        return all(endless)
-    if kind.roles:
-        return kind.roles[-1] == "work" and endless[-1]
-    return any(endless) if kind.goes_on or kind.takes_time else kind.again == ON_SUCCESS and kind.is_endless(node)
+    names_endless = node.id == SUBTREE and node.port("ID") in scope.endless
+    return Lowered(node, False, names_endless or never_ends(node.id, node.ports, [part.endless for part in done]))
 
 
 def _always(node_id: str) -> Callable[[ast.Ast, list[Lowered], Scope], Lowered]:
@@ -300,6 +304,7 @@ _LOWER: dict[type[ast.Ast], Callable[[Any, list[Lowered], Scope], Lowered]] = {
     ast.Repeat: _repeat,
     ast.Try: _try,
     **TIMED,
+    ast.Constrained: _constrained,
     ast.Check: _check,
     ast.Nothing: _always("AlwaysSuccess"),
     ast.Fail: _always("AlwaysFailure"),

@@ -12,7 +12,8 @@ from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED, POINT, Entry
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
 from btlang.vocabulary.pattern import Form, Slot, forms, name_form
-from btlang.vocabulary.references import choice_by, choice_of
+from btlang.vocabulary.reading_context import Known
+from btlang.vocabulary.references import choice_by, choice_of, keys_in
 from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.value_type import PLACE, ValueType, with_unit
 
@@ -28,7 +29,7 @@ def phrase_of(node: Node, vocabulary: Lexicon) -> str:
         return _filled_name(node)
     if node.span is not None and is_written(node) and node.span.text[:1] not in MARKUP:
         return node.span.text
-    if node.id == "Choose":
+    if node.id in ("Choose", "ChooseAll"):
         return vocabulary.values.choice_words(choice_by(dict(node.ports)))
     if node.id == "Sleep":
         return f"{vocabulary.word('wait')} {seconds(node.port('msec'))}"
@@ -77,6 +78,10 @@ def leaf_words(
         types = {slot.name: vocabulary.types[slot.type] for slot in entry.slots}
         if not spoken.keys() <= types.keys():
             continue
+        keys = {name: keys[0] for name, text in spoken.items() if text[:1] == "{" and (keys := list(keys_in(text)))}
+        if keys and vocabulary.context.known is None:  # each value is of the type of its slot
+            typed = {key: Known(key, tuple(key.split("_")), (types[name].name,)) for name, key in keys.items()}
+            vocabulary = vocabulary.with_known(typed)
         said = {name: _read_back_value(text, types[name], vocabulary) for name, text in spoken.items()}
         if exactly and not all(said.values()):
             continue  # nor is it read back in any phrase

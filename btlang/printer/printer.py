@@ -8,6 +8,7 @@ from btlang.printer.phrase import holds_definer, leaf_words, value_of
 from btlang.printer.pieces import CLOSE, LEAF, OPEN, WORD, Piece, Pieces, flat, last_of, mark, reads_on, text_of
 from btlang.record import Record
 from btlang.tree import ast
+from btlang.tree.conjunctions import Conjunctions
 from btlang.tree.visit import fold
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
@@ -86,7 +87,11 @@ class Printer:
         self._parameters: dict[str, dict[str, str]] = {}
         self._comments: dict[int, tuple[ast.Ast, tuple[str, ...]]] = {}  # with its node, too
         self._kept: dict[int, tuple[ast.Ast, tuple[str, ...]]] = {}
+        bodies: dict[str, ast.Ast] = {}
+        self._conjunctions = Conjunctions(bodies, vocabulary)
         for defined in names:
+            if isinstance(defined, ast.Definition):
+                bodies[defined.name] = defined.body
             name, types = (
                 (defined.name, dict(defined.parameters)) if isinstance(defined, ast.Definition) else (defined, {})
             )
@@ -227,6 +232,10 @@ class Printer:
         if said.level < WHOLE and (needs_brackets or self.all_brackets):
             return bracketed(said)
         return said
+
+    def joined_by_and(self, node: ast.Chain) -> bool:
+        """Whether `and` alone says that the parts of a parallel run at the same time."""
+        return self._conjunctions.are_simultaneous(node.items)
 
     def condition(self, said: Doc) -> Doc:
         """The condition of a form: no reading needs brackets round it."""

@@ -12,17 +12,16 @@ from collections.abc import Callable, Iterator, Sequence
 
 from btlang.printer import naming
 from btlang.printer.exact import exact, phrase
-from btlang.printer.pieces import COMMA, LEAF, Piece, Pieces, flat, mark
+from btlang.printer.pieces import COMMA, LEAF, Piece, Pieces, mark
 from btlang.printer.printer import AND, FORM, LOOSE, OR, THEN, WHOLE, Doc, Printer, bracketed
 from btlang.tree import ast
-from btlang.tree.journeys import takes_its_time
 from btlang.vocabulary.language_tables import CONNECTIVES
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_LEVELS = {"sequence": THEN, "fallback": OR, "parallel": AND}
+_LEVELS = {"sequence": THEN, "fallback": OR, "and": AND, "parallel": AND}
 CHAINS = {
     **{operator: (_LEVELS.get(operator, THEN), role) for role, operator in reversed(CONNECTIVES.items())},
     "any": (OR, "or"), "all": (AND, "and"),
@@ -46,6 +45,8 @@ def _name(node: ast.Name, _parts: list[Doc], printer: Printer) -> Doc:
 
 
 def _chain(node: ast.Chain, parts: list[Doc], printer: Printer) -> Doc:
+    if node.operator == "parallel":
+        return _parallel(node, parts, printer)
     level, role = CHAINS[node.operator]
     word = printer.word(role)
     inner = [printer.inside(p, p.level <= level or p.reaches or printer.reads_on(p, word)) for p in parts[:-1]]
@@ -56,11 +57,17 @@ def _chain(node: ast.Chain, parts: list[Doc], printer: Printer) -> Doc:
     if printer.is_clear:
         inner = [printer.inside(p, p.level < FORM or p.reaches or (p.behind and i > 0)) for i, p in enumerate(inner)]
     words = [word] * (len(inner) - 1)
-    if node.operator == "parallel":  # whatever people take the plain word for
-        words = [printer.word("meanwhile") if takes_its_time(item) else word for item in node.items[:-1]]
-        remember = f"{printer.word('remember').text} "  # directly behind `and` this means `then`
-        inner[1:] = [bracketed(p) if next(flat(p.pieces)).text.startswith(remember) else p for p in inner[1:]]
     return Doc(tuple(_joined(inner, words)), level, *_flags(inner))
+
+
+def _parallel(node: ast.Chain, parts: list[Doc], printer: Printer) -> Doc:
+    """Joined by `and` where that alone means at the same time, else with the words that say so behind it."""
+    if printer.joined_by_and(node):
+        return _chain(node.replace(operator="and"), parts, printer)
+    word = printer.word("and")
+    inner = [printer.inside(p, p.level < WHOLE) for p in parts]
+    behind = (printer.word("in_parallel"),)
+    return Doc((*_joined(inner, [word] * (len(inner) - 1)), *behind), AND, False, False, any(p.counts for p in inner))
 
 
 def _at_least(node: ast.AtLeast, parts: list[Doc], printer: Printer) -> Doc:
@@ -186,6 +193,15 @@ def _paced(role: str) -> Callable[[Any, list[Doc], Printer], Doc]:
     return said
 
 
+def _constrained(node: ast.Constrained, parts: list[Doc], printer: Printer) -> Doc:
+    """Whatever stands beside it in its statement or bracket would be constrained, too."""
+    role = "without_entering" if node.kind == "keep out" else "without_leaving"
+    zones = [printer.value(zone, "zone") for zone in node.zones]
+    listed = f" {printer.word('and').text} ".join(zones)
+    body = printer.inside(parts[0], parts[0].level < WHOLE)
+    return Doc((body.pieces, Piece(printer.word(role, zone=listed).text, LEAF)), LOOSE)
+
+
 def _wait(node: ast.Wait, _parts: list[Doc], printer: Printer) -> Doc:
     return _leaf(printer.duration("wait", node.seconds).text)
 
@@ -242,6 +258,7 @@ PRINTERS: dict[type[ast.Ast], Callable[[Any, list[Doc], Printer], Doc]] = {
     ast.Every: _paced("every"),
     ast.Apart: _paced("apart"),
     ast.Delay: _timed("delay"),
+    ast.Constrained: _constrained,
     ast.Wait: _wait,
     ast.WaitUntil: _wait_until,
     ast.WaitTime: _wait_time,

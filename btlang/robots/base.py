@@ -12,6 +12,7 @@ from btlang.robots.robot import RobotError
 _SUBSTEP = 0.02
 _STUCK_AFTER = 1.0
 _FREE_AGAIN = 0.03
+_ROOM = 0.2  # metres: with more there is no need to look how much exactly
 
 
 class Base:
@@ -32,8 +33,8 @@ class Base:
         self.travelled = 0.0
         self._rolled = self._turned = 0.0
         self.grips = (1.0, 1.0)
-        self.most = inf
-        """Metres a second that it doesn't exceed, whatever the command."""
+        self.limits = inf, inf
+        """Metres and degrees a second that it doesn't exceed, whatever the command."""
         self._obstacles = obstacles
         self.wanted = (0.0, 0.0)
         self._speeds = (0.0, 0.0)
@@ -94,6 +95,17 @@ class Base:
         for _ in range(pieces):
             self._substep(dt / pieces)
 
+    @property
+    def room(self) -> float:
+        """Metres that are free around it at least, as far as it knows without looking."""
+        obstacles, pose = self._obstacles, self.pose
+        if self._layout != obstacles.layout or self._free < _ROOM:
+            self._free = obstacles.nearest_standing(pose.x, pose.y)[0] - self._radius
+            self._layout = obstacles.layout
+        if not obstacles.walking:
+            return self._free
+        return min(self._free, obstacles.nearest_walking(pose.x, pose.y)[0] - self._radius)
+
     def _forget_trouble(self) -> None:
         """A new attempt to move gets its own second until it is stuck, and counts as its own bump."""
         self._idle, self._pressed = 0.0, False
@@ -102,13 +114,12 @@ class Base:
         linear, angular = self._speeds
         driving, turning = self._driving, self._turning
         brake, turn_brake = (driving.hard_brake, turning.hard_brake) if self._hard else (driving.brake, turning.brake)
-        wanted, most = self.wanted[0], self.most
-        if abs(wanted) > most:
-            wanted = copysign(most, wanted)
+        most, most_turn = self.limits
+        wanted, turn = at_most(self.wanted[0], most), at_most(self.wanted[1], most_turn)
         if abs(linear) > most:
             brake = driving.hard_brake
         linear = towards(linear, wanted, driving.acceleration * h, brake * h)
-        angular = towards(angular, self.wanted[1], turning.acceleration * h, turn_brake * h)
+        angular = towards(angular, turn, turning.acceleration * h, turn_brake * h)
         self._speeds = linear, angular
         v, w = self._on_floor(linear, angular)
         old = self.pose
@@ -130,7 +141,7 @@ class Base:
         self._turned += angular * h
         if self._contact is not None and self._contact.distance_to((new.x, new.y)) > _FREE_AGAIN:
             self._contact = None
-        wanted = abs(wanted) + self._radius * radians(abs(self.wanted[1]))
+        wanted = abs(wanted) + self._radius * radians(abs(turn))
         real = abs(v) + self._radius * radians(abs(w))
         self._idle = self._idle + h if real < 0.05 * wanted else 0.0
 
@@ -187,6 +198,11 @@ def clipped_speed(value: float, limit: float) -> float:
     if isnan(value):
         raise RobotError("the robot can't drive at a speed that is not a number")
     return copysign(min(abs(value), limit), value)
+
+
+def at_most(value: float, most: float) -> float:
+    """The same direction, at most so fast."""
+    return value if abs(value) <= most else copysign(most, value)
 
 
 def towards(value: float, target: float, more: float, less: float) -> float:

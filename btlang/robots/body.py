@@ -17,6 +17,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+PATIENCE = 5.0
+"""Seconds in which what moves has to get on, where a robot file says nothing else."""
 Vector = tuple[float, float, float]
 """Metres ahead, left and up."""
 
@@ -36,11 +38,12 @@ class Limits(Record):
 
 
 class Base(Record):
-    """Two wheels, `wheel_gap` metres apart."""
+    """Two wheels, `wheel_gap` metres apart. It touches things on purpose at most at `contact_speed` m/s."""
 
     driving: Limits
     turning: Limits
     wheel_gap: float
+    contact_speed: float = 0.1
 
 
 class Navigation(Record):
@@ -256,6 +259,7 @@ class Body(Record):
     does not name stay where they are; its steps follow each other. `file` is where this comes from, `world` the path of
     the world file of the place where it works; "" without one. `rules`, `missions` and `schedules` are the paths of
     what it does where it is up: see btlang.task.house. `forbidden` are pairs of links that may not touch.
+    What moves has to get on within the seconds of its `patience`.
     """
 
     name: str
@@ -284,6 +288,7 @@ class Body(Record):
     gestures: Mapping[str, Gesture] = {}
     mouth: Mouth | None = None
     idle: Idle = Idle()
+    patience: float = PATIENCE
 
     @property
     def folder(self) -> str:
@@ -299,6 +304,11 @@ class Body(Record):
     def turning(self) -> Limits:
         """As `driving`."""
         return self.base.turning if self.base is not None else Limits()
+
+    @property
+    def contact_speed(self) -> float:
+        """Metres a second at which it touches things on purpose."""
+        return self.base.contact_speed if self.base is not None else 0.0
 
     def sensor(self, kind: str) -> Sensor | None:
         """The first of a kind."""

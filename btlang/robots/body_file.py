@@ -10,6 +10,7 @@ from functools import cache
 from btlang.diagnostics.reading import is_below, real_path
 from btlang.robots import joint_tables
 from btlang.robots.body import (
+    PATIENCE,
     Base,
     Battery,
     Body,
@@ -132,6 +133,7 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
         rules=problems.part(lambda: _beside(top, "rules", file), ""),
         missions=problems.part(lambda: _beside(top, "missions", file, os.path.isdir), ""),
         schedules=problems.part(lambda: _beside(top, "schedules", file), ""), gestures=gestures,
+        patience=problems.part(lambda: top.number("patience", PATIENCE, low=0.1, high=3600.0), PATIENCE),
     )  # fmt: skip
     mouth = problems.part(lambda: read_mouth(top, made), None)
     idle = problems.part(lambda: read_idle(top, made), Idle())
@@ -204,7 +206,15 @@ def _dock(top: Table) -> Dock | None:
 
 def _base(table: Table) -> Base:
     driving, turning = _limits(table.table("driving")), _limits(table.table("turning"))
-    return table.finish(Base(driving, turning, table.number("wheel_gap", low=0.01)))
+    gap = table.number("wheel_gap", low=0.01)
+    return table.finish(
+        Base(
+            driving,
+            turning,
+            gap,
+            table.number("contact_speed", min(0.1, driving.speed), low=_LEAST, high=driving.speed),
+        )
+    )
 
 
 def _limits(table: Table) -> Limits:

@@ -150,6 +150,17 @@ class Base(Machine, Protocol):
     def stuck(self) -> bool:
         """True when it should have been moving for a second but isn't."""
 
+    @property
+    def limited_by(self) -> str:
+        """Why it drives slower than commanded, or stands, such as what a sensor sees ahead; "" where it doesn't."""
+
+    @property
+    def held_back(self) -> str:
+        """Why it has stood for so long that a drive has failed; "" where it hasn't."""
+
+    def touch(self) -> None:
+        """It may touch what is ahead, slowly. Counts for a moment, as a velocity does."""
+
     def locate(self, name: str) -> Point:
         """Where a place, object or person is. Raises RobotError for an unknown name."""
 

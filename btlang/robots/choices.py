@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from btlang.robots.likeness import unseen
+from btlang.robots.relations import related_words
 from btlang.robots.robot import OnEvent, RobotError
 
 PICKY = ("seen", "largest", "smallest")
@@ -36,7 +37,9 @@ class Choices:
     ) -> str:
         """The nearest of the names, a random one and so on. Raises RobotError where nothing has these parts."""
         if not names:
-            raise RobotError(unseen(kind, parts) if parts or how == "seen" else f"there's no {kind} to choose")
+            raise RobotError(
+                unseen(kind, parts, related_words(parts)) if parts or how == "seen" else f"there's no {kind} to choose"
+            )
         if how in ("nearest", "seen"):
             data: dict[str, str | int] = {"type": kind, "how": "nearest", "name": min(names, key=distance)}
         elif how in ("largest", "smallest"):

@@ -59,10 +59,20 @@ class Grid:
 
     def to_polygon(self, points: Sequence[Point]) -> Array:
         """Metres from each cell to a polygon, 0 inside."""
+        distances = self._to_border(points)
+        distances[self._inside(points)] = 0.0
+        return distances
+
+    def depth(self, points: Sequence[Point]) -> Array:
+        """Metres from each cell in a polygon to its border, 0 outside."""
+        distances = self._to_border(points)
+        distances[~self._inside(points)] = 0.0
+        return distances
+
+    def _to_border(self, points: Sequence[Point]) -> Array:
         nearest2 = np.full(self.xs.shape, np.inf)
         for start, end in edges(points):
             nearest2 = np.minimum(nearest2, self._squared((*start, *end)))
-        nearest2[self._inside(points)] = 0.0
         distances: Array = np.sqrt(nearest2)
         return distances
 

@@ -8,6 +8,7 @@ from btlang.robots.choices import PICKY, Choices
 from btlang.robots.doors import spots_beside
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.obstacles import Obstacles
+from btlang.robots.relations import Relations, without_relations
 from btlang.robots.robot import OnEvent, RobotError
 from btlang.robots.sight import Sight
 from btlang.robots.world import Door, Place, World, said
@@ -70,10 +71,18 @@ class Knowledge:
         return [name for name in names if not getattr(things[name], "fixed", False)]
 
     def described(self, kind: str, parts: Mapping[str, str], pose: Pose) -> list[str]:
-        """The names of objects or people with these parts that the robot knows a place of or carries, nearest first."""
-        things, where = self.obstacles.things, self.sight.where
-        known = (name for name in self.sight.names(kind) if where(name) or self.obstacles.is_carried(name))
-        names = (name for name in known if name in things and things[name].fits(parts))
+        """The names of a type with these parts that the robot knows a place of or carries, nearest first."""
+        things, where, like = self.obstacles.things, self.sight.where, without_relations(parts)
+        if kind in ("object", "person"):
+            known = (name for name in self.sight.names(kind) if where(name) or self.obstacles.is_carried(name))
+            names = [name for name in known if name in things and things[name].fits(like)]
+        else:
+            places = self.world.places if kind == "place" else ()
+            fitting = [place.name for place in places if set(like.items()) <= set(place.parts)]
+            names = fitting if like else list(self.world.names.of(kind))
+        if len(like) < len(parts):
+            relations = Relations(self.world, things, self.where)
+            names = [name for name in names if relations.holds(name, parts, pose)]
         return sorted(names, key=lambda name: pose.distance_to(self.locate(name, pose)))
 
     def choose(

@@ -26,15 +26,17 @@ def wears(worn: tuple[str, ...], parts: Mapping[str, str]) -> bool:
     return not wanted or any(wanted <= {*_spelt(one.lower()).split()} for one in worn)
 
 
-def unseen(kind: str, parts: Mapping[str, str]) -> str:
-    """What is said where the robot knows nothing like that: `I haven't seen a red cup`."""
-    if kind == "person":
-        return f"I don't see anybody{_person(parts)}"
-    words = [parts[name] for name in ("color", "kind") if name in parts]
+def unseen(kind: str, parts: Mapping[str, str], behind: str = "") -> str:
+    """What is said where the robot knows nothing like that: `I haven't seen a red cup`; `behind` follows the thing."""
+    if kind == "person" and "name" not in parts:
+        return f"I don't see anybody{_person(parts)}{behind}"
+    words = [parts[name] for name in ("color", "kind", "name") if name in parts]
     use = f" to {parts['use']}" if "use" in parts else ""
+    if "name" in parts:
+        return f"I know no {' '.join(words)}{use}{behind}"
     if "kind" not in parts:
-        return f"I haven't seen {' '.join(('anything', *words))}{use}"
-    return f"I haven't seen {_article(words[0])}{' '.join(words)}{use}"
+        return f"I haven't seen {' '.join(('anything', *words))}{use}{behind}"
+    return f"I haven't seen {_article(words[0])}{' '.join(words)}{use}{behind}"
 
 
 def _person(parts: Mapping[str, str]) -> str:

@@ -10,9 +10,9 @@ from btlang.interrupts import interrupts_later
 from btlang.robots.body import Body, Limits
 from btlang.robots.faults import Faults
 from btlang.robots.geometry import Point, Pose, wrap
+from btlang.robots.motion.guard.guard import Cause, Guard
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.parts import BasePart
-from btlang.robots.protection import Protection
 from btlang.robots.robot import RobotError
 from btlang.robots.surroundings import Surroundings
 from btlang.robots.world import Place, Thing, World, said
@@ -31,6 +31,7 @@ _NEARBY = 3.0  # metres: who walks farther away may be elsewhere by then
 _MOVED, _REPLAN = 0.3, 0.5  # metres that somebody has moved, and seconds between two plans for that
 _LOOK_AHEAD = 0.25
 _NEAR, _FACING = 0.03, 1.0
+_NEARLY_STANDS = 0.1  # metres a second
 
 
 class NavigationGoal:
@@ -80,7 +81,13 @@ class Navigator:
     """
 
     def __init__(
-        self, world: World, base: BasePart, obstacles: Obstacles, faults: Faults, surroundings: Surroundings
+        self,
+        world: World,
+        base: BasePart,
+        obstacles: Obstacles,
+        faults: Faults,
+        surroundings: Surroundings,
+        guard: Guard,
     ) -> None:
         self._places: dict[str, Place] = {place.name: place for place in world.places}
         self._base = base
@@ -90,7 +97,7 @@ class Navigator:
         self._world = world
         self._surroundings = surroundings
         self._zones = surroundings.zones
-        self._protection = Protection(obstacles, self._zones, base.body)
+        self._guard = guard
         self._planner: Planner | None = None
         self._now = 0.0
         self.patience, self.pace = PATIENCE, 1.0
@@ -119,8 +126,10 @@ class Navigator:
 
     def protect(self) -> None:
         """The base drives no faster than is safe, whoever drives it."""
-        base = self._base
-        base.most = inf if not base.rolling and base.wanted[0] == 0.0 else self._limit(base)
+        wanted = self._base.wanted
+        verdict = self._guard.judge(*wanted, may_touch=self.goal is None)
+        most = abs(verdict.linear) if verdict.linear != wanted[0] else inf
+        self._base.limits = most, abs(verdict.angular) if verdict.angular != wanted[1] else inf
 
     def control(self, now: float) -> NavigationGoal | None:
         """Commands the base for the next moment; returns the goal when it ends with this call."""
@@ -143,17 +152,15 @@ class Navigator:
         """Who is in the way, "" where nobody makes the robot wait."""
         return self.goal.held_up if self.goal is not None and not self.goal.done else ""
 
-    def _limit(self, base: BasePart) -> float:
-        return self._protection.limit(base.pose, base.wanted[0] < 0.0)
-
     def _wait(self, goal: NavigationGoal, seconds: float) -> None:
         """Counts how long somebody makes the robot wait, and does something about it."""
-        zone = self._protection.zone
-        goal.held_up = self._protection.person if self._base.wanted[0] and not goal.driven else ""
-        if zone is not None and not goal.driven and abs(self._base.wanted[0]) > 0.05:
+        verdict = self._guard.verdict
+        nearly_stands = self._base.wanted[0] and not goal.driven and abs(verdict.linear) < _NEARLY_STANDS
+        goal.held_up = verdict.who if nearly_stands and verdict.cause is Cause.PERSON else ""
+        if nearly_stands and verdict.cause is Cause.ZONE and abs(self._base.wanted[0]) > 0.05:
             goal.waited += seconds
             if goal.waited > GIVES_UP:
-                goal.end(f"the {zone.name} is in the way to {said(goal.name)}")
+                goal.end(f"the {verdict.who} is in the way to {said(goal.name)}")
             return
         goal.waited = goal.waited + seconds if goal.held_up else max(0.0, goal.waited - seconds)
         if goal.waited > self.patience + goal.tries * _AGAIN and goal.held_up:
@@ -168,8 +175,10 @@ class Navigator:
             goal.end(silent)
         elif self._base.bumps > goal.bumps:
             goal.end(f"bumped into {self._base.bumped_into} on the way to {said(name)}")
-        elif self._base.stuck:
+        elif self._base.stuck or self._guard.stuck:
             goal.end(f"stuck on the way to {said(name)}: the wheels turn but the robot doesn't move")
+        elif self._guard.held and self._guard.verdict.cause not in (Cause.PERSON, Cause.ZONE):
+            goal.end(f"stopped on the way to {said(name)}: {self._guard.held}")
         elif self._faults.blocked(name):
             goal.end(f"there is no free way to {said(name)}")
         elif (target := self._target(goal)) is None:

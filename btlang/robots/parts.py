@@ -13,6 +13,7 @@ from btlang.robots.gesture import Gesture
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from btlang.robots.motion.guard.readings import ObstacleReading
     from btlang.robots.motion.smooth_joints import SmoothJoints
     from btlang.robots.scan import Array
     from btlang.speech.engine import Utterance
@@ -27,7 +28,7 @@ class BasePart(Protocol):
     bumped_into: str
     grips: tuple[float, float]
     wanted: tuple[float, float]
-    most: float
+    limits: tuple[float, float]
 
     @property
     def wheels(self) -> tuple[float, float]: ...
@@ -127,7 +128,10 @@ class VoicePart(Protocol):
 
 
 class Parts(Record):
-    """All parts of a robot. `scan` gives the distances from a pose, see btlang.robots.capabilities.Sensors."""
+    """All parts of a robot. `scan` gives the distances from a pose, see btlang.robots.capabilities.Sensors.
+
+    `sensors` gives the readings of a second of the run by which the guard lets the base drive.
+    """
 
     base: BasePart
     power: PowerPart
@@ -135,3 +139,4 @@ class Parts(Record):
     joints: JointsPart
     hands: HandsPart
     voice: VoicePart
+    sensors: Callable[[float], list[ObstacleReading]] = lambda now: []

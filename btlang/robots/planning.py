@@ -77,6 +77,9 @@ class Planner:
             np.minimum(clearance, np.hypot(grid.xs - x, grid.ys - y) - radius, out=clearance)
         for zone in self._zones.closed:
             np.minimum(clearance, grid.to_polygon(zone.points), out=clearance)
+        for confines in self._zones.confines:
+            depth = np.maximum.reduce([grid.depth(zone.points) for zone in confines])
+            np.minimum(clearance, depth, out=clearance)
         tight = np.maximum(0.0, self._comfort - clearance) / (self._comfort - self._needed)
         costs = np.where(clearance < self._needed, 0.0, 1.0 + 3.0 * tight)
         for zone in self._zones.slow:

@@ -6,22 +6,27 @@ from collections.abc import Callable
 from math import copysign, inf, sqrt
 
 from btlang.engine.leaves.leaf import ActionFailed
+from btlang.robots.body import PATIENCE
 
-PATIENCE = 5.0
-"""Seconds in which a drive or a turn has to get nearer."""
 _STEP = 0.2  # of the way to what counts as being close: less is no progress
 _TOO_FAR, _ROOM = 1.5, (1.0, 90.0)  # times the way, and metres or degrees beyond
 _LOOK = 1.0  # seconds that one look counts at most: a look that comes late says nothing of the time before
 
 
 class Progress:
-    """Metres, or degrees where it `turns`. `close` is how near is near enough, `now` gives seconds."""
+    """Metres, or degrees where it `turns`. `close` is how near is near enough, `now` gives seconds, `why` a reason."""
 
     def __init__(
-        self, wanted: float, close: float, turns: bool, now: Callable[[], float], patience: float = PATIENCE
+        self,
+        wanted: float,
+        close: float,
+        turns: bool,
+        now: Callable[[], float],
+        patience: float = PATIENCE,
+        why: Callable[[], str] = str,
     ) -> None:
         self._wanted, self._close, self._turns = abs(wanted), close, turns
-        self._now, self._patience = now, patience
+        self._now, self._patience, self._why = now, patience, why
         self._nearest = float("inf")
         self._looked, self._waited = now(), 0.0
 
@@ -36,7 +41,8 @@ class Progress:
         if abs(left) < self._nearest - _STEP * self._close:
             self._nearest, self._waited = abs(left), 0.0
         elif self._waited > self._patience:
-            raise ActionFailed(f"the robot makes no progress: {self._of(gone)} done")
+            reason = self._why()
+            raise ActionFailed(f"the robot makes no progress: {self._of(gone)} done{reason and f', {reason}'}")
 
     def _of(self, gone: float) -> str:
         digits, unit = (0, "degrees") if self._turns else (2, "m")

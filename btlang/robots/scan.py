@@ -55,25 +55,40 @@ def scan(segments: Array, discs: Array, pose: Pose, reach: float) -> Array:
     return ranges
 
 
-def around(ranges: Array, angles: Array, at: Pose) -> Array:
-    """360 distances from a robot's centre, index = degrees left of its heading; inf where nothing was measured.
+def around(ranges: Array, angles: Array, at: Pose, step: float = 1.0) -> Array:
+    """360 distances from a robot's centre, index = degrees left of its heading; NaN where no valid beam looked.
 
-    `ranges` are metres that a scanner measured, inf or NaN for none, at `angles` in radians left of its own front.
-    `at` is its pose as seen from the centre.
+    `ranges` are metres that a scanner measured, inf where nothing was in range, NaN for a beam that says nothing, at
+    `angles` in radians left of its own front; two neighbours are `step` degrees apart. `at` is its pose as seen from
+    the centre.
     """
+    found = np.full(360, np.nan)
+    valid = ~np.isnan(ranges)
+    found[_covered(angles[valid] + np.radians(at.heading), step)] = np.inf
     seen = np.isfinite(ranges)
     ranges, angles = ranges[seen], angles[seen] + np.radians(at.heading)
     if at.x or at.y:
         x, y = at.x + ranges * np.cos(angles), at.y + ranges * np.sin(angles)
         ranges, angles = np.hypot(x, y), np.arctan2(y, x)
-    found = np.full(360, np.inf)
-    np.minimum.at(found, np.rint(np.degrees(angles)).astype(int) % 360, ranges)
+    np.fmin.at(found, np.rint(np.degrees(angles)).astype(int) % 360, ranges)
     return found
+
+
+def _covered(angles: Array, step: float) -> npt.NDArray[np.int64]:
+    """The degrees that beams cover which are so many degrees apart."""
+    half = min(180, max(0, round(step / 2)))
+    middles = np.rint(np.degrees(angles)).astype(int)
+    covered: npt.NDArray[np.int64] = (middles[:, None] + np.arange(-half, half + 1)).ravel() % 360
+    return covered
 
 
 def as_measured(ranges: Array, at: Pose) -> Array:
     """A scan around the robot's centre as a scanner measures it that is at this pose of the robot."""
-    return ranges if at == CENTRE else around(ranges, _DEGREES, at.inverse)
+    if at == CENTRE:
+        return ranges
+    measured = around(ranges, _DEGREES, at.inverse)
+    measured[np.isnan(measured)] = np.inf  # what is nearer hides no degree from a beam that starts elsewhere
+    return measured
 
 
 def _to_segments(segments: Array, pose: Pose, beams: Array) -> Array:

@@ -16,6 +16,8 @@ from btlang.robots.geometry import Point, Pose
 from btlang.robots.gesturing import Gestures
 from btlang.robots.idling import Idling
 from btlang.robots.latch import Latch
+from btlang.robots.motion.guard.guard import Guard
+from btlang.robots.motion.guard.readings import ObstacleReading, OdometryReading, ScanReading
 from btlang.robots.navigation import NavigationGoal, Navigator
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.parts import IdlePart, Parts
@@ -44,6 +46,7 @@ class SimulatedRobot:
     """Implements `btlang.robots.robot.Robot`. The same commands and the same seed give the same run.
 
     `make_parts` makes its parts, which by default act in the world, of this and what stands there: its `obstacles`.
+    Unless it `sees`, it drives as it is told, past its sensors: whoever commands it has the guard.
     """
 
     moves_by_itself = False
@@ -55,6 +58,7 @@ class SimulatedRobot:
         body: Body | None = None,
         make_parts: Callable[[World, Obstacles, Body], Parts] | None = None,
         obstacles: Obstacles | None = None,
+        sees: bool = True,
     ) -> None:
         self.body = body = body or standard_body()
         self._has = cache(body.has)
@@ -77,7 +81,12 @@ class SimulatedRobot:
         self._surroundings = Surroundings(world, self._obstacles, body, self._joints.angle, self._emit)
         if isinstance(self._joints, IdlePart) and body.idle != Idle():
             self._idling = Idling(body, self._joints, self._surroundings.where, lambda: self.pose)
-        self._navigator = Navigator(world, self._base, self._obstacles, self.faults, self._surroundings)
+        self._sensors, self._scanned = parts.sensors, 0.0
+        self._guard = Guard(
+            body, self._surroundings.zones, self._obstacles, sensors=self._readings if sees else list,
+            odometry=self._odometry if sees else lambda: None, pose=lambda: self._base.pose, now=lambda: self.time,
+        )  # fmt: skip
+        self._navigator = Navigator(world, self._base, self._obstacles, self.faults, self._surroundings, self._guard)
         self._choices = Choices()
         self._latch = Latch()
         self._last_said = ""
@@ -204,6 +213,8 @@ class SimulatedRobot:
             return
         self._navigator.cancel("another command took over the drive")
         self._base.drive(linear, angular)
+        if linear == 0.0 == angular:
+            self._guard.rest()
 
     @property
     def bumps(self) -> int:
@@ -218,7 +229,21 @@ class SimulatedRobot:
     @property
     def stuck(self) -> bool:
         """True when it has been commanded to move for a second and does not."""
-        return self._base.stuck
+        return self._base.stuck or self._guard.stuck
+
+    @property
+    def held_back(self) -> str:
+        """See btlang.robots.capabilities.Base."""
+        return self._guard.held
+
+    @property
+    def limited_by(self) -> str:
+        """See btlang.robots.capabilities.Base."""
+        return self._guard.verdict.reason
+
+    def touch(self) -> None:
+        """See btlang.robots.capabilities.Base."""
+        self._guard.touch()
 
     @property
     def set_out_from(self) -> Pose:
@@ -407,6 +432,7 @@ class SimulatedRobot:
         """Puts the robot somewhere else, at rest, as somebody who carries it would."""
         self._rest()
         self._base.put(pose)
+        self._guard.forget()
 
     # Power
     @property
@@ -571,6 +597,17 @@ class SimulatedRobot:
         if not self._has(need):
             raise RobotError(f"the robot has no {part_of(need)}")
 
+    def _readings(self) -> list[ObstacleReading]:
+        """Those of the sensors; a scanner that is silent says what it said last."""
+        readings = self._sensors(self.time)
+        if not self.faults.scanner_silent:
+            self._scanned = self.time
+            return readings
+        return [each.replace(stamp=self._scanned) if isinstance(each, ScanReading) else each for each in readings]
+
+    def _odometry(self) -> OdometryReading | None:
+        return OdometryReading("odometry", self.time, self._base.silent or "", self._base.pose)
+
     def _begin_faults(self) -> None:
         for fault in self.faults.advance(self.time):
             self._emit("fault", kind=fault.kind, text=describe(fault))
@@ -595,9 +632,9 @@ class SimulatedRobot:
         if self._base.bumps > self._bumps_reported:
             self._bumps_reported = self._base.bumps
             self._emit("bump", into=self._base.bumped_into)
-        if self._base.stuck and not self._stuck_reported:
+        if self.stuck and not self._stuck_reported:
             self._emit("stuck")
-        self._stuck_reported = self._base.stuck
+        self._stuck_reported = self.stuck
 
     def _emit(self, event: str, **data: Any) -> None:
         if self._idling is not None and event in ("hear", "ask"):

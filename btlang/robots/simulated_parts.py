@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from btlang.robots.base import Base
 from btlang.robots.body import Body
 from btlang.robots.geometry import Pose
 from btlang.robots.hands import Hands
 from btlang.robots.joints import Joints
+from btlang.robots.motion.guard.readings import ObstacleReading, ScanReading
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.parts import JointsPart, Parts
 from btlang.robots.power import Power
@@ -29,10 +32,17 @@ def simulated_parts(world: World, obstacles: Obstacles, body: Body) -> Parts:
             scanners.append(Scanner(obstacles, body.range))
         return scanners[0].read(pose)
 
+    def sensors(now: float) -> list[ObstacleReading]:
+        if scanner is None:
+            return []
+        look = partial(scan, base.pose)
+        return [ScanReading("scanner", now, "", look, scanner.view, scanner.angle, base.room)]
+
+    scanner = body.sensor("scanner")
     base, power = Base(world.start, obstacles, body), Power(world.battery, world.all_docks, body)
     joints = joints_part(body)
     hands = Hands(obstacles, world.names.objects, body)
-    return Parts(base, power, scan, joints, hands, Voice(body, joints.move))
+    return Parts(base, power, scan, joints, hands, Voice(body, joints.move), sensors)
 
 
 def joints_part(body: Body) -> JointsPart:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 PARTS = ("clothing", "color", "gesture", "kind", "use")
 """What objects and people can be described by; each is a type of slots."""
-KEEP_OUT, SLOW = "keep out", "slow"
+KEEP_OUT, SLOW, AREA = "keep out", "slow", "area"
 PERSON_RADIUS = 0.25
 OBJECT_RADIUS = 0.05
 NEVER = float("inf")
@@ -27,12 +27,18 @@ _UNDRAWN = (
 
 
 class Place(Record):
-    """A named point to stand on; `facing` (degrees) is None where any direction will do."""
+    """A named point to stand on; `facing` (degrees) is None where any direction will do, `kind` may be "room"."""
 
     name: str
     x: float
     y: float
     facing: float | None = None
+    kind: str = ""
+
+    @property
+    def parts(self) -> Parts:
+        """What it can be described by."""
+        return (("kind", self.kind.lower()),) if self.kind else ()
 
 
 class Thing(Record):
@@ -138,7 +144,10 @@ class Person(Thing):
 
 
 class Zone(Record):
-    """A polygon that the robot keeps out of, or drives through at no more than `speed` metres a second."""
+    """A polygon that the robot keeps out of, or drives through at no more than `speed` metres a second.
+
+    One that is an area means nothing by itself; a mission may close it, or stay in it.
+    """
 
     name: str
     kind: str
@@ -149,6 +158,11 @@ class Zone(Record):
     def is_closed(self) -> bool:
         """Whether the robot has to keep out."""
         return self.kind == KEEP_OUT
+
+    @property
+    def is_slow(self) -> bool:
+        """Whether the robot drives slowly there."""
+        return self.kind == SLOW
 
     def contains(self, point: Point) -> bool:
         """By the even-odd rule."""
@@ -273,7 +287,7 @@ class World(Record):
     def names(self) -> WorldNames:
         """All names of the world."""
         named = (self.places, self.objects, self.people, self.zones, self.doors)
-        likes = (("object", self.objects), ("person", self.people))
+        likes = (("object", self.objects), ("person", self.people), ("place", self.places))
         features = {kind: tuple((thing.name, thing.parts) for thing in things) for kind, things in likes}
         places, objects, people, zones, doors = (tuple(each.name for each in kind) for kind in named)
         return WorldNames(places, objects, people, zones, doors, features)

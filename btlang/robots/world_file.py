@@ -10,15 +10,25 @@ from btlang.robots.body_file import standard_body
 from btlang.robots.data_file import DataFileError, load_data, make_from
 from btlang.robots.geometry import Point, Pose, Segment, segment_distance
 from btlang.robots.world import (
+    AREA,
     NEVER,
     Box,
     Fault,
     Place,
     World,
     WorldNames,
+    Zone,
 )
 from btlang.robots.world_bounds import entries, outside, spots
-from btlang.robots.world_tables import is_point, read_crowd, read_door, read_object, read_person, read_zone
+from btlang.robots.world_tables import (
+    is_point,
+    read_corners,
+    read_crowd,
+    read_door,
+    read_object,
+    read_person,
+    read_zone,
+)
 from btlang.text.source import Source
 from btlang.text.time_of_day import USUAL_START
 from btlang.text.toml_table import Problem, Problems, Table
@@ -82,7 +92,8 @@ def _world(top: Table, radius: float | None, bounded: bool = False) -> World:
     walls: list[Any] = problems.part(lambda: top.items("walls"), [])
     pieces = [problems.part(partial(_wall, points, index), None) for index, points in enumerate(walls)]
     boxes = _made(problems.rows(top, "boxes", _box))
-    rows: dict[str, list[Any]] = {"start": [start], "places": problems.rows(top, "places", _place)}
+    with_areas = problems.rows(top, "places", _place)
+    rows: dict[str, list[Any]] = {"start": [start], "places": [each and each[0] for each in with_areas]}
     dock = problems.part(lambda: _dock(top), None)
     rows["dock"], rows["docks"] = [dock], problems.rows(top, "docks", _further_dock)
     places = _made((*rows["places"], dock, *rows["docks"]))
@@ -98,6 +109,7 @@ def _world(top: Table, radius: float | None, bounded: bool = False) -> World:
     seed = problems.part(lambda: int(top.number("seed", low=0.0)) if top.has("seed") else None, None)
     problems.part(lambda: top.finish(None), None)
     objects, people, zones, doors = (_made(rows[key]) for key in ("objects", "people", "zones", "doors"))
+    zones += tuple(each[1] for each in with_areas if each and each[1] is not None)
     people += tuple(person for crowd in _made(rows["crowds"]) for person in crowd)
     world = World(
         start or Pose(0.0, 0.0), battery, _made(pieces), boxes, places, objects, people, faults, dock, clock, zones,
@@ -155,9 +167,13 @@ def _box(table: Table) -> Box:
     return table.finish(box)
 
 
-def _place(table: Table) -> Place:
+def _place(table: Table) -> tuple[Place, Zone | None]:
+    """A place, and the zone that it is where the file has its corners."""
     facing = table.number("facing") if table.has("facing") else None
-    return table.finish(Place(table.text("name"), table.number("x"), table.number("y"), facing))
+    kind = table.text("kind") if table.has("kind") else ""
+    place = Place(table.text("name"), table.number("x"), table.number("y"), facing, kind)
+    zone = Zone(place.name, AREA, read_corners(table)) if table.has("points") else None
+    return table.finish((place, zone))
 
 
 def _fault(table: Table, places: tuple[str, ...], docks: tuple[str, ...]) -> Fault:
@@ -182,7 +198,7 @@ def _names_given_twice(rows: Rows) -> Iterator[Problem]:
     for (section, *index), group in entries(rows, _NAMED):
         for named in group:
             key = named.name.lower()
-            if key in seen:
+            if key in seen and {seen[key], section} != {"places", "zones"}:  # a place may be an area, too
                 message = f'the name "{named.name}" is given twice ({seen[key]} and {section}); give one another name'
                 yield Problem(message, section, *index, "name")
             seen[key] = str(section)

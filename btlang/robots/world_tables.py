@@ -5,6 +5,7 @@ from __future__ import annotations
 from btlang.robots.geometry import Point
 from btlang.robots.visits import WEEKDAYS, Visits
 from btlang.robots.world import (
+    AREA,
     KEEP_OUT,
     NEVER,
     OBJECT_RADIUS,
@@ -82,13 +83,19 @@ def read_crowd(table: Table, known: bool, places: Sequence[Place]) -> tuple[Pers
 
 def read_zone(table: Table) -> Zone:
     """An entry of `zones`. Raises Problem."""
-    name, kind = table.text("name"), table.choice("kind", (KEEP_OUT, SLOW))
+    name, kind = table.text("name"), table.choice("kind", (KEEP_OUT, SLOW, AREA))
+    points = read_corners(table)
+    speed = table.number("speed", low=0.01) if kind == SLOW else 0.0
+    return table.finish(Zone(name, kind, points, speed))
+
+
+def read_corners(table: Table) -> tuple[Point, ...]:
+    """The `points` of an area. Raises Problem."""
     points = table.items("points")
     if len(points) < 3 or not all(map(is_point, points)):
         message = "a zone has three or more points: write points = [[0, 0], [4, 0], [4, 2]]"
         raise table.problem("points", message)
-    speed = table.number("speed", low=0.01) if kind == SLOW else 0.0
-    return table.finish(Zone(name, kind, tuple((float(x), float(y)) for x, y in points), speed))
+    return tuple((float(x), float(y)) for x, y in points)
 
 
 def read_door(table: Table) -> Door:

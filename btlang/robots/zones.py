@@ -1,4 +1,4 @@
-"""Zones: where the robot may not go, or only slowly. A mission may close and open them until it ends."""
+"""Zones: where the robot may not go, or only slowly, or must stay. A mission may close and open them until it ends."""
 
 from __future__ import annotations
 
@@ -9,22 +9,51 @@ from btlang.robots.geometry import Point
 from btlang.robots.world import Zone, said
 
 
+class Restriction:
+    """Zones that the robot keeps out of, or stays in, from `begin` to `end`; others may hold beside it.
+
+    A context manager: with `zones.keep_out("stairs"): ...`.
+    """
+
+    def __init__(self, zones: Zones, names: Sequence[str], keeps_in: bool) -> None:
+        self._zones, self.names, self.keeps_in = zones, names, keeps_in
+
+    def begin(self) -> None:
+        """It holds from now on. Raises ActionFailed for an unknown zone."""
+        self._zones.restrict(self, True)
+
+    def end(self) -> None:
+        """It no longer holds. May be called twice."""
+        self._zones.restrict(self, False)
+
+    def __enter__(self) -> Restriction:
+        self.begin()
+        return self
+
+    def __exit__(self, *problem: object) -> None:
+        self.end()
+
+
 class Zones:
     """The zones of a world as they are now. `version` changes whenever one is closed or opened."""
 
     def __init__(self, zones: Iterable[Zone]) -> None:
         self._zones = {zone.name.lower(): zone for zone in zones}
         self._said: dict[str, bool] = {}
+        self._restrictions: list[Restriction] = []
         self.version = 0
         self.closed: Sequence[Zone] = ()
         """Those to keep out of."""
         self.slow: Sequence[Zone] = ()
         """Those to drive slowly through."""
+        self.confines: Sequence[Sequence[Zone]] = ()
+        """Those to stay in: in at least one of each of these."""
         self.begin()
 
     def begin(self) -> None:
         """A run begins: zones are as the world says."""
         self._said.clear()
+        self._restrictions.clear()
         self._sort()
 
     def close(self, name: str) -> None:
@@ -35,6 +64,23 @@ class Zones:
         """The robot may go there again. Raises ActionFailed for an unknown one."""
         self._say(name, False)
 
+    def keep_out(self, *names: str) -> Restriction:
+        """Closes zones while it holds, whatever else is said of them meanwhile."""
+        return Restriction(self, names, False)
+
+    def keep_in(self, *names: str) -> Restriction:
+        """The robot stays in these zones while it holds: in any of them."""
+        return Restriction(self, names, True)
+
+    def restrict(self, restriction: Restriction, holds: bool) -> None:
+        """A restriction begins or ends."""
+        for name in restriction.names:
+            self._zone(name)
+        self._restrictions = [each for each in self._restrictions if each is not restriction]
+        if holds:
+            self._restrictions.append(restriction)
+        self._sort()
+
     def is_closed(self, name: str) -> bool:
         """Whether the robot keeps out of it. Raises ActionFailed for an unknown one."""
         return self._zone(name) in self.closed
@@ -42,7 +88,10 @@ class Zones:
     def refusal(self, name: str, point: Point) -> str | None:
         """Why the robot may not go to a point that is called so; None where it may."""
         zone = next((zone for zone in self.closed if zone.contains(point)), None)
-        return None if zone is None else f"{said(name)} is in the {zone.name}, where the robot may not go"
+        if zone is not None:
+            return f"{said(name)} is in the {zone.name}, where the robot may not go"
+        left = next((zones for zones in self.confines if not any(zone.contains(point) for zone in zones)), None)
+        return None if left is None else f"{said(name)} is outside {zone_names(left)}, where the robot has to stay"
 
     def contains(self, name: str, point: Point) -> bool:
         """Whether a point lies in a zone. Raises ActionFailed for an unknown one."""
@@ -55,10 +104,17 @@ class Zones:
     def _sort(self) -> None:
         self.version += 1
         zones = self._zones.values()
-        self.closed = [zone for zone in zones if self._said.get(zone.name, zone.is_closed)]
-        self.slow = [zone for zone in zones if zone not in self.closed and not zone.is_closed]
+        out = {name.lower() for each in self._restrictions if not each.keeps_in for name in each.names}
+        self.closed = [zone for zone in zones if zone.name.lower() in out or self._said.get(zone.name, zone.is_closed)]
+        self.confines = [[self._zone(name) for name in each.names] for each in self._restrictions if each.keeps_in]
+        self.slow = [zone for zone in zones if zone not in self.closed and zone.is_slow]
 
     def _zone(self, name: str) -> Zone:
         if (zone := self._zones.get(name.lower())) is None:
             raise ActionFailed(f"there's no zone called '{name}'")
         return zone
+
+
+def zone_names(zones: Sequence[Zone]) -> str:
+    """The names of zones as they are spoken of: "the hall and the lab"."""
+    return " and ".join(f"the {zone.name}" for zone in zones)

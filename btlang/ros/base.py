@@ -14,6 +14,8 @@ from rclpy.node import Node
 
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.latch import Latch
+from btlang.robots.motion.guard.guard import FRESH
+from btlang.robots.motion.guard.readings import OdometryReading
 from btlang.robots.robot import RobotError
 from btlang.ros.commands import velocity
 from btlang.ros.poses import pose_of
@@ -58,8 +60,8 @@ class RosBase:
         self._radius, self._fastest = radius, fastest
         self._latch = latch or Latch()
         self._lock = RLock()  # a signal handler may halt while this thread drives
-        self.most = inf
-        """Metres a second that it doesn't pass, whatever is commanded."""
+        self.limits = inf, inf
+        """Metres and degrees a second that it doesn't exceed, whatever is commanded."""
         self._wanted = (0.0, 0.0)
         self._published = False  # since the latest step
         self._idle = self._passed = 0.0
@@ -91,7 +93,7 @@ class RosBase:
         comes after all that was let through before it.
         """
         with self._lock:
-            wanted = _at_most(linear, self._fastest[0]), _at_most(angular, self._fastest[1])
+            wanted = self.clipped(linear, angular)
             if self._latch.refuses and wanted != (0.0, 0.0):
                 return
             if wanted == (0.0, 0.0):
@@ -124,10 +126,14 @@ class RosBase:
                     self._publish()
             self._published = False
 
+    def clipped(self, linear: float, angular: float) -> tuple[float, float]:
+        """The same velocity, at most as fast as the base can."""
+        return _at_most(linear, self._fastest[0]), _at_most(angular, self._fastest[1])
+
     @property
-    def backward(self) -> bool:
-        """Whether it has been commanded to move backward."""
-        return self._wanted[0] < 0.0
+    def wanted(self) -> tuple[float, float]:
+        """Metres and degrees a second that it has been commanded to move."""
+        return self._wanted
 
     @property
     def driving(self) -> bool:
@@ -163,6 +169,14 @@ class RosBase:
         now = pose_of(self._subscriptions.get(ODOMETRY, _SILENT).pose.pose)
         return now if self._fix is None else _carried(*self._fix, now)
 
+    def reading(self) -> OdometryReading | None:
+        """The latest odometry, for the guard; None if none has come."""
+        found = self._subscriptions.reading(ODOMETRY, FRESH)
+        if found is None:
+            return None
+        message, arrived, fault = found
+        return OdometryReading(self._subscriptions.shown(ODOMETRY), arrived, fault, pose_of(message.pose.pose))
+
     def where(self) -> Pose | None:
         """The pose; None where the odometry is silent."""
         try:
@@ -173,8 +187,8 @@ class RosBase:
     def _publish(self) -> None:
         if self._publisher is None:
             self.adapt()
-        stamp, (linear, angular) = self._node.get_clock().now().to_msg(), self._wanted
-        linear = _at_most(linear, self.most)
+        stamp = self._node.get_clock().now().to_msg()
+        linear, angular = map(_at_most, self._wanted, self.limits)
         message = velocity(_TYPES[self._type], linear, radians(angular), stamp, self._fastest[0])
         if self._publisher is not None:
             self._publisher.publish(message)
@@ -232,7 +246,7 @@ class RosBase:
 
 def _at_most(speed: float, most: float) -> float:
     """What is not finite stays so, and is refused."""
-    return max(-most, min(most, speed)) if isfinite(speed) else speed
+    return max(-most, min(most, speed)) + 0.0 if isfinite(speed) else speed
 
 
 def _carried(located: Pose, before: Pose, now: Pose) -> Pose:

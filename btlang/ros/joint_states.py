@@ -6,7 +6,7 @@ from math import isfinite
 
 from sensor_msgs.msg import JointState
 
-from btlang.robots.body import Body, Joint
+from btlang.robots.body import Body
 from btlang.robots.joints import joint_of
 from btlang.robots.robot import SensorSilent
 from btlang.ros.subscription_cache import SubscriptionCache
@@ -44,8 +44,3 @@ def positions(states: JointState) -> dict[str, float]:
 def on_wire(name: str) -> str:
     """The name of a joint in messages."""
     return name.replace(" ", "_")
-
-
-def shown(joint: Joint, distance: float) -> str:
-    """How far a joint is from where it should be, for people."""
-    return f"{distance:.2f} m" if joint.slides else f"{distance:.0f} degrees"

@@ -11,14 +11,12 @@ from trajectory_msgs.msg import JointTrajectory
 
 from btlang.robots.body import Body
 from btlang.robots.joints import clipped, joint_of
+from btlang.robots.motion.guard.joints import JointProgress
 from btlang.robots.robot import RobotError
 from btlang.ros.awake import AWAKE
 from btlang.ros.commands import trajectory
-from btlang.ros.joint_states import TRAJECTORY, JointStates, on_wire, shown
+from btlang.ros.joint_states import TRAJECTORY, JointStates, on_wire
 from btlang.ros.subscription_cache import SubscriptionCache
-
-_STALLED = 5.0  # seconds in which a joint on its way gets no nearer
-_PROGRESS = 0.5  # of what is close enough counts as nearer
 
 
 class JointsOverRos(Protocol):
@@ -49,7 +47,7 @@ class RosJoints:
         self._body = body
         self._states = JointStates(subscriptions, body)
         self._targets: dict[str, float] = {}
-        self._nearest: dict[str, tuple[float, float]] = {}  # what was left at the nearest, and since when
+        self._progress = JointProgress(body, AWAKE.now)
         self._publisher = node.create_publisher(JointTrajectory, TRAJECTORY, 10)
 
     @property
@@ -70,13 +68,13 @@ class RosJoints:
         times = (abs(goal - self.angle(name)) / joint_of(self._body, name).speed for name, goal in goals.items())
         self._publish(goals, max(times, default=0.0))
         self._targets.update(goals)
-        self._nearest.update(dict.fromkeys(goals, (float("inf"), AWAKE.now())))
+        self._progress.start(goals)
 
     def at_target(self, names: tuple[str, ...]) -> bool:
         """True when none of them is on its way. Raises RobotError where one of them is stuck."""
         for name in names:
             target = self._targets.get(name)
-            if target is not None and self._arrived(name, abs(target - self.angle(name))):
+            if target is not None and self._progress.has_arrived(name, target - self.angle(name)):
                 self._targets.pop(name, None)
         return not any(name in self._targets for name in names)
 
@@ -87,18 +85,6 @@ class RosJoints:
             self._publish({name: self.angle(name) for name in under_way}, 0.0)
         except RobotError:
             return  # nobody knows where they are
-
-    def _arrived(self, name: str, left: float) -> bool:
-        joint = joint_of(self._body, name)
-        if left <= joint.close_enough:
-            return True
-        nearest, since = self._nearest[name]
-        now = AWAKE.now()
-        if left < nearest - _PROGRESS * joint.close_enough:
-            self._nearest[name] = left, now
-        elif now - since > _STALLED:
-            raise RobotError(f"the {name} doesn't move: it is {shown(joint, left)} from where it should be")
-        return False
 
     def _publish(self, targets: Mapping[str, float], seconds: float) -> None:
         if not targets:

@@ -66,6 +66,11 @@ class Latest:
         return self._last is not None
 
     @property
+    def arrived(self) -> float:
+        """The second at which the message came; -inf if there is none."""
+        return -math.inf if self._last is None else self._last[1]
+
+    @property
     def message(self) -> Any:
         """The message, however old; None if there is none."""
         return None if self._last is None else self._last[0]

@@ -21,11 +21,11 @@ from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.gesturing import Gestures
 from btlang.robots.latch import Latch
-from btlang.robots.protection import Protection
+from btlang.robots.motion.guard.guard import Cause, Guard, Verdict
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError
 from btlang.robots.station import Station
 from btlang.robots.voice import Synthesizer
-from btlang.robots.world import Place, World, Zone, said
+from btlang.robots.world import Place, World, said
 from btlang.robots.zones import Zones
 from btlang.ros.available import optional_interface
 from btlang.ros.awake import AWAKE
@@ -111,14 +111,17 @@ class RosRobot:
         self._services = Services(node, self._executor)
         self._services.add(_STOP, Trigger)
         self._services.add(_LOCALIZE, Empty)
-        self._senses = RosSensors(subscriptions, self._base, self._emit, body.sensor("scanner"))
+        self._senses = RosSensors(subscriptions, self._base, self._emit, body)
         make_docking = partial(make_docking_clients, node, self._executor, self._base.where, now)
         self.power = RosPower(node, subscriptions, self._services, self._emit, make_docking)
         self._hands = RosHands(node, subscriptions, self._services, self._places, self._base.where, self._emit, body)
         self._ears = RosEars(node, subscriptions, self._emit)
         self._perception = RosPerception(node, subscriptions, self._places)
         self._zones = RosZones(node, subscriptions, self._places.zones, world.zones, self.normal_speed)
-        self._protection = Protection(self._places.obstacles, self._places.zones, body)
+        self._guard = Guard(
+            body, self._places.zones, self._places.obstacles, sensors=lambda: self._senses.readings(now()),
+            odometry=self._base.reading, pose=self._base.where, now=now,
+        )  # fmt: skip
         self._doors = RosDoors(node, subscriptions, self._services, self._places, world, self._emit)
         self._calls = node.create_publisher(String, CALL, 10)
         self._optional = [name for name, kind in _OPTIONAL.items() if self._offer(name, kind)]
@@ -154,12 +157,12 @@ class RosRobot:
             self._stops_for -= dt
             self._rest()  # again: something else may drive the robot on, such as a server that ignores a cancel
         self._latch.step()
+        self._judge(*self._base.wanted)
         self._base.step(dt)
         self._voice.step(dt)
         here = self._base.where()
         self._began = self._began or here
         self._perception.step(self.time, here)
-        self._protect(self._base.backward)
         off_limits = self._zones.step(dt, here)
         if off_limits and self._navigation is not None:
             self._navigation.stop(off_limits)
@@ -282,17 +285,36 @@ class RosRobot:
             return
         for servers in self._servers:
             servers.stop("another command took over the drive")
-        zone = self._protect(linear < 0.0)
-        if zone is not None and linear:
+        try:
+            verdict = self._judge(*self._base.clipped(linear, angular))
+        except RobotError:
             self._base.halt()
-            raise RobotError(f"the {zone.name} is in the way, where the robot may not go")
+            raise
+        if verdict.cause is Cause.ZONE and verdict.who and not verdict.linear:
+            self._base.halt()
+            raise RobotError(verdict.reason)
         self._base.drive(linear, angular)
 
-    def _protect(self, backward: bool) -> Zone | None:
-        """The base drives no faster than zones allow; returns the one before which it has to stand."""
-        here = self._base.where()
-        self._base.most = inf if here is None else self._protection.limit(here, backward)
-        return self._protection.zone if here is not None else None
+    def _judge(self, linear: float, angular: float) -> Verdict:
+        """The base drives no faster than the guard allows."""
+        verdict = self._guard.judge(linear, angular)
+        most = abs(verdict.linear) if verdict.linear != linear else inf
+        self._base.limits = most, abs(verdict.angular) if verdict.angular != angular else inf
+        return verdict
+
+    @property
+    def held_back(self) -> str:
+        """See btlang.robots.capabilities.Base."""
+        return self._guard.held
+
+    @property
+    def limited_by(self) -> str:
+        """See btlang.robots.capabilities.Base."""
+        return self._guard.verdict.reason
+
+    def touch(self) -> None:
+        """See btlang.robots.capabilities.Base."""
+        self._guard.touch()
 
     @property
     def bumps(self) -> int:
@@ -307,7 +329,7 @@ class RosRobot:
     @property
     def stuck(self) -> bool:
         """True when it has been commanded to move for a second and does not."""
-        return self._base.stuck
+        return self._base.stuck or self._guard.stuck
 
     def located(self, name: str) -> tuple[float, float, float | None]:
         """Where a name of the world is: metres, and the direction to face in radians, None for any. Raises KeyError."""

@@ -17,13 +17,14 @@ from btlang.robots.gesture import Gesture, joints_of
 from btlang.robots.joints import joint_of
 from btlang.robots.motion.braking import braking
 from btlang.robots.motion.course import PERIOD, Limits, Piece, State, between, samples
+from btlang.robots.motion.guard.joints import shown_distance
 from btlang.robots.motion.kinematics import Array
 from btlang.robots.motion.movements import staying
 from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.motion.timeline import Play
 from btlang.robots.robot import RobotError
 from btlang.ros.commands import Reach, motion
-from btlang.ros.joint_states import TRAJECTORY, JointStates, on_wire, shown
+from btlang.ros.joint_states import TRAJECTORY, JointStates, on_wire
 from btlang.ros.subscription_cache import SubscriptionCache
 from btlang.ros.times import seconds_of, stamp
 
@@ -34,7 +35,6 @@ _EACH = 2  # samples between two points of a trajectory
 _RENEWED = 0.2  # seconds of real time after which what is under way is sent again: the robot brakes where it isn't
 _OFF, _OFF_SLIDING = 15.0, 0.1  # degrees and metres from the plan
 _LOST = 0.5  # seconds for which a joint may be as far from it
-_STUCK = 2.0  # seconds after which a joint should be where its movement ended
 _STAMPED = 1.0  # seconds that a stamp may be old; another one is from another clock
 
 
@@ -152,8 +152,8 @@ class RosSmoothJoints:
             return True
         for joint in joints:
             left = abs(self._measured(joint) - sent.way.position[-1][joint])
-            if self._now() > sent.ends + _STUCK and left > self._body.joints[joint].close_enough:
-                far = shown(self._body.joints[joint], left)
+            if self._now() > sent.ends + self._body.patience and left > self._body.joints[joint].close_enough:
+                far = shown_distance(self._body.joints[joint], left)
                 raise RobotError(f"the {self._names[joint]} doesn't move: it is {far} from where it should be")
         return False
 
@@ -258,7 +258,7 @@ class RosSmoothJoints:
             if off[far] <= self._off[far]:
                 self._near = now
             elif now - self._near > _LOST:
-                away = shown(self._body.joints[far], off[far])
+                away = shown_distance(self._body.joints[far], off[far])
                 self._stay(f"the {self._names[far]} doesn't follow: it is {away} from where it should be")
         except RobotError as problem:
             self._stay(str(problem))

@@ -49,7 +49,7 @@ class SubscriptionCache:
         """
         key = key or topic
         self._what[key] = what
-        latest = Latest(self._node.resolve_topic_name(topic), self._now, refuses=refuses or Gate(kind).refuses)
+        latest = Latest(self._node.resolve_topic_name(topic), self._now, refuses=refuses or self._gate(kind).refuses)
         self._latest[key] = latest
         if qos != "sensor":
             self._events[key] = deque(maxlen=_MOST)
@@ -63,6 +63,9 @@ class SubscriptionCache:
                 self._events[key].append(message)
 
         self._node.create_subscription(kind, topic, arrived, QOS[qos])
+
+    def _gate(self, kind: type) -> Gate:
+        return Gate(kind, lags=not self._node.get_clock().ros_time_is_active)
 
     def read(self) -> None:
         """From now on `get` gives what has arrived until now, so that all leaves of a tick see the same."""
@@ -81,6 +84,10 @@ class SubscriptionCache:
         """Why there is no message to believe, "" where the latest one is."""
         return self._latest[topic].refused or self._latest[topic].why_not()
 
+    def is_published(self, topic: str) -> bool:
+        """Whether somebody publishes a topic that is listened to."""
+        return bool(self._node.count_publishers(self._latest[topic].named))
+
     def shown(self, topic: str) -> str:
         """The name of a topic that is listened to, with the namespace."""
         return self._latest[topic].named
@@ -96,6 +103,17 @@ class SubscriptionCache:
             if latest.silence() > limit:
                 raise SensorSilent(f"no {what} for {limit:g} s: {latest.refused or f'{latest.named} is silent'}")
         return self._read[topic]
+
+    def reading(self, topic: str, fresh: float) -> tuple[Any, float, str] | None:
+        """The latest message, when it arrived, and why it isn't to be believed: nothing that can be true has come for
+        `fresh` seconds. None if no message has ever come.
+        """
+        latest = self._latest[topic]
+        if not latest.has_come:
+            return None
+        silence = latest.silence()
+        reason = latest.refused or f"{latest.named} is silent for {silence:.1f} s"
+        return latest.message, latest.arrived, reason if silence > fresh else ""
 
     def latest(self, topic: str, limit: float) -> Any:
         """As `get`, but None in place of an error."""

@@ -1,8 +1,8 @@
 """The syntax tree of a mission, as both parsers give it: what was said, with the exact characters of each part.
 
 Commands: Phrase, Name, Chain, If, IfWorks, While, Provided, StopWhen, Repeat, Retry, Try, Within, For, UpTo, Every,
-UntilTime, Apart, Delay, Wait, WaitUntil, WaitTime, Check, Nothing, Fail, Assign, Remember, ForEach, Exact; Whenever in
-a sequence.
+UntilTime, Apart, Delay, Constrained, Wait, WaitUntil, WaitTime, Check, Nothing, Fail, Assign, Remember, ForEach,
+Exact; Whenever in a sequence.
 Conditions: Phrase, Name, Compared, Chain ("all", "any"), AtLeast, Not, Exact. `parts` are fields with subtrees.
 Amounts and values are port texts in base units (seconds); they may refer to values of the mission: `{level}`, in a
 text also `it is {level} percent` (see btlang/vocabulary/references.py).
@@ -246,6 +246,16 @@ class Delay(_Timed):
     """The body after the time."""
 
 
+class Constrained(Ast):
+    """The body, during which the robot keeps out of zones, or stays in them; `kind` is "keep out" or "keep in"."""
+
+    kind: str
+    zones: tuple[str, ...]
+    body: Ast
+    span: Span
+    parts = ("body",)
+
+
 class Wait(Ast):
     seconds: str
     span: Span
@@ -448,6 +458,7 @@ _TEXTS: dict[type[Ast], Callable[[Any], Iterable[str]]] = {
     **dict.fromkeys((Phrase, Name, Compared, Remember), _of_arguments),
     **dict.fromkeys((Within, For, UpTo, Delay, Wait), lambda node: (node.seconds,)),
     **dict.fromkeys((Every, Apart), lambda node: (node.seconds, node.rounds)),
+    Constrained: lambda node: node.zones,
     WaitUntil: lambda node: (node.held,),
     **dict.fromkeys((WaitTime, UntilTime), lambda node: (node.time,)),
     Assign: lambda node: (node.text,),

@@ -6,7 +6,7 @@ its semantics in engine/compile.py and a row in the behaviour tables of the test
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from btlang.record import Record
 
@@ -193,6 +193,14 @@ CATALOGUE: dict[str, NodeKind] = {
         _decorator("KeepRunningUntilFailure", waits=True, again=ON_SUCCESS, endless=True, skipped="never",
                    tags_3=("KeepRunningUntilFailure",)),
         *(_loop(sort) for sort in ("Int", "Bool", "Double", "String")),
+        _decorator(
+            "KeepOut", ports={"zones": Port()}, waits=True, origin=BTLANG,
+            text="The robot keeps out of the zones (names between semicolons) while the child runs.",
+        ),
+        _decorator(
+            "KeepIn", ports={"zones": Port()}, waits=True, origin=BTLANG,
+            text="The robot stays in the zones (names between semicolons) while the child runs.",
+        ),
         _decorator("Timeout", ports={"msec": _MILLISECONDS}, interrupts=True, tags_3=("Timeout",)),
         _decorator("Delay", ports={"delay_msec": _MILLISECONDS}, takes_time=True, tags_3=("Delay",)),
         _decorator("RateController", ports={"hz": Port("double", "10", unit="Hz")}, takes_time=True, origin=NAV2),
@@ -217,6 +225,20 @@ CATALOGUE: dict[str, NodeKind] = {
     )
 }  # fmt: skip
 """By id."""
+
+
+def never_ends(node_id: str, ports: Sequence[tuple[str, str]], endless: Sequence[bool]) -> bool:
+    """Whether a node with these ports runs until it fails or is stopped; `endless` says which of its children do."""
+    kind = CATALOGUE.get(node_id)
+    if kind is None or not endless:
+        return False
+    if kind.goes_on == ON_FAILURE or kind.at_once:
+        return all(endless)
+    if kind.roles:
+        return kind.roles[-1] == "work" and endless[-1]
+    if kind.goes_on or kind.takes_time:
+        return any(endless)
+    return kind.again == ON_SUCCESS and (dict(ports).get(kind.rounds) == "-1" if kind.rounds else kind.endless)
 
 
 def held(node_id: str, port: str) -> str:

@@ -37,9 +37,11 @@ CAPABILITIES = {
     "voice": Capability("voice", ("voice",)),
     "ears": Capability("ears"),
     "perception": Capability("camera that recognises things"),
-    "screen": Capability("screen"),
+    "screen": Capability("screen", ("screen",)),
 }
 """By name. Those without resources are for any number of commands at once."""
+MOVES, SPEAKS = "base", "voice"
+"""The resources of what moves the robot and of what speaks: a warning is spoken before the robot moves."""
 POSTURE = "posture "
 """Before the name of a posture."""
 

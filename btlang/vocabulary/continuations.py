@@ -12,7 +12,7 @@ from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode
 from btlang.vocabulary.value_type import with_unit
 from btlang.vocabulary.values import Values
-from btlang.vocabulary.word_tree import END, SLOTS, WordTree
+from btlang.vocabulary.word_tree import END, NO_WORDS, SLOTS, WordTree
 
 _MOST = 200  # ways to go on from one place; nobody reads more
 
@@ -57,7 +57,7 @@ def begun(root: TrieNode, text: Words, first: int, last: int, context: ReadingCo
 def ways_on(node: TrieNode, start: str = "") -> Iterator[tuple[tuple[str, ...], TrieNode]]:
     """Words that lead on to the end of a phrase or to its next slot, fewest first; the first begins with `start`."""
     pending: deque[tuple[tuple[str, ...], TrieNode]] = deque(
-        ((word,), child) for word, child in node.items() if word not in (END, SLOTS) and word.startswith(start)
+        ((word,), child) for word, child in node.items() if word not in NO_WORDS and word.startswith(start)
     )
     found = 0
     while pending and found < _MOST:
@@ -65,7 +65,7 @@ def ways_on(node: TrieNode, start: str = "") -> Iterator[tuple[tuple[str, ...], 
         if END in node or SLOTS in node:
             found += 1
             yield words, node
-        pending += [((*words, word), child) for word, child in node.items() if word not in (END, SLOTS)]
+        pending += [((*words, word), child) for word, child in node.items() if word not in NO_WORDS]
 
 
 def meanings(node: TrieNode) -> Iterator[Meaning]:
@@ -76,7 +76,7 @@ def meanings(node: TrieNode) -> Iterator[Meaning]:
         for node in level:
             if END in node:
                 yield node[END]
-            below += [child for word, child in node.items() if word not in (END, SLOTS)]
+            below += [child for word, child in node.items() if word not in NO_WORDS]
             below += [child for _, _, child in node.get(SLOTS, ())]
         level = [node for node in below if id(node) not in seen]
         seen.update(map(id, level))

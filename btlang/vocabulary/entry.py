@@ -29,16 +29,54 @@ MEASURED = "value"
 """The port of such a condition that may name the blackboard key to write what was measured to."""
 
 
+THEME, RECIPIENT, PATH, MANNER = "theme", "recipient", "path", "manner"
+VIA = "via"
+"""The slot of what a journey passes."""
+UNMARKED = frozenset((THEME, MANNER, "extent", "duration"))
+"""Roles that no word introduces."""
+VERB_ROLES = (
+    THEME, RECIPIENT, "beneficiary", "goal", "source", PATH, "location", "instrument", "topic", "extent", "duration",
+    MANNER,
+)  # fmt: skip
+"""The roles that a verb may have."""
+
+
+class Role(Record):
+    """A role of a verb: the slot that its value fills, and the words that may introduce it.
+
+    One that is `for_speaker` may be said as `me`, and then fills no slot.
+    """
+
+    name: str
+    slot: str
+    type: str
+    words: tuple[tuple[str, ...], ...] = ()
+    is_needed: bool = True
+    for_speaker: bool = False
+
+    @property
+    def is_direct(self) -> bool:
+        """Whether its value may stand without a word that introduces it."""
+        return self.name in UNMARKED or self.name == RECIPIENT
+
+
 class Entry(Record, uncompared=("span",)):
     """One action or condition.
 
     `call` is "module:name" or the Python object itself; `phrases` are patterns, the first is the one printed back;
     `span` is the place of its first phrase in its keyword file. Where `measures` names a type, the `call` gives a
     quantity of it; the vocabulary makes the phrases that compare it of the `quantity` ones and the words for comparing.
-    `instant` and `uninterruptible` are what an action says of itself: that it ends in the tick in which it starts, and
+    An `accompaniment` can go along with other commands: speech, gestures, lights, driving and turning by a measure;
+    every other action is a task, whose result counts.
+    An action that `constrains` others ("keep out", "keep in" of a zone) holds over the statement that it is said in; it
+    is a command of its own only where it stands alone. Of a list of places an action with `first` tries one after the
+    other until it succeeds. `instant` and `uninterruptible` are what an action says of
+    itself: that it ends in the tick in which it starts, and
     that it should not be halted half-way. Warnings are made of them; they change nothing in a run. With `thread` the
-    `call`, a plain function, works in a thread of its own, beside the tick. `ros` stands in place of `call` on a robot
-    that speaks ROS 2. With `replaces` its `call` is what runs, whatever other entries of its id say, on any robot.
+    `call`, a plain function, works in a thread of its own, beside the tick. An action that `touches` drives to contact
+    on purpose, and so does a mission that waits for a condition that does, such as a bump. `ros` stands in place of
+    `call` on a robot that speaks ROS 2. With `replaces` its `call` is what runs, whatever other entries of its id say,
+    on any robot. `verbs` are verbs with their roles, from which the vocabulary makes the first of the `phrases`.
     `needs` names capabilities and parts of the robot (btlang.vocabulary.capabilities); what an action takes of them for
     itself is among its `resources`. `outputs` are the slots whose ports it writes. An entry that `yields` leaves its
     words to a mission, or another entry, that gives them a meaning. An entry without a `sort` has only phrases: those
@@ -56,14 +94,19 @@ class Entry(Record, uncompared=("span",)):
     example: str = ""
     quantity: tuple[str, ...] = ()
     measures: str = ""
+    accompaniment: bool = False
+    constrains: str = ""
+    first: bool = False
     instant: bool = False
     uninterruptible: bool = False
     thread: bool = False
+    touches: bool = False
     ros: RosBinding | None = None
     replaces: bool = False
     needs: tuple[str, ...] = ()
     outputs: tuple[str, ...] = ()
     yields: bool = False
+    verbs: tuple[tuple[tuple[str, ...], tuple[Role, ...]], ...] = ()
     span: Span | None = None
 
     def slot(self, name: str) -> SlotSpec:

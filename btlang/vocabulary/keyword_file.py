@@ -14,7 +14,7 @@ from btlang.text.toml import parse_toml
 from btlang.text.toml_positions import positions
 from btlang.tree.catalogue import CATALOGUE
 from btlang.vocabulary.capabilities import resources_of
-from btlang.vocabulary.entry import COMPARISONS, MEASURED, POINT, Entry, SlotSpec
+from btlang.vocabulary.entry import COMPARISONS, MEASURED, POINT, VERB_ROLES, Entry, Role, SlotSpec
 from btlang.vocabulary.language_tables import SWITCHES, TABLES, WORD_LISTS, problems
 from btlang.vocabulary.nouns import Noun
 from btlang.vocabulary.pattern import PatternError, Slot, forms
@@ -25,13 +25,20 @@ from btlang.vocabulary.value_type import PLACE, Unit, ValueType
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from collections.abc import Sequence
+    from typing import Any, TypeAlias
+
+    _Verbs: TypeAlias = tuple[tuple[tuple[str, ...], tuple[Role, ...]], ...]
 
 _OWN = ("shipped", "yields", "replaces", "action", "condition", "quantity", "noun", "type", "phrases")
 _TOP = {"language", *_OWN, *WORD_LISTS, *SWITCHES, *TABLES}
-_ENTRY = {"phrase", "id", "call", "ros", "slots", "outputs", "resources", "needs", "topic", "help", "example"}
-_FLAGS = ("instant", "uninterruptible", "thread")
-_MORE = {"action": set(_FLAGS), "condition": set[str](), "quantity": {"type"}}
+_ENTRY = {
+    "phrase", "verb", "roles", "frames", "id", "call", "ros", "slots", "outputs", "resources", "needs", "topic", "help",
+    "example",
+}  # fmt: skip
+_FLAGS = ("accompaniment", "first", "instant", "uninterruptible", "thread", "touches")
+_CONSTRAINTS = ("", "keep out", "keep in")
+_MORE = {"action": {*_FLAGS, "constrains"}, "condition": {"touches"}, "quantity": {"type"}}
 """The keys that an entry of one sort has beside those of all."""
 _TYPE = {"name", "units", "whole", "least", "open", "values"}
 _NOUN = {"type", "phrase", "slots", "how"}
@@ -94,10 +101,11 @@ class _Reader:
         phrases = table.get("phrase", [])
         phrases = [phrases] if isinstance(phrases, str) else phrases
         name = table.get("id", "")
-        if not _strings(phrases) or "phrase" not in table or not (phrases or table.get("slots")):
+        verbs = self.verbs(table, sort)
+        if not _strings(phrases) or not ("phrase" in table or verbs) or not (phrases or verbs or table.get("slots")):
             self.wrong(f'[[{sort}]] needs phrase = "...", or a list of them', str(name) or f"[[{sort}]]")
             return None
-        near = phrases[0] if phrases else str(name)
+        near = phrases[0] if phrases else verbs[0][0][0] if verbs else str(name)
         if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z]\w*", name):
             self.wrong(f"the {sort} '{near}' needs id = \"...\", one word that starts with a letter", near)
             return None
@@ -120,19 +128,22 @@ class _Reader:
             resources = list(dict.fromkeys((*resources, *resources_of(needs))))
         for key in [key for key in _FLAGS if not isinstance(table.get(key, False), bool)]:
             self.wrong(f"{key} of '{near}' must be true or false", near)
-        instant, uninterruptible, thread = (table.get(key) is True for key in _FLAGS)
-        if instant and thread:
+        flags: dict[str, Any] = {key: table.get(key) is True for key in _FLAGS}
+        constrains = table.get("constrains", "")
+        if constrains not in _CONSTRAINTS:
+            self.wrong(f'constrains of \'{near}\' is "keep out" or "keep in"', near)
+        if flags["instant"] and flags["thread"]:
             self.wrong(f"'{near}' can't be instant: work in a thread ends in a later tick", near)
         topic, help, example = (str(table.get(key, "")) for key in ("topic", "help", "example"))
         given = table.get("slots", {})
         if self.nouns and isinstance(given, dict):
             phrases, given = self.with_nouns(phrases, given)
-        slots = self.slots(phrases, given, near)
+        slots = self.slots(phrases, given, near, [role for _, roles in verbs for role in roles])
         made = Entry(
             sort, name, tuple(phrases), str(call), slots, tuple(resources), topic, help, example, span=self.span(near),
-            instant=instant, uninterruptible=uninterruptible, thread=thread,
+            constrains=str(constrains), **flags,
             ros=self.ros(table["ros"], sort, slots, near) if "ros" in table else None,
-            needs=tuple(needs), outputs=self.outputs(table.get("outputs", []), slots, near),
+            needs=tuple(needs), outputs=self.outputs(table.get("outputs", []), slots, near), verbs=verbs,
         )  # fmt: skip
         return self.quantity(made, table, near) if sort == "quantity" else made
 
@@ -228,11 +239,54 @@ class _Reader:
         )
         return made
 
-    def slots(self, phrases: list[str], table: Any, near: str) -> tuple[SlotSpec, ...]:
+    def verbs(self, table: dict[str, Any], sort: str) -> _Verbs:
+        """The verbs of an entry with their roles: of the entry itself, and of each of its frames."""
+        frames = table.get("frames", [])
+        if not isinstance(frames, list) or not all(isinstance(frame, dict) for frame in frames):
+            self.wrong("frames is a list of tables with verb and roles", "frames")
+            return ()
+        found = []
+        for frame in ([table] if "verb" in table else []) + frames:
+            verbs, roles = frame.get("verb", []), frame.get("roles", {})
+            verbs = [verbs] if isinstance(verbs, str) else verbs
+            if not _strings(verbs) or not verbs or not all(verb.split() for verb in verbs):
+                self.wrong('a verb is a word, or a list of them: verb = ["bring", "take"]', "verb")
+            elif sort != "action":
+                self.wrong(f"only an action has a verb; a {sort} has phrases", verbs[0])
+            elif not isinstance(roles, dict):
+                self.wrong('roles is a table: roles = { theme = "object", goal = "place" }', verbs[0])
+            else:
+                made = [self.role(name, value, verbs[0]) for name, value in roles.items()]
+                found.append((tuple(verb.lower() for verb in verbs), tuple(role for role in made if role is not None)))
+        return tuple(found)
+
+    def role(self, name: str, value: Any, near: str) -> Role | None:
+        """A role: the type of its slot, with `?` where it may be left out and `/me` where it may be the speaker."""
+        if name not in VERB_ROLES:
+            self.wrong(f"the verb '{near}' has no role '{name}'; the roles are {', '.join(VERB_ROLES)}", near)
+            return None
+        given = {"type": value} if isinstance(value, str) else value
+        known = {"type": str, "slot": str, "words": list}
+        if not isinstance(given, dict) or any(not isinstance(given[key], known.get(key, bytes)) for key in given):
+            self.wrong(f"the role {name} of '{near}' is a type, or a table with type, slot and words", near)
+            return None
+        said, _, speaker = str(given.get("type", "")).partition("/")
+        kind, is_needed = said.removesuffix("?"), not said.endswith("?")
+        words = given.get("words", [])
+        if not kind.isidentifier() or speaker not in ("", "me") or not _strings(words):
+            self.wrong(f'the role {name} of \'{near}\' needs a type such as "place", "place?" or "person/me"', near)
+            return None
+        phrases = tuple(tuple(phrase.lower().split()) for phrase in words if phrase.split())
+        return Role(name, str(given.get("slot", kind)), kind, phrases, is_needed, speaker == "me")
+
+    def slots(self, phrases: list[str], table: Any, near: str, roles: Sequence[Role] = ()) -> tuple[SlotSpec, ...]:
         if not isinstance(table, dict):
             self.wrong(f"slots of '{near}' must be a table such as {{ distance = {{ type = \"length\" }} }}", near)
             return ()
         found: dict[str, SlotSpec] = {}
+        for role in roles:
+            known = {"type": role.type, **(table.get(role.slot, {}) if isinstance(table.get(role.slot), dict) else {})}
+            found.setdefault(role.slot, self.slot(role.slot, known, near))
         for phrase in phrases:
             try:
                 parts = [part for form in forms(phrase) for part in form]
@@ -246,7 +300,7 @@ class _Reader:
             found |= {name: self.slot(name, table[name], near) for name in POINT if name in table and name not in found}
         for name, given in table.items():
             unsaid = isinstance(given, dict) and "default" in given  # the function gets that each time
-            if not phrases or (unsaid and name not in found):  # or it is only said by its id
+            if not (phrases or roles) or (unsaid and name not in found):  # or it is only said by its id
                 found[name] = self.slot(name, given, near)
         for name in [name for name in table if name not in found]:
             self.wrong(f"no phrase of '{near}' has a slot {{{name}}}", near)

@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from typing import Any
 
 CONNECTIVES = {
-    "then": "sequence", "and": "parallel", "or": "fallback", "after": "sequence",
+    "then": "sequence", "and": "and", "or": "fallback", "after": "sequence",
     "before": "sequence", "meanwhile": "parallel",
 }  # fmt: skip
-"""The roles that join commands, each with the operator of the chain that it makes."""
+"""The roles that join commands, each with the operator of the chain that it makes; see `conjunctions.py` for "and"."""
 
 GOES_ON = frozenset((
     "otherwise", "or", "meanwhile", "in_parallel", "if_works", "if_it_works", "in_any_case",
@@ -28,6 +28,7 @@ NO_PHRASES = frozenset((
     "define_strong", "define", "fact", "facing", "set_to", "by", "remember_as", "each_in",
     "called", "with", "giving", "node", "newline", "character", "main_name", "given", "here",
     "needs_world", "needs_words", "all_names", "except", "nearest", "random", "largest", "smallest",
+    "without_entering", "without_leaving", "may", "or_stay",
 ))  # fmt: skip
 """Roles whose words are looked for where definitions, facts and nodes are, and nowhere else."""
 
@@ -40,6 +41,7 @@ NOT_ALONE = frozenset(("ordinal", "keep", "fails"))
 _NO_SLOT = (
     *CONNECTIVES, "otherwise", "if_works", "if_it_works", "in_any_case",
     "if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "once", "provided", "stop_when", "not",
+    "but", "may", "or_stay",
     "either", "both", "neither", "nor", "not_both", "any_of", "all_of", "none_of", "one_of",
     "do_that", "repeat_that", "again", "start_over", "everything", "here", "ordinal", "following", "keep", "fails",
     "repeat", "try", "retry", "if_possible", "wait_until", "wait_for", "check", "nothing", "never", "fail",
@@ -52,6 +54,7 @@ _NO_SLOT = (
 ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),
     **dict.fromkeys(("every", "delay", "for", "up_to", "apart", "within", "wait", "wait_up_to"), "duration"),
+    **dict.fromkeys(("without_entering", "without_leaving"), "zone"),
     **dict.fromkeys(("count", "more", "at_least_of"), "count"),
     **dict.fromkeys(("at", "every_day", "until_time", "wait_time"), "time_of_day"),
 }
@@ -65,7 +68,24 @@ EXPLAINED = (*(role for role in ROLES if role != "never"), "compare", "politenes
 
 SWITCHES = frozenset(("decimal_comma",))
 
-WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner", "one_each", "quantifiers", "halting", "asked_once"))
+WORD_LISTS = frozenset(
+    (
+        "articles",
+        "politeness",
+        "unit_joiner",
+        "one_each",
+        "quantifiers",
+        "halting",
+        "asked_once",
+        "relatives",
+        "relative_denials",
+        "particles",
+        "fillers",
+        "speaker",
+        "subjects",
+        "purpose",
+    )
+)
 
 
 def _words(value: object) -> bool:
@@ -119,6 +139,9 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "plurals": (_words, "a list of words"),
     "nouns": (_words, "a list of words"),
     "plural_endings": (_is_text, "an ending"),
+    "relations": (_words, "a list of phrases"),
+    "prepositions": (_words, "a list of phrases"),
+    "synonyms": (_words, "a list of verbs"),
     "everyone": (_words, "a list of words"),
     "pronouns": (_words, "a list of types"),
     "meanings": (_between, "one of " + ", ".join(CONNECTIVES)),
@@ -183,7 +206,8 @@ def _phrase_problems(kind: str, name: str, phrases: list[str], known: Mapping[st
 _LANGUAGE: dict[str, Any] = {
     "language": "", "decimal_comma": False,
     "articles": [], "politeness": [], "unit_joiner": [], "one_each": [],
-    "quantifiers": [], "halting": [], "asked_once": [],
+    "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},
+    "prepositions": {}, "synonyms": {}, "particles": [], "fillers": [], "speaker": [], "subjects": [], "purpose": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {}, "doing": {},
     "negative_subjects": {}, "plurals": {}, "plural_endings": {}, "nouns": {}, "everyone": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {}, "times": {},

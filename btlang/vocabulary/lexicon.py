@@ -12,7 +12,7 @@ from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
 from btlang.text.words import Orthography, split
 from btlang.vocabulary.cache import recent
-from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
+from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, Role, SlotSpec
 from btlang.vocabulary.language_tables import GOES_ON, NO_PHRASES, ROLES, about_roles, comparing_phrases, merged
 from btlang.vocabulary.nouns import Features, with_plurals
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants
@@ -20,7 +20,8 @@ from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import TrieNode, add, collisions
 from btlang.vocabulary.value_type import ValueType
 from btlang.vocabulary.values import Values
-from btlang.vocabulary.word_tree import END, SLOTS
+from btlang.vocabulary.verbs import Frame, parts_of, phrases_of
+from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS, WordTree, insert
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -59,7 +60,9 @@ class Lexicon:
             language["roles"] = {**english.roles, **language["roles"]}  # a role without words keeps the English ones
             language["comparisons"] = {**english.comparisons, **language["comparisons"]}
             for node_id, known in english.entries.items():
-                self.entries[node_id] = [entry.replace(phrases=(), quantity=(), example="") for entry in known]
+                self.entries[node_id] = [
+                    entry.replace(phrases=(), quantity=(), verbs=(), example="") for entry in known
+                ]
         self.articles = frozenset(language["articles"])
         self.orthography = Orthography(self.articles, language["decimal_comma"], language["contractions"])
         self._with_names: dict[tuple[object, ...], Lexicon] = {}
@@ -76,6 +79,12 @@ class Lexicon:
         """The file of the correct words of the language, which need not be there."""
         self.quantifiers, self.halting = frozenset(language["quantifiers"]), frozenset(language["halting"])
         self.asked_once = frozenset(language["asked_once"])
+        self.subjects = frozenset(language["subjects"])
+        """Words that say nothing behind `until` and `before`: `until you go to the lab`."""
+        self.purpose: WordTree = {}
+        """Words between a command and what it is for: `go through the hall to get to the lab`."""
+        for phrase in language["purpose"]:
+            insert(self.purpose, phrase.split(), True)
         """Negations and words for how many, and words like `stop`: corrections are careful about them."""
         self.continuing = frozenset(
             str(form[0]) for role in GOES_ON for phrase in self.roles.get(role, ()) for form in self._forms(phrase)
@@ -186,9 +195,12 @@ class Lexicon:
             for key, child in pending.pop().items():
                 if key == SLOTS:
                     pending += [below for _, _, below in child]
-                elif key != END:
+                elif key not in NO_WORDS:
                     words.add(key)
                     pending.append(child)
+        said = self.values.role_words
+        words.update(said.particles, said.fillers, said.speaker, *chain(*said.introducing.values()))
+        words.update(word for word in self.values.modifiers.words())
         for role in NO_PHRASES:
             words.update(word for phrase in self.roles.get(role, ()) for word in phrase.split())
         return frozenset(word for word in words if word.isalpha())
@@ -259,8 +271,32 @@ class Lexicon:
             self._wrong(entry, f"the slot {{{slot.name}}} has no type '{slot.type}'; known are {known}")
         if unknown:
             return None
-        made: Entry = entry.replace(slots=tuple(self._with_port_default(entry, slot) for slot in entry.slots))
+        verbs = tuple((verbs, tuple(map(self._introduced, roles))) for verbs, roles in entry.verbs)
+        said = [phrase for own, roles in verbs for phrase in phrases_of(own, roles)]
+        made: Entry = entry.replace(
+            slots=tuple(self._with_port_default(entry, slot) for slot in entry.slots),
+            verbs=verbs,
+            phrases=(*said, *(phrase for phrase in entry.phrases if phrase not in said)),
+        )
         return made
+
+    def _introduced(self, role: Role) -> Role:
+        """The role with the words of the language that introduce it, unless its entry narrows them."""
+        words = role.words or self.values.role_words.introducing.get(role.name, ())
+        return role.replace(words=words)  # type: ignore[no-any-return]
+
+    def _add_verbs(self, entry: Entry) -> None:
+        """Lets each verb of an entry, and those that mean the same, be said with its roles in any order."""
+        known = self.values.role_words
+        for verbs, roles in entry.verbs:
+            for verb in dict.fromkeys((*verbs, *chain(*(known.synonyms.get(verb, ()) for verb in verbs)))):
+                words, particle = parts_of(verb, known.particles)
+                node = self.trie
+                for word in words:
+                    node = node.setdefault(self.orthography.spellings.get(word, word), {})
+                frames = node.setdefault(VERBS, [])
+                if not any(frame.entry.id == entry.id and frame.roles == roles for frame in frames):
+                    frames.append(Frame(entry, roles, particle))
 
     def _add_entry(self, given: Entry) -> None:
         entry = self._declared(given) if given.sort else self._phrases_of(given)
@@ -272,6 +308,7 @@ class Lexicon:
             self._wrong(entry, f"the id {entry.id} is already that of the {same[0].sort} in {same[0].file}")
         self._check_call(entry, same)
         same.append(entry)
+        self._add_verbs(entry)
         for phrase in entry.phrases:
             try:
                 self._add_phrase(phrase, Meaning("command" if entry.sort == "action" else "condition", entry), types)

@@ -113,7 +113,8 @@ def _made(
         own = {shown_name(path) for path in keyword_files(folder)}
         files = [
             file.replace(
-                entries=tuple(entry for entry in file.entries if not (entry.phrases or entry.quantity)), nouns=()
+                entries=tuple(entry for entry in file.entries if not (entry.phrases or entry.quantity or entry.verbs)),
+                nouns=(),
             )
             if file.source.name in own
             else file
@@ -126,8 +127,13 @@ def _after_yielding(files: Sequence[KeywordFile], entries: Iterable[Entry]) -> l
     """The files without the entries that yield to another one with their id and a function."""
     given = [*(entry for file in files for entry in file.entries), *entries]
     taken = {entry.id for entry in given if entry.call and not entry.yields}
+    marked = {entry.id for entry in given if entry.accompaniment and entry.yields} & taken
+
+    def kept(entry: Entry) -> Entry:
+        return entry.replace(accompaniment=True) if entry.id in marked else entry
+
     return [
-        file.replace(entries=tuple(entry for entry in file.entries if not (entry.yields and entry.id in taken)))
+        file.replace(entries=tuple(kept(entry) for entry in file.entries if not (entry.yields and entry.id in taken)))
         for file in files
     ]
 

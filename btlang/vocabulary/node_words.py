@@ -12,9 +12,10 @@ from btlang.text.spelling import respellings
 from btlang.text.words import Words, split
 from btlang.vocabulary.language_tables import CHANGING, NOT_ALONE
 from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.trie import Match, TrieNode, longest
+from btlang.vocabulary.trie import TrieNode, longest
 
 _ID = re.compile(r"(?:[A-Z][a-z0-9]*)+")
 _PART = re.compile(r"[A-Z]{2,}[0-9]*(?![a-z])|[A-Z][a-z0-9]*")
@@ -22,6 +23,8 @@ _WORD = re.compile(r"[a-z][a-z0-9]*")
 _ACRONYM = re.compile(r"[A-Z]{2,}[0-9]*")
 BEHIND_ID = ("called", "with", "giving")
 """The roles of what is said of a node behind its id."""
+_MOST_WORDS = 6
+"""Of an id that is said in words."""
 _LEAST = 3  # letters of what can be a misspelling
 
 
@@ -76,6 +79,9 @@ def read_id(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, int] | None
     is_phrase = match is not None and match.last >= last
     is_node = _is_near(" ".join(words[at:last]), _phrases(vocabulary)[2])
     in_capitals = [word for word in written if not word.islower()]
+    spoken = {*vocabulary.subjects, *vocabulary.values.role_words.speaker, *vocabulary.values.pronouns}
+    if last - at > _MOST_WORDS or not spoken.isdisjoint(words[at:last]):
+        return None  # a sentence, and no name
     is_odd = len(in_capitals) == len(written) or not all(map(_ACRONYM.fullmatch, in_capitals))
     if is_phrase or is_node or is_odd or _is_misspelt(words[at:last], _phrases(vocabulary)[0], vocabulary):
         return None

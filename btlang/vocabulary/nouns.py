@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from btlang.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.pattern import Form, Slot, forms
-from btlang.vocabulary.references import CHOICES, SIZED, Parts
+from btlang.vocabulary.references import ALL, CHOICES, SIZED, Parts
 from btlang.vocabulary.value_type import OBJECT, WORLD
 from btlang.vocabulary.word_tree import END, SLOTS, WordTree, find, insert
 
@@ -15,7 +15,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-ALL = "all"  # of the names of a type
 Features = Mapping[str, tuple[tuple[str, Parts], ...]]
 """What the names of a world are like, by their types."""
 _PLURALS = {"kind": "kinds"}
@@ -45,12 +44,22 @@ class Nouns:
     def __init__(self) -> None:
         self.tree: WordTree = {}
         """Their words."""
+        self.plurals: WordTree = {}
+        """Those in the plural: `red cups`."""
         self._types: WordTree = {}
         self._said: dict[tuple[str, str, tuple[str, ...]], Form] = {}
 
+    def add_plural(self, form: Form, slots: Mapping[str, str], kind: str) -> None:
+        """Adds one way to say several: `red cups`."""
+        self._add(self.plurals, form, slots, kind, ALL)
+
     def add(self, form: Form, slots: Mapping[str, str], kind: str, how: str) -> None:
         """Adds one way to say it; what is known already keeps its meaning."""
-        node = self.tree
+        self._add(self.tree, form, slots, kind, how)
+        names = tuple(sorted(part.name for part in form if isinstance(part, Slot)))
+        self._said.setdefault((kind, how, names), form)
+
+    def _add(self, node: WordTree, form: Form, slots: Mapping[str, str], kind: str, how: str) -> None:
         for part in form:
             if isinstance(part, str):
                 node = node.setdefault(part, {})
@@ -62,16 +71,24 @@ class Nouns:
             if known is None:
                 edges.append((part.name, of, node))
         node.setdefault(END, (kind, how))
-        names = tuple(sorted(part.name for part in form if isinstance(part, Slot)))
-        self._said.setdefault((kind, how, names), form)
 
     def longest(self, text: Words, at: int, names: Callable[[str], WordTree]) -> tuple[Description, int] | None:
         """The longest noun phrase at a word, and where it ends."""
+        return self._longest(self.tree, text, at, names)
+
+    def plural(self, text: Words, at: int, names: Callable[[str], WordTree]) -> tuple[Description, int] | None:
+        """The longest one in the plural."""
+        return self._longest(self.plurals, text, at, names) or self.noun(text, at, names)
+
+    @staticmethod
+    def _longest(
+        tree: WordTree, text: Words, at: int, names: Callable[[str], WordTree]
+    ) -> tuple[Description, int] | None:
         best: tuple[Description, int] | None = None
-        paths: list[tuple[WordTree, int, Parts]] = [(self.tree, at, ())]
+        paths: list[tuple[WordTree, int, Parts]] = [(tree, at, ())]
         while paths:
             node, i, parts = paths.pop()
-            if END in node and (best is None or i > best[1]):
+            if END in node and (best is None or i > best[1] or (i == best[1] and parts and not best[0].parts)):
                 kind, how = node[END]
                 best = Description(kind, how, tuple(sorted(parts))), i
             for name, of, child in node.get(SLOTS, ()):
@@ -96,8 +113,16 @@ class Nouns:
 
     def starts(self, names: Callable[[str], WordTree]) -> frozenset[str]:
         """The words at which a noun phrase may begin."""
-        slots = (word for _, kind, _ in self.tree.get(SLOTS, ()) for word in names(kind))
-        return frozenset((*self.tree, *slots)) - {END, SLOTS}
+        return self._starts(self.tree, names)
+
+    def plural_starts(self, names: Callable[[str], WordTree]) -> frozenset[str]:
+        """The words at which one in the plural may begin."""
+        return self._starts(self.plurals, names)
+
+    @staticmethod
+    def _starts(tree: WordTree, names: Callable[[str], WordTree]) -> frozenset[str]:
+        slots = (word for _, kind, _ in tree.get(SLOTS, ()) for word in names(kind))
+        return frozenset((*tree, *slots)) - {END, SLOTS}
 
     def words(self, meant: Description, spoken: Mapping[tuple[str, str], str]) -> str:
         """The first way to say what has these parts, "" if there is none. `spoken` are the words of their names."""
@@ -159,6 +184,8 @@ def noun_phrases(kinds: Iterable[str], language: Mapping[str, Any], declared: It
 
 def _add_declared(nouns: Nouns, noun: Noun, form: Form, ways: Iterable[tuple[Form, str]]) -> None:
     nouns.add(form, noun.slots, noun.type, noun.how)
+    if _PLURALS.keys() & noun.slots.keys():
+        nouns.add_plural(form, {**noun.slots, **_PLURALS}, noun.type)
     for before, how in ways if any(isinstance(part, Slot) for part in form) else ():
         nouns.add((*before, *form), noun.slots, noun.type, how)
         if how == ALL and _PLURALS.keys() & noun.slots.keys():

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 
 from btlang.record import Record
 from btlang.text.words import Words
+from btlang.vocabulary.descriptions import NAME
+from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.nouns import Description
-from btlang.vocabulary.references import CHOICES, Choice
-from btlang.vocabulary.value_type import format_number
+from btlang.vocabulary.references import ALL, CHOICES, Choice, Parts, choice_of
+from btlang.vocabulary.value_type import WORLD, format_number
 from btlang.vocabulary.values import Values, key_of
 from btlang.vocabulary.word_tree import find
 
@@ -35,14 +37,15 @@ class ReadingContext:
     """
 
     __slots__ = (
-        "_most_words", "joiners", "keys", "known", "lacked", "latest", "met", "openers", "pronouns", "starts", "types",
-        "untyped", "values",
+        "_most_words", "joiners", "keys", "known", "lacked", "latest", "manners", "met", "modifiers", "openers",
+        "pronouns", "starts", "types", "untyped", "values",
     )  # fmt: skip
 
     def __init__(self, values: Values, known: Mapping[str, Known] | None = None) -> None:
         self.values = values
         self.types, self.joiners, self.pronouns = values.types, values.joiners, values.pronouns
-        self.starts = values.choice_starts
+        self.starts, self.modifiers = values.choice_starts, values.modifiers.starts
+        self.manners = values.names_tree(MANNER) if MANNER in values.types else {}
         self.latest: dict[str, str] = {}
         self.lacked = False
         self.met: set[str] = set()
@@ -78,6 +81,51 @@ class ReadingContext:
             return self._referred(kind, text.words[at], at)
         chosen = self._chosen(kind, text, at) if text.words[at] in self.starts else None
         return chosen if found is None or (chosen is not None and chosen[1] > found[1]) else found
+
+    def ways(self, kind: str, text: Words, at: int) -> Iterator[tuple[str, int]]:
+        """Every value of a type that begins at a word and where it ends: the plain one, then with what describes it."""
+        value = self.read(kind, text, at)
+        if value is not None:
+            yield value
+        if kind in WORLD and (value is None or text.words[value[1]] in self.modifiers):
+            yield from self.wider(kind, text, at, value)
+
+    def sets(self, kind: str, text: Words, at: int) -> Iterator[tuple[str, int]]:
+        """The sets of names of a type that begin at a word, each as a choice of all, and where it ends."""
+        for meant, end in self.values.groups(text, at) if kind in WORLD else ():
+            if meant.type == kind:
+                yield Choice(ALL, kind, self.keys.get(kind, kind), meant.parts).text, end
+
+    def wider(self, kind: str, text: Words, at: int, value: tuple[str, int] | None) -> Iterator[tuple[str, int]]:
+        """What a value is with what describes it (`the cup` as `the cup on the table`), the shortest first.
+
+        Without a value: a name with adjectives before it.
+        """
+        modifiers, names = self.values.modifiers, self.values.names_tree
+        how = "nearest"
+        parts: Parts = ()
+        if value is None:
+            adjectives = modifiers.before(text, at, names)
+            named = find(names(kind), text.words, adjectives[1]) if adjectives is not None else None
+            if adjectives is None or named is None:
+                return
+            parts, end = (*adjectives[0], (NAME, named[0])), named[1]
+            yield self._described(kind, how, parts), end
+        else:
+            written, end = value
+            choice = choice_of(written)
+            if choice is not None:
+                how, parts = choice.how, choice.parts
+            elif written[:1] in ("", "{", "("):
+                return
+            else:
+                parts = ((NAME, written),)
+        if text.words[end] in modifiers.starts:
+            for more, last in modifiers.behind(kind, text, end, names):
+                yield self._described(kind, how, (*parts, *more)), last
+
+    def _described(self, kind: str, how: str, parts: Parts) -> str:
+        return Choice(how, kind, self.keys.get(kind, kind), tuple(sorted(parts))).text
 
     def any(self, text: Words, at: int) -> tuple[tuple[str, ...], str, int] | None:
         """A value of any type: the types that it can be, its port text, and where it ends."""

@@ -14,11 +14,24 @@ from btlang.vocabulary.entry import POINT
 SIZED = ("largest", "smallest")
 CHOICES = ("nearest", "seen", "random", *SIZED)
 """The ways to choose a name; "seen" is the nearest in view, else the nearest known."""
+ALL = "all"
+"""In place of such a way: all names that are meant, one after the other. The part "count" says how many."""
+COUNT = "count"
 Parts = tuple[tuple[str, str], ...]
 """What something is like, sorted: ("color", "red")."""
 _PIECE = r"(?P<mark>\{\{|\}\})|\{(?P<name>[^{}]+)\}|(?P<text>[^{}]+|[{}])"  # compiled when a text needs it
 PARTS = ("clothing", "color", "gesture", "kind", "use")
 """What a name can be described by."""
+_EVERYTHING = ("object", "person", "place")
+RELATIONS: dict[str, tuple[str, ...]] = {
+    "on": ("object",), "inside": ("object", "person", "place"), "at": ("object", "person"), "off": ("object",),
+    "near": _EVERYTHING, "beside": _EVERYTHING, "behind": _EVERYTHING, "in_front_of": _EVERYTHING,
+    "left_of": _EVERYTHING, "right_of": _EVERYTHING, "under": ("object", "place"), "above": ("object", "place"),
+    "part_of": ("object", "place"),
+}  # fmt: skip
+"""How a thing may stand to another one that describes it, each with the types of things of which that can be said."""
+DENIED = {"not_color": "color", "not_kind": "kind"}
+"""What a thing is said not to be, each with the type of the value; several values stand between semicolons."""
 _NO_PARTS = ("type", "how", "output")  # the other ports of a choice
 
 
@@ -60,7 +73,7 @@ def choice_of(text: str) -> Choice | None:
         return None
     first, *parts = text[1:-1].split("|")
     words = first.split(" ")
-    if len(words) != 3 or words[0] not in CHOICES:
+    if len(words) != 3 or words[0] not in (*CHOICES, ALL):
         return None
     named = (part.partition("=") for part in parts)
     return Choice(words[0], words[1], words[2], tuple((name, value) for name, _, value in named))
@@ -69,7 +82,7 @@ def choice_of(text: str) -> Choice | None:
 def choice_by(ports: Mapping[str, str]) -> Choice:
     """The choice that a node with these ports makes."""
     parts = ((name, text) for name, text in ports.items() if name not in _NO_PARTS)
-    return Choice(ports.get("how", ""), ports.get("type", ""), ports.get("output", "")[1:-1], tuple(sorted(parts)))
+    return Choice(ports.get("how", ALL), ports.get("type", ""), ports.get("output", "")[1:-1], tuple(sorted(parts)))
 
 
 def pieces(text: str) -> list[str | Reference]:

@@ -8,15 +8,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 
-from btlang.record import Record
 from btlang.text.words import Words
-from btlang.vocabulary.entry import Meaning
-from btlang.vocabulary.nouns import ALL, Description
+from btlang.vocabulary.entry import MANNER, Meaning
+from btlang.vocabulary.match import Match, SlotValue
+from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.pattern import Form, Slot
 from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.references import ALL, Choice
 from btlang.vocabulary.value_type import TEXT, WORLD, ValueType
 from btlang.vocabulary.values import Values
-from btlang.vocabulary.word_tree import END, SLOTS
+from btlang.vocabulary.verbs import fill
+from btlang.vocabulary.word_tree import END, NO_WORDS, SLOTS, VERBS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -24,30 +26,6 @@ if TYPE_CHECKING:
 
 _MARKS = frozenset((",", ";", ":", "(", ")", "\n"))
 TrieNode = dict[str, "Any"]
-
-
-class SlotValue(Record):
-    """The value that was read in a slot: its port text and the words `first` to `last` (exclusive).
-
-    Of a list (`the lab, the hall and the dock`) `more` holds the further values; `joiner` is "and", "or", "nor", or ""
-    where there are only commas. `every place` is a list, too; its text is "" where there are no such names.
-    """
-
-    name: str
-    type: str
-    text: str
-    first: int
-    last: int
-    more: tuple[str, ...] = ()
-    joiner: str = ""
-
-
-class Match(Record):
-    """A phrase found in a text, up to word `last` (exclusive)."""
-
-    meaning: Meaning
-    last: int
-    values: tuple[SlotValue, ...] = ()
 
 
 def add(root: TrieNode, form: Form, types: Mapping[str, str], meaning: Meaning) -> Meaning | None:
@@ -104,12 +82,13 @@ def longest(
     """
     words = text.words
     if words[at] not in root and SLOTS not in root:
-        return None
+        return _after_manner(root, text, at, context, names) if words[at] in context.manners else None
     openers = context.openers
     best: Meaning | None = None
     best_last = at
     best_values: tuple[SlotValue, ...] = ()
     paths: list[tuple[TrieNode, int, Any]] = []
+    verbs: list[tuple[TrieNode, int]] = []
     node: TrieNode | None = root
     i = at
     while True:
@@ -119,6 +98,8 @@ def longest(
                 meaning: Meaning = node[END]
                 if meaning.entry is not None or not any(value.more for value in found):
                     best, best_last, best_values = meaning, i, found
+            if VERBS in node:
+                verbs.append((node, i))
             if SLOTS in node:
                 plain = word.isalpha() or word in _MARKS
                 edges = node[SLOTS]
@@ -129,11 +110,15 @@ def longest(
                     if plain and kind in openers and word not in openers[kind]:
                         continue  # as nearly always, without reading
                     value = context.read(kind, text, i)
+                    if kind in WORLD and (value is None or words[value[1]] in context.modifiers):
+                        wider = [
+                            SlotValue(name, kind, each[0], i, each[1]) for each in context.wider(kind, text, i, value)
+                        ]
+                        paths += [(child, each.last, (*found, each)) for each in wider]
                     if value is None:
-                        chosen = context.choice(text, i)
-                        if chosen is not None and (chosen[0].type, chosen[0].how) == (kind, ALL):
-                            every = all_names(root, chosen[0], text, i, chosen[1], context, name)
-                            paths.append((child, every.last, (*found, every)))
+                        if kind in WORLD or word in context.starts:
+                            sets = _sets(root, text, i, context, name, kind)
+                            paths += [(child, every.last, (*found, every)) for every in reversed(sets)]
                         continue
                     one = SlotValue(name, kind, value[0], i, value[1])
                     paths.append((child, value[1], (*found, one)))
@@ -146,7 +131,69 @@ def longest(
         if not paths:
             break
         node, i, found = paths.pop()
+    if verbs and (best is None or words[best_last] not in context.values.ends):
+        for node, i in verbs:
+            match = _filled(root, node, text, i, context, names)
+            if match is not None and (best is None or match.last > best_last):
+                best, best_last, best_values = match.meaning, match.last, match.values
+    if words[at] in context.manners:
+        match = _after_manner(root, text, at, context, names)
+        if match is not None and match.last > best_last:
+            return match
     return Match(best, best_last, best_values) if best is not None else None
+
+
+def _filled(
+    root: TrieNode,
+    node: TrieNode,
+    text: Words,
+    at: int,
+    context: ReadingContext,
+    names: TrieNode | None,
+    before: SlotValue | None = None,
+) -> Match | None:
+    """The verb that ends at a word, with the roles that stand behind it."""
+
+    def list_of(value: SlotValue) -> SlotValue | None:
+        return _listed(root, text, value, context, names, is_subject=False)
+
+    return fill(node[VERBS], text, at, context, context.values.role_words, list_of, before)
+
+
+def _after_manner(
+    root: TrieNode, text: Words, at: int, context: ReadingContext, names: TrieNode | None
+) -> Match | None:
+    """A verb with an adverb before it: `slowly go to the lab`."""
+    manner = context.read(MANNER, text, at)
+    if manner is None:
+        return None
+    before = SlotValue(MANNER, MANNER, manner[0], at, manner[1])
+    node: TrieNode | None = root.get(text.words[manner[1]])
+    i, best = manner[1], None
+    while node is not None:
+        i += 1
+        if VERBS in node:
+            found = _filled(root, node, text, i, context, names, before)
+            best = found if found is not None and (best is None or found.last > best.last) else best
+        node = node.get(text.words[i])
+    return best
+
+
+def _sets(root: TrieNode, text: Words, at: int, context: ReadingContext, name: str, kind: str) -> list[SlotValue]:
+    """The sets of names of a type that begin at a word; the shortest first."""
+    ways = [(meant, end) for meant, end in context.values.groups(text, at) if meant.type == kind]
+    found: list[SlotValue] = []
+    for meant, end in ways:
+        group = Choice(ALL, kind, context.keys.get(kind, kind), meant.parts).text
+        found.append(SlotValue(name, kind, group, at, end, group=group))
+    if ways and context.choice(text, at) is not None:
+        listed = all_names(root, ways[0][0], text, at, ways[0][1], context, name)
+        same = [at for at, value in enumerate(found) if value.last == listed.last]
+        if same:
+            found[same[0]] = listed.replace(group=found[same[0]].group)
+        elif listed.last > ways[0][1]:
+            found.append(listed)  # with something unknown behind `except`
+    return found
 
 
 def all_names(
@@ -204,7 +251,7 @@ def _listed(
             _is_longer(trie, text, at, value[1], context, is_subject) for trie in (root, names or {})
         ):
             break
-        if comma and not role and _is_command(root, text, at, value[1], context):
+        if _is_command(root, text, at, value[1], context):
             break
         more.append(value[0])
         last, joiner = value[1], role
@@ -217,7 +264,7 @@ def _joiner(root: TrieNode, names: TrieNode | None, text: Words, at: int, contex
 
 
 def _is_command(root: TrieNode, text: Words, at: int, last: int, context: ReadingContext) -> bool:
-    """Whether words without an article are a whole command, too: `if you are at the door, dock`."""
+    """Whether words without an article are a whole command, too: `go to the lab and dock`."""
     match = longest(root, text, at, context, lists=False) if at not in text.articles else None
     return match is not None and match.last == last and match.meaning.role == "command"
 
@@ -249,13 +296,11 @@ def collisions(root: TrieNode, values: Values, other: TrieNode | None = None) ->
         seen |= {(id(left), id(right)), (id(right), id(left))}
         if left is not right and END in left and END in right:
             yield left[END], right[END]
-        words = [w for w in left if w not in (END, SLOTS)]
+        words = [w for w in left if w not in NO_WORDS]
         pending += [(left[w], right[w]) for w in words if w in right]
         for one, another in ((left, right), (right, left)):
             for _, kind, child in one.get(SLOTS, ()):
-                pending += [
-                    (child, n) for w, n in another.items() if w not in (END, SLOTS) and values.takes_word(kind, w)
-                ]
+                pending += [(child, n) for w, n in another.items() if w not in NO_WORDS and values.takes_word(kind, w)]
         for _, kind, child in left.get(SLOTS, ()):
             for _, other_kind, other_child in right.get(SLOTS, ()):
                 if _overlap(values.types[kind], values.types[other_kind]):

@@ -6,14 +6,16 @@ A value becomes the text of a port, in the unit whose factor is 1: `half a meter
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from marshal import dumps, loads  # a copy of a trie, at a tenth of the time that importing `copy` takes
 
 from btlang.text.source import Source
 from btlang.text.words import Orthography, Words, split
-from btlang.vocabulary.nouns import ALL, Description, Features, Noun, noun_phrases
-from btlang.vocabulary.references import Choice, choice_of
+from btlang.vocabulary.descriptions import NAME, Modifiers
+from btlang.vocabulary.nouns import Description, Features, Noun, noun_phrases
+from btlang.vocabulary.references import ALL, COUNT, DENIED, RELATIONS, Choice, Parts, choice_of
 from btlang.vocabulary.value_type import PLACE, ValueType, format_number, with_unit
+from btlang.vocabulary.verbs import role_words
 from btlang.vocabulary.word_tree import END, WordTree, find, insert
 
 TYPE_CHECKING = False
@@ -63,6 +65,13 @@ class Values:
                 self._names[kind.name] = {}
         self._facing = [phrase.split() for phrase in language["roles"].get("facing", ())]
         self.phrases = noun_phrases(self._names, language, nouns)
+        self.modifiers = Modifiers(language)
+        self.role_words = role_words(language)
+        introducing = {phrase[0] for phrases in self.role_words.introducing.values() for phrase in phrases}
+        going_on = introducing | self.role_words.particles | self.role_words.fillers | self.modifiers.starts
+        firsts = {phrase.split()[0] for phrases in language["roles"].values() for phrase in phrases}
+        self.ends = frozenset((",", ";", ":", ")", "\n", *(firsts - going_on)))
+        """Words at which no phrase goes on beyond its own pattern."""
         self._features: Features = {}
         self._spoken: dict[tuple[str, str], str] = {}
         self._exceptions: WordTree = {}
@@ -70,13 +79,15 @@ class Values:
             insert(self._exceptions, phrase.split(), True)
         self._openers: dict[str, frozenset[str]] | None = None
         self._choice_starts: frozenset[str] | None = None
+        self._group_starts: frozenset[str] | None = None
+        self._both = frozenset(language["roles"].get("both", ()))
 
     def add_name(self, kind: str, words: str, name: str) -> None:
         """Lets the words stand for a name of a type."""
         insert(self._names[kind], words.lower().split(), name)
         self._listed.setdefault(kind, {})[name] = None
         self._spoken.setdefault((kind, name), words)
-        self._openers = self._choice_starts = None
+        self._openers = self._choice_starts = self._group_starts = None
 
     def with_names(self, names: Mapping[str, Iterable[tuple[str, str]]], features: Features | None = None) -> Values:
         """The same with further names of types, each with its words, and what those of a world are like."""
@@ -107,7 +118,8 @@ class Values:
             numbers = self._number_starts
             quantities = numbers | self._joiner | self._units.keys()
             self._openers = {
-                kind: frozenset((*tree, *self.pronouns, *self.choice_starts)) for kind, tree in self._names.items()
+                kind: frozenset((*tree, *self.pronouns, *self.choice_starts, *self.group_starts))
+                for kind, tree in self._names.items()
             }
             if PLACE in self._openers:
                 self._openers[PLACE] |= {"("}
@@ -186,7 +198,19 @@ class Values:
 
     def choice_words(self, choice: Choice) -> str:
         """The words that stand for a choice: `nearest person`."""
-        return self.phrases.words(Description(choice.type, choice.how, choice.parts), self._spoken) or choice.text
+        behind = tuple(part for part in choice.parts if part[0] in RELATIONS or part[0] in DENIED)
+        parts = dict(part for part in choice.parts if part not in behind)
+        count, name, color = parts.pop(COUNT, ""), parts.pop(NAME, ""), ""
+        if name:
+            color = parts.pop("color", "")
+            head = " ".join(filter(None, (color and self.spoken("color", color), self.spoken(choice.type, name))))
+        else:
+            head = self.phrases.words(Description(choice.type, choice.how, tuple(parts.items())), self._spoken)
+        if not head:
+            return choice.text
+        if count:
+            head = f"{count} {head.partition(' ')[2]}"
+        return " ".join(filter(None, (head, self.modifiers.said(behind, self.spoken))))
 
     def meant_by(self, text: str) -> tuple[str, ...]:
         """The name that a port text is, or all that are described as its choice is."""
@@ -198,6 +222,80 @@ class Values:
         if not meant.parts:
             return self.listed(meant.type)
         return tuple(name for name, parts in self._features.get(meant.type, ()) if set(meant.parts) <= set(parts))
+
+    @property
+    def group_starts(self) -> frozenset[str]:
+        """The words at which a set of several may begin: numbers, `both`, plurals."""
+        if self._group_starts is None:
+            self._group_starts = self.phrases.plural_starts(self.names_tree) | self._numbers.keys() | self._both
+        return self._group_starts
+
+    def groups(self, text: Words, at: int, is_bare: bool = False) -> Iterator[tuple[Description, int]]:
+        """The sets that words describe, and where each ends; the shortest first.
+
+        `every cup on the table`, `two red cups`, `the cups except the blue one`; where it `is_bare` also `red cup`.
+        """
+        found, count = self.choice(text, at), ""
+        if found is None or found[0].how != ALL:
+            start = at
+            if text.words[at] in self._both:
+                count, start = "2", at + 1
+            elif (number := self.number(text, at)) is not None and number[0] >= 1 and number[0] == int(number[0]):
+                count, start = str(int(number[0])), number[1]
+            found = self.phrases.plural(text, start, self.names_tree)
+            if found is None or not (count or is_bare or text.words[at] in self.group_starts):
+                return
+        meant, end = found
+        parts: Parts = (*meant.parts, *([(COUNT, count)] if count else []))
+        ways = [(parts, end)]
+        if text.words[end] in self.modifiers.starts:
+            ways += [
+                ((*parts, *more), last) for more, last in self.modifiers.behind(meant.type, text, end, self.names_tree)
+            ]
+        for some, last in ways:
+            yield meant.replace(how=ALL, parts=tuple(sorted(some))), last
+            left_out = self._left_out(meant, text, last)
+            if left_out is not None:
+                yield meant.replace(how=ALL, parts=tuple(sorted((*some, *left_out[0])))), left_out[1]
+
+    def _left_out(self, meant: Description, text: Words, at: int) -> tuple[Parts, int] | None:
+        """What stands behind `except` as what the things are not: `the blue one`, `the red cups`."""
+        at = self.exception(text, at)
+        if not at:
+            return None
+        found = self.phrases.plural(text, at, self.names_tree) or self.choice(text, at)
+        parts = dict(found[0].parts) if found is not None else {}
+        named = find(self._names[meant.type], text.words, at)
+        if named is not None and (found is None or named[1] >= found[1]):
+            return (("not_kind", named[0]),), named[1]
+        if found is None or not parts.keys() <= {"color", "kind"}:
+            return None
+        if "color" in parts and parts.get("kind") in (None, dict(meant.parts).get("kind")):
+            return (("not_color", parts["color"]),), found[1]
+        return ((("not_kind", parts["kind"]),), found[1]) if parts.keys() == {"kind"} else None
+
+    def members(self, choice: Choice) -> tuple[str, ...]:
+        """The names of a set where what is known of the world decides; () where only the robot can tell."""
+        parts = dict(choice.parts)
+        denied = {part: parts.pop(part).split("; ") for part in DENIED if part in parts}
+        if COUNT in parts or parts.keys() & RELATIONS.keys():
+            return ()
+        names = self.described(Description(choice.type, ALL, tuple(parts.items())))
+        likes = dict(self._features.get(choice.type, ()))
+        if denied.get("not_color") and not all("color" in dict(likes.get(name, ())) for name in names):
+            return ()
+
+        def is_denied(name: str) -> bool:
+            like = dict(likes.get(name, ()))
+            of_kind = name in denied.get("not_kind", ()) or like.get("kind") in denied.get("not_kind", ())
+            return of_kind or like.get("color") in denied.get("not_color", ())
+
+        return tuple(name for name in names if not is_denied(name))
+
+    def is_listed(self, meant: Description) -> bool:
+        """Whether what is known of the world decides which names are meant."""
+        parts = dict(meant.parts)
+        return not (parts.keys() & {COUNT, *DENIED, *RELATIONS})
 
     def exception(self, text: Words, at: int) -> int:
         """Where a word such as `except` ends, 0 if there is none."""

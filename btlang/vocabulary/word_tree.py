@@ -11,6 +11,10 @@ if TYPE_CHECKING:
 END = "\0"  # no word of a text is this one
 SLOTS = "\1"
 """Where phrases have slots: a list of (slot name, type, tree)."""
+VERBS = "\2"
+"""Where verbs with roles end: a list of their frames."""
+NO_WORDS = frozenset((END, SLOTS, VERBS))
+"""The keys of a tree that are no words."""
 WordTree = dict[str, "Any"]
 
 

@@ -15,10 +15,10 @@ TICK = 0.05
 class Bench:
     """A robot, a clock and the events that the robot told."""
 
-    def __init__(self, world):
+    def __init__(self, world, body=None):
         self.events = []
         self.clock = Clock()
-        self.robot = SimulatedRobot(world, lambda kind, data: self.events.append((kind, dict(data))))
+        self.robot = SimulatedRobot(world, lambda kind, data: self.events.append((kind, dict(data))), body)
 
     def tick(self, times=1):
         for _ in range(times):
@@ -51,7 +51,11 @@ class Bench:
 @pytest.fixture
 def bench():
     """Makes a bench in a world, by default a large empty one."""
-    return lambda world=None, **changes: Bench((world or World(start=Pose(0.0, 0.0))).replace(**changes))
+
+    def make(world=None, body=None, **changes):
+        return Bench((world or World(start=Pose(0.0, 0.0))).replace(**changes), body)
+
+    return make
 
 
 @pytest.fixture

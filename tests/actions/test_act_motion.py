@@ -8,10 +8,12 @@ from hypothesis import strategies as st
 
 from btlang.actions import motion
 from btlang.engine.leaves.leaf import ActionFailed
+from btlang.robots.body_file import standard_body
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.world import Fault, Person, Place
 
 WALL = {"walls": (((1.0, -2.0), (1.0, 2.0)),)}
+BLIND = standard_body().replace(sensors=())
 FIXTURE = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
@@ -91,13 +93,23 @@ class Late:
 
 
 def test_bumps_fail(bench):
-    b = bench(**WALL)
+    """Only a robot that doesn't see runs into things."""
+    b = bench(body=BLIND, **WALL)
     with pytest.raises(ActionFailed, match=r"^bumped into something after 0\.80 m$"):
         b.run(motion.move_forward, distance=2.0)
     b.tick(5)
     assert not b.robot.moving
     with pytest.raises(ActionFailed, match=r"^bumped into something after 0\.00 m$"):
         b.run(motion.move_forward, distance=2.0)
+    b.run(motion.move_backward, distance=0.5)
+
+
+def test_it_stops_before_what_its_scanner_sees(bench):
+    b = bench(**WALL)
+    for so_far in ("0.77", "0.00"):
+        with pytest.raises(ActionFailed, match=rf"^stopped after {so_far} m: scanner: 0\.04 m ahead$"):
+            b.run(motion.move_forward, distance=2.0)
+    assert b.robot.bumps == 0
     b.run(motion.move_backward, distance=0.5)
 
 
@@ -165,6 +177,6 @@ def test_facing(bench, table):
 
 
 def test_people_in_the_way_count_as_something(bench):
-    b = bench(people=(Person("Alice", 1.0, 0.0, 0.25),))
+    b = bench(body=BLIND, people=(Person("Alice", 1.0, 0.0, 0.25),))
     with pytest.raises(ActionFailed, match=r"bumped into something after 0\.55 m"):
         b.run(motion.move_forward, distance=2.0)

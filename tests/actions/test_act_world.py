@@ -304,11 +304,11 @@ def test_a_dock_that_does_not_connect_is_tried_again(bench, times, docks):
 
 
 def test_a_blocked_dock_is_not_run_into_and_tried_again(bench):
-    b = bench(HALL, people=(Person("Bob", 0.35, 0.6, 0.25),))
+    b = bench(HALL, people=(Person("Bob", 0.3, 0.6, 0.25),))
     with pytest.raises(ActionFailed, match=r"^something is in the way into the dock$"):
         b.run(power.dock)
     assert b.robot.bumps == 0
-    b = bench(HALL, people=(Person("Bob", 0.35, 0.6, 0.25),))
+    b = bench(HALL, people=(Person("Bob", 0.3, 0.6, 0.25),))
     running = b.begin(power.dock, 6.5)
     b.robot.move_thing("Bob", 5.0, 3.0)
     b.run(lambda robot: running)

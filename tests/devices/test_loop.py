@@ -200,7 +200,7 @@ def test_readings_that_cannot_be_used(told: Reading | DeviceError) -> None:
         ("range", Distance("far"), "its distance is not a number"),
         ("range", Distance(None), "its distance is not a number"),
         ("drive", Wheels(math.inf, 0.0, 0.0, 0.0), "its left is not finite"),
-        ("lidar", Scan([1.0, math.nan]), "its ranges have what is not a number"),
+        ("lidar", Scan([math.nan, math.nan]), "its scan has no valid beam"),
         ("lidar", Scan([1.0, "far"]), "its ranges have what is not a number"),
         ("lidar", Scan(5), "its ranges have what is not a number"),
         ("battery", Charge(50.0, volts="12"), "its volts is not a number"),
@@ -221,6 +221,7 @@ def test_readings_that_can_be_true() -> None:
     for kind, reading in (
         ("range", Distance(math.inf)),
         ("lidar", Scan([1.0, math.inf])),
+        ("lidar", Scan([1.0, math.nan])),
         ("lidar", Scan(np.array([1.0, math.inf], dtype=np.float32))),
         ("gauge", Measured(np.float32(1.5))),
         ("battery", Charge(50)),

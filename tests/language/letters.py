@@ -16,7 +16,7 @@ CONDITIONS = "pqrs"
 
 
 ENTRIES = (
-    *(Entry("action", letter.upper(), (letter,)) for letter in COMMANDS),
+    *(Entry("action", letter.upper(), (letter,), accompaniment=True) for letter in COMMANDS),
     *(Entry("condition", letter.upper(), (letter,)) for letter in CONDITIONS),
     Entry("action", "Murmur", ("murmur {text}",), slots=(SlotSpec("text", "text"),)),
 )

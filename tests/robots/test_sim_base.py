@@ -20,6 +20,7 @@ ROOM = World(
 )
 EMPTY = World(start=Pose(0.0, 0.0, 0.0))
 BODY = standard_body()
+BLIND = BODY.replace(sensors=())
 
 
 def run(robot, seconds, dt=0.05):
@@ -81,7 +82,7 @@ def test_the_size_of_steps_hardly_matters():
 
 def test_stops_at_a_wall_bumps_once_and_gets_stuck():
     events = []
-    robot = SimulatedRobot(ROOM, lambda kind, data: events.append((kind, dict(data))))
+    robot = SimulatedRobot(ROOM, lambda kind, data: events.append((kind, dict(data))), BLIND)
     robot.drive(0.5, 0.0)
     run(robot, 8)
     assert robot.pose.x == pytest.approx(4.0 - BODY.radius, abs=1e-4)
@@ -96,7 +97,7 @@ def test_stops_at_a_wall_bumps_once_and_gets_stuck():
 
 
 def test_a_second_push_is_a_second_bump():
-    robot = SimulatedRobot(ROOM)
+    robot = SimulatedRobot(ROOM, body=BLIND)
     for bumps in (1, 2):
         robot.drive(0.5, 0.0)
         run(robot, 5)
@@ -108,7 +109,7 @@ def test_a_second_push_is_a_second_bump():
 def test_people_are_bumped_into_by_name():
     events = []
     robot = SimulatedRobot(
-        ROOM.replace(start=Pose(0.8, 1.5, 90.0)), lambda kind, data: events.append((kind, dict(data)))
+        ROOM.replace(start=Pose(0.8, 1.5, 90.0)), lambda kind, data: events.append((kind, dict(data))), BLIND
     )
     robot.drive(0.5, 0.0)
     run(robot, 5)

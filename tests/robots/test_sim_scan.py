@@ -1,6 +1,6 @@
 """The scanner against exact geometry."""
 
-from math import cos, inf, nan, radians, sin, sqrt
+from math import cos, degrees, inf, nan, radians, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from btlang.robots.body import Sensor
 from btlang.robots.body_file import standard_body
-from btlang.robots.geometry import Pose
+from btlang.robots.geometry import Pose, wrap
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.robot import RobotError
 from btlang.robots.scan import Scanner, around
@@ -53,9 +53,13 @@ def test_what_a_mounted_scanner_measures_is_around_the_robot(at, echoes):
     points = [(distance * cos(radians(beam)), distance * sin(radians(beam))) for beam, distance in echoes.items()]
     ranges = np.array([inf, nan, *(at.distance_to(point) for point in points)])
     angles = np.array([0.0, 1.0, *(radians(at.bearing_to(point)) for point in points)])
-    wanted = np.full(360, inf)
-    wanted[list(echoes)] = list(echoes.values())
-    assert around(ranges, angles, at) == pytest.approx(wanted)
+    wanted = np.full(360, nan)
+    wanted[round(at.heading) % 360] = inf  # where a beam looked that found nothing
+    found = around(ranges, angles, at)
+    assert [found[beam] for beam in echoes] == pytest.approx(list(echoes.values()))
+    looked = (*echoes, at.heading, at.heading + degrees(1.0))
+    away = np.array([min(abs(wrap(beam - other)) for other in looked) for beam in range(360)])
+    assert np.isnan(found[away > 20]).all()
 
 
 @given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(-180, 180))

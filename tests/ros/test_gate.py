@@ -73,7 +73,7 @@ def test_poses_of_other_messages(kind: type) -> None:
 
 def test_a_jump_is_refused_once() -> None:
     """What follows agrees with it: odometry that began anew. Who drives sees how far that is."""
-    gate = Gate(Odometry)
+    gate = Gate(Odometry, lags=False)
     assert gate.refuses(odometry(x=0.0, at=10)) == ""
     assert gate.refuses(odometry(x=0.5, at=11)) == ""
     assert gate.refuses(odometry(x=90.5, at=12)) == "jumps by 90 m"

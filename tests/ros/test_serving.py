@@ -122,8 +122,8 @@ def test_goals_of_a_program_that_knows_rclpy_alone(serve, client: Client, tmp_pa
     failed = phrase(client, "/actions/move_forward", distance="50 m")
     status, _, reason = end_of(failed)
     assert status == aborted
-    assert reason.startswith("bumped into something after")
-    server.wait_for("failed move forward 50 m: bumped")
+    assert reason.startswith("stopped after")
+    server.wait_for("failed move forward 50 m: stopped")
 
 
 def test_cancelled_half_way_the_robot_stands(start_sim, serve, client: Client):

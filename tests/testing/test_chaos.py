@@ -27,7 +27,7 @@ def test_the_same_seed_gives_the_same_troubles() -> None:
 
 
 def test_all_kinds_of_trouble_come() -> None:
-    told = "\n".join(line for seed in range(20) for line in run_chaos(mission_test(WALK), seed).troubles)
+    told = "\n".join(line for seed in range(40) for line in run_chaos(mission_test(WALK), seed).troubles)
     for kind in ("grip", "scanner", "blocked", "goal", "hand", "in the way", "emergency stop"):
         assert kind in told
 

@@ -8,7 +8,7 @@ from random import Random
 import pytest
 
 from btlang.robots.geometry import Pose
-from btlang.robots.protection import edge_distance
+from btlang.robots.motion.guard.regions import edge_distance
 from btlang.robots.robot import RobotError
 from tests.profiles import amount
 from tests.world.test_people import Life

@@ -10,6 +10,8 @@ from btlang.backends.english.candidate import REFERENCE, Candidate, Checked
 from btlang.text.source import NOWHERE
 from btlang.tree import ast
 from btlang.tree.node import Node
+from btlang.vocabulary.references import ALL, Choice
+from btlang.vocabulary.value_type import WORLD
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -38,6 +40,12 @@ def _chain(operator: str) -> Form:
 def _sequence(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
     """`A 3 times 10 s apart`, or a chain."""
     last = children[1] if len(children) == 2 else None
+    if last is not None and last.node.id == "LoopString" and children[0].node.id == "ChooseAll":
+        found, loop = dict(children[0].node.ports), last.node
+        key, kind, names = loop.port("value")[1:-1], found.pop("type", ""), found.pop("output", "")
+        if names == loop.port("queue") == f"{{{key}_names}}" and kind in WORLD:
+            text = Choice(ALL, kind, key, tuple(sorted(found.items()))).text
+            yield ast.ForEach(key, kind, (text,), last.children[0].part, NOWHERE)
     if last is not None and last.node.id == "Repeat" and [part.node.id for part in last.children] == ["Delay"]:
         delay, rounds = last.children[0].node, last.node.port("num_cycles")
         body = _round(children[0], checked) if delay.children == (children[0].node,) else None
@@ -212,6 +220,15 @@ def _within(node: Node, children: tuple[Candidate, ...], checked: Checked) -> It
         yield from (ast.Within(seconds, part, NOWHERE) for seconds in _seconds(node.port("msec"), checked))
 
 
+def _constrained(kind: str) -> Form:
+    def forms(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
+        zones = tuple(zone.strip() for zone in node.port("zones").split(";"))
+        if len(children) == 1 and not children[0].in_lines and all(zones):
+            yield ast.Constrained(kind, zones, children[0].part, NOWHERE)
+
+    return forms
+
+
 def _delay(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
     if len(children) == 1:
         times = _seconds(node.port("delay_msec"), checked)
@@ -267,6 +284,8 @@ INVERSE_RULES: dict[str, Form] = {
     "Repeat": _repeat,
     "RetryUntilSuccessful": _retry,
     "ForceSuccess": _ignoring_failure,
+    "KeepOut": _constrained("keep out"),
+    "KeepIn": _constrained("keep in"),
     "Timeout": _within,
     "Delay": _delay,
     "Sleep": _wait,

@@ -157,6 +157,8 @@ class TypeInference:
         elif node.id == SUBTREE and node.port("ID") in self._names:
             for key in parameters(node.port("ID")):
                 self._give((node.port("ID"), key), node.port(key), own, texts)
+        elif node.id == "LoopString":
+            self._chosen.add(node.port("value")[1:-1])
         elif node.id == "Choose":
             self._need(node.port("output"), node.port("type"), own)
             self._set.add(node.port("output")[1:-1])

@@ -17,6 +17,8 @@ from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Ast, Definition, Nothing, Program
+from btlang.tree.conjunctions import resolve
+from btlang.tree.rounds import with_rounds
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
 
@@ -58,7 +60,8 @@ def read_mission(
     included = reader.read(source, (real_path(source.name),))
     if any(problem.is_error for problem in reader.problems):
         raise MissionError(reader.problems)
-    return Reading(included.mission, tuple(reader.problems))
+    mission, said = resolve(with_rounds(included.mission, vocabulary), vocabulary)
+    return Reading(mission, (*reader.problems, *said))
 
 
 def lexed(source: Source, vocabulary: Lexicon) -> Lexer:
@@ -128,7 +131,9 @@ class _Reader:
         """What is wrong with a text that can be read, for the corrections of one that cannot."""
         assert self._errors_of is not None
         try:
-            return self._errors_of(self._mission(lexer.text.source, lexer, grouped), self._vocabulary)
+            read = self._mission(lexer.text.source, lexer, grouped)
+            mission, _ = resolve(with_rounds(read, self._vocabulary), self._vocabulary)
+            return self._errors_of(mission, self._vocabulary)
         except MissionError as error:
             return error.diagnostics
 

@@ -5,7 +5,7 @@ a word that goes on with the statement before it, so that it ends nothing. The g
 grouped tokens, which need no look-ahead any more:
 
     COMMAND CONDITION                      operands
-    SEMI OR_ELSE WIDE_AND THEN AFTER OR AND    between commands, loosest first
+    SEMI OR_ELSE WIDE_MEANWHILE WIDE_AND THEN AFTER OR MEANWHILE AND    between commands, loosest first
     BLOCK_AND BLOCK_OR                     in place of SEMI between the lines of `in parallel:`, `the first that works:`
     BLOCK_CHILD                            the same between the children of a node that is said by its id
     COND_OR_ELSE COND_WIDE_AND COND_OR COND_AND NOT    between and before conditions
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from typing import TypeAlias
 
     Said: TypeAlias = "Called | Listed | Assigned | Remembered | NodeCall"
-    Value: TypeAlias = "Said | Each | Paced | Header | str | None"
+    Value: TypeAlias = "Said | Each | Paced | Constraint | Header | str | None"
 
 
 class Called(Record):
@@ -80,6 +80,13 @@ class Paced(Record):
 
     rounds: str
     seconds: str
+
+
+class Constraint(Record):
+    """Zones to keep out of, or to stay in: `kind` is "keep out" or "keep in"."""
+
+    kind: str
+    zones: tuple[str, ...]
 
 
 class Each(Record):
@@ -146,6 +153,15 @@ def go_on(tokens: list[Token]) -> None:
     if 0 < kept < len(tokens) and tokens[kept - 1].kind not in ("indent", "open", "define"):
         end = tokens[kept - 1].end
         tokens[kept:] = [Token("stop", end, end)]
+
+
+def constraint_of(token: Token) -> Constraint | None:
+    """What a command asks of the others in its statement, None for any other token."""
+    value = token.value
+    if token.kind != "command" or not isinstance(value, Called | Listed) or not value.entry.constrains:
+        return None
+    ports = [value.arguments] if isinstance(value, Called) else value.arguments
+    return Constraint(value.entry.constrains, tuple(text for arguments in ports for _, text in arguments))
 
 
 def begins_condition(tokens: Sequence[Token], at: int) -> bool:

@@ -9,7 +9,7 @@ from btlang.passes.compilation import Compilation
 from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon
 
-_ENDS = frozenset(("place", "length", "angle", "text"))
+_ENDS = frozenset(("place", "object", "person", "door", "length", "angle", "text"))
 """The types of the values with which people say when a command has ended."""
 
 

@@ -32,6 +32,7 @@ _SENTENCE_END = re.compile(r"[\n;]|[.!?](?=\s)")
 def two_readings(compilation: Compilation) -> Iterator[Diagnostic]:
     """At most one of each kind for each sentence: the first."""
     mission, reported = compilation.mission, set[tuple[str, int, str]]()
+    warned = {warning.span for warning in compilation.warnings if warning.code == "BT050"}
     printer: Printer | None = None
     ends: dict[str, list[int]] = {}
     for root in (*mission.definitions, *([mission.body] if mission.body is not None else [])):
@@ -45,7 +46,7 @@ def two_readings(compilation: Compilation) -> Iterator[Diagnostic]:
             reported.add(key)
             printer = printer or _printer(compilation)
             readings = found.readings()
-            if not printer.say(readings.taken).in_lines:
+            if readings.span not in warned and not printer.say(readings.taken).in_lines:
                 yield _warning(readings, printer)
 
 

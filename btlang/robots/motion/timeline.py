@@ -10,7 +10,7 @@ import numpy as np
 
 from btlang.robots.body import Body
 from btlang.robots.motion.course import PERIOD, Limits, Piece, State, between, quintic, samples
-from btlang.robots.motion.guard import Guard
+from btlang.robots.motion.guard.trajectories import TrajectoryCheck
 from btlang.robots.motion.kinematics import Array, Kinematics
 from btlang.robots.motion.movements import resting
 from btlang.robots.motion.planner import Course, Planner
@@ -50,7 +50,7 @@ class Timeline:
     def __init__(self, body: Body, kinematics: Kinematics) -> None:
         self.seconds = 0.0
         self._limits = Limits.of(body.joints)
-        self._guard, self._planner = Guard(body, kinematics), Planner(self._limits)
+        self._guard, self._planner = TrajectoryCheck(body, kinematics), Planner(self._limits)
         self._way = resting(self._limits.rest[None])
         self._first = 0  # the tick of the first sample
         self._ends = np.zeros(len(body.joints), dtype=int)  # the tick at which each joint rests

@@ -46,14 +46,12 @@ class RangeTranslation(Translation):
 
 
 class LidarTranslation(Translation):
-    """Beams that say nothing see nothing."""
+    """A beam that says nothing is NaN."""
 
     reads = LaserScan
 
     def _read(self, message: Any) -> Reading:
-        ranges = echoes(message)
-        ranges[np.isnan(ranges)] = inf
-        return kinds.Scan(ranges.tolist(), degrees(message.angle_min), degrees(message.angle_increment))
+        return kinds.Scan(echoes(message).tolist(), degrees(message.angle_min), degrees(message.angle_increment))
 
     def shown(self, reading: Any) -> Any:
         """See Translation."""

@@ -8,7 +8,8 @@ from collections.abc import Callable, Generator
 from nav_msgs.msg import Odometry
 
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.progress import PATIENCE, Approach, Progress
+from btlang.robots.body import PATIENCE
+from btlang.robots.progress import Approach, Progress
 from btlang.ros.clients import Clients
 from btlang.ros.commands import velocity
 from btlang.ros.graph import no_listener

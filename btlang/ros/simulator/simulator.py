@@ -69,7 +69,7 @@ class Simulator:
             return made
 
         quiet = body and body.replace(idle=bodies.Idle())  # over ROS, what moves isn't idle
-        self.robot = SimulatedRobot(world, body=quiet, make_parts=make_parts)
+        self.robot = SimulatedRobot(world, body=quiet, make_parts=make_parts, sees=False)
         if seed is not None:
             self.robot.seed_choices(seed)
         self._show = show

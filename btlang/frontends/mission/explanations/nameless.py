@@ -6,9 +6,9 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.text.spelling import nearest
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.nouns import ALL
+from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.trie import SlotValue
+from btlang.vocabulary.references import ALL
 
 _MOST_SHOWN = 5
 

@@ -27,7 +27,7 @@ from btlang.vocabulary.pattern import forms, spelled
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.value_type import PLACE, ValueType, with_unit
-from btlang.vocabulary.word_tree import END, SLOTS
+from btlang.vocabulary.word_tree import NO_WORDS, SLOTS
 
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
 
@@ -128,7 +128,7 @@ def _misfits(text: Words, at: int, roots: Iterable[TrieNode], context: ReadingCo
             value = context.read(kind, text, i)
             if value is not None:
                 paths.append((child, value[1]))
-            elif context.types[kind].names and any(word not in (END, SLOTS) for word in node):
+            elif context.types[kind].names and any(word not in NO_WORDS for word in node):
                 continue  # one of a few names would be an addition to the words that are missing
             elif i > furthest:
                 furthest, found = i, {kind: set(child)}

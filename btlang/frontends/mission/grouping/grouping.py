@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.frontends.mission.grouping import lists, operands, operators, problems
+from btlang.frontends.mission.grouping import constraints, lists, operands, operators, problems
 from btlang.frontends.mission.grouping.conditions import CONDITION_FORMS, STARTS_OPERAND, after_condition
 from btlang.frontends.mission.grouping.scan import Scan, Unit
 from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Token
@@ -43,6 +43,8 @@ def group(source: Source, raw: list[Token], conditions: set[str], word: Callable
             after_condition(scan, token)
         elif scan.stack[-1].kind == "choice":
             lists.after_choice(scan, token)
+        elif token.kind == "command" and constraints.behind(scan, token):
+            continue
         elif scan.stack[-1].kind != "head" or not operands.after_head(scan, token):
             _OPERATOR.get(token.kind, problems.side_by_side)(scan, token)
     scan.units.append(Unit(None, tuple(scan.out)))
@@ -77,6 +79,7 @@ _OPERAND: dict[str, Callable[[Scan, Token], None]] = {
 _OPERATOR: dict[str, Callable[[Scan, Token], None]] = {
     **dict.fromkeys((*CONNECTIVES, "while_doing"), operators.connective),
     "stop": operators.stop,
+    "but": operators.but,
     "again": operators.says_nothing,
     **dict.fromkeys(
         ("within", "if_possible", "every", "delay", "at", "every_day", "up_to", "apart"), operators.postfix

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from btlang.frontends.mission.grouping import constraints
 from btlang.frontends.mission.grouping.bodies import block_follows, separator, set_amount, set_pace
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, is_refused
 from btlang.frontends.mission.grouping.lists import lacks_neither, needs_check, stray
@@ -34,6 +35,8 @@ def operand(scan: Scan, token: Token) -> None:
     else:
         if token.kind == "condition":
             scan.fail("BT028", scan.span(token), word_before(scan, token, "check"), words=scan.words(token))
+            return
+        if constraints.taken(scan, token):
             return
         scan.begin_statement(token)
         scan.emit("COMMAND", token, token.kind if token.kind != "command" else "")
@@ -128,6 +131,8 @@ def loop(scan: Scan, token: Token) -> None:
 def fronted(scan: Scan, token: Token) -> None:
     """`before going home, A`, `after you wave, A`, `while singing, A`, `if grasping the cup fails, A`."""
     if is_refused(scan, token):
+        return
+    if constraints.fronted(scan, token):
         return
     following = scan.raw[scan.at + 1]
     if following.kind == "unknown":

@@ -6,14 +6,14 @@ from collections.abc import Callable
 
 from btlang.frontends.mission.grouping.bodies import begin_otherwise, end_block, paced, separator, set_amount, set_pace
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, STARTS_OPERAND, closes_statement
-from btlang.frontends.mission.grouping.problems import both_readings, is_alone, side_by_side
+from btlang.frontends.mission.grouping.problems import both_readings, found_words, is_alone, side_by_side
 from btlang.frontends.mission.grouping.readings import otherwise_of_another, repeated, twice_more, waits_first
 from btlang.frontends.mission.grouping.scan import ENDS, Scan, Unit
 from btlang.frontends.mission.grouping.stack import StackEntry
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import Token, constraint_of
 from btlang.vocabulary.language_tables import CONNECTIVES
 
-_JOINTS = {"meanwhile": "AND", "in_parallel": "AND", "while_doing": "AND", "before": "THEN"}
+_JOINTS = {"in_parallel": "MEANWHILE", "while_doing": "MEANWHILE", "before": "THEN"}
 
 
 def connective(scan: Scan, token: Token) -> None:
@@ -38,6 +38,7 @@ def _skip_comma(scan: Scan) -> None:
 def _join(scan: Scan, token: Token, kind: str) -> None:
     entry = scan.stack[-1]
     before = [*entry.joints, *entry.commas]
+    entry.begin_chain()
     made = scan.emit(kind, token)
     entry.connective(made)
     entry.joints = [*before, made] if token.kind == "and" else []
@@ -52,7 +53,7 @@ def _joint(token: Token) -> str:
 def _widening(scan: Scan, token: Token) -> None:
     """A connective behind a comma or a stop."""
     joint = _joint(token)
-    widens = joint in ("AND", "OR") and not token.role
+    widens = joint in ("AND", "MEANWHILE", "OR") and not token.role
     _join(scan, token, f"WIDE_{joint}" if widens else joint)
     _skip_comma(scan)
 
@@ -67,7 +68,11 @@ def comma(scan: Scan, token: Token) -> None:
     elif following.kind in CONNECTIVES or following.kind == "while_doing":
         scan.at += 1
         _widening(scan, following)
-    elif following.kind == "apart" and scan.raw[scan.at - 1].kind == "count":
+    elif (
+        following.kind == "but"
+        or constraint_of(following) is not None
+        or (following.kind == "apart" and scan.raw[scan.at - 1].kind == "count")
+    ):
         scan.at += 1
     elif following.kind == "stop_when" or closes_statement(scan, scan.at + 1):
         scan.take_statement()
@@ -80,8 +85,23 @@ def comma(scan: Scan, token: Token) -> None:
         advice = "Remove it." if fix else both_readings(scan, following)
         scan.fail("BT032", scan.span(token), fix, place=f"before '{scan.words(following)}'", advice=advice)
     else:
-        scan.stack[-1].connective(scan.emit("COMMA", token))
+        entry.begin_chain()
+        entry.connective(scan.emit("COMMA", token))
         scan.next(token, True)
+
+
+def but(scan: Scan, token: Token) -> None:
+    """`A but avoid Z`; `A, but first B`: B before it."""
+    following = scan.raw[scan.at + 1]
+    if constraint_of(following) is not None:
+        scan.at += 1
+    elif token.value and following.kind == "command":
+        scan.raw[scan.at] = Token("after", token.start, token.end)
+        scan.stack[-1].settle()
+        connective(scan, scan.raw[scan.at])
+    else:
+        words = scan.words(token)
+        scan.fail("BT020", scan.span(token), wanted="command", word=words, found=found_words(scan, following))
 
 
 def stop(scan: Scan, token: Token) -> None:
@@ -208,14 +228,17 @@ _PACES = ({"count", "every"}, {"count", "apart"})
 
 
 def at_the_same_time(scan: Scan, token: Token) -> None:
-    """`A at the same time B` joins; behind `A and B` it says that they are a P, whatever `and` means."""
+    """`A at the same time B` joins; behind `A and B` it makes a bracket of them, a P whatever they are."""
     entry = scan.stack[-1]
     if scan.raw[scan.at + 1].kind in STARTS_OPERAND | CONDITION_FORMS:
         connective(scan, token)
     elif entry.joints:
         for joint in entry.joints:
-            joint.kind = "AND"
+            joint.kind = "MEANWHILE"
         scan.next(token, False)
+        entry.joints = []
+        entry.operand = entry.chain
+        scan.enclose(entry.chain)
     else:
         scan.fail("BT031", scan.span(token), words=scan.words(token))
 
@@ -254,6 +277,7 @@ def close_bracket(scan: Scan, token: Token) -> None:
         scan.fail("BT024", scan.span(token), (scan.span(token), "") if groups_nothing else None)
         return
     entry.close_chain()
+    scan.wrap_constraints(entry)
     scan.stack.pop()
     scan.emit("CLOSE", token)
     scan.next(token, False)
@@ -267,6 +291,7 @@ def end_statement(scan: Scan, token: Token) -> None:
         scan.fail("BT023", scan.span(entry.opener or token))
         return
     if entry.statement == "open":
+        scan.wrap_constraints(entry)
         entry.statement = "ended"
         if entry.latest == entry.commands:  # the second one
             waits_first(scan, entry)

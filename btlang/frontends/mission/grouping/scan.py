@@ -83,8 +83,18 @@ class Scan:
     def close_forms(self, down_to: StackEntry | None = None) -> None:
         """Closes the open forms of this bracket, down to one of them (which stays open)."""
         while not self.stack[-1].is_group and self.stack[-1] is not down_to:
-            self.stack.pop().close_chain()
+            entry = self.stack.pop()
+            entry.close_chain()
+            self.wrap_constraints(entry)
             self.emit_end()
+
+    def wrap_constraints(self, entry: StackEntry) -> None:
+        """What constrains the statement that ends holds over all of it."""
+        for constraint in entry.constraints if entry.begins < len(self.out) else ():
+            start = self.out[entry.begins].start
+            self.out.insert(entry.begins, Token("LOOP", start, start, constraint, constraint.kind))
+            self.emit_end()
+        entry.constraints.clear()
 
     def around_statement(self) -> tuple[StackEntry, bool]:
         """What holds the statement so far: the innermost group, or the body of a rule in it (True)."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import Constraint, Token
 
 
 class StackEntry:
@@ -14,16 +14,19 @@ class StackEntry:
     The next connective decides what the `commas` mean; `last` is the latest connective. `statement` of a group is "",
     "open" or "ended": its newest statement begins in the output at the index `begins`, the newest one that has ended
     at `latest`; `separator` is the token between them. The latest operand begins at `operand`. `joints` are the words
-    "and" of the chain that is not over. `is_group`: it holds statements; `is_condition`: operands in it are conditions.
-    `commands` is where those of a group begin that no rule follows; `mixed`: rules stand among them. A list
-    `begins` at a raw token and has so many `items` so far.
+    "and" of the chain that is not over, which begins at `chain`. `is_group`: it holds statements; `is_condition`:
+    operands in it are conditions. `commands` is where those of a group begin that no rule follows; `mixed`: rules stand
+    among them. Its `constraints` hold over its newest statement. A list `begins` at a raw token and has so many `items`
+    so far.
     """
 
     __slots__ = (
         "after",
         "begins",
+        "chain",
         "commands",
         "commas",
+        "constraints",
         "count_owner",
         "else_owner",
         "is_condition",
@@ -55,8 +58,9 @@ class StackEntry:
         self.commas: list[Token] = []
         self.last: Token | None = None
         self.joints: list[Token] = []
+        self.constraints: list[Constraint] = []
         self.statement = ""
-        self.begins = self.operand = self.items = 0
+        self.begins = self.chain = self.operand = self.items = 0
         self.latest: int | None = None
         self.commands: int | None = None
         self.mixed = False
@@ -73,15 +77,21 @@ class StackEntry:
             self.commas.append(token)
             self.last = token
             return
-        if token.kind in ("WIDE_AND", "WIDE_OR") and self.last is not None and self.last.kind == "COMMA":
+        follows_comma = self.last is not None and self.last.kind == "COMMA"
+        if follows_comma and token.kind in ("WIDE_AND", "WIDE_MEANWHILE", "WIDE_OR"):
             token.kind = token.kind[5:]
-        meaning = token.kind if token.kind in ("AND", "OR") else ""
+        meaning = token.kind if token.kind in ("AND", "MEANWHILE", "OR") else ""
         self._settle(meaning)
         if token.kind == "WIDE_OR":
             token.kind = "OR_ELSE"
         if condition:
             token.kind = "COND_" + token.kind
         self.last = token
+
+    def begin_chain(self) -> None:
+        """A connective comes: unless it goes on with a chain, one begins with the operand before it."""
+        if not self.joints and not self.commas:
+            self.chain = self.operand
 
     def stop(self, token: Token) -> None:
         """A stop before a word that goes on: no comma before it looks any further."""

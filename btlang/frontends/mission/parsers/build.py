@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.mission.token import Assigned, Called, Each, Listed, NodeCall, Paced, Remembered, Token
+from btlang.frontends.mission.token import (
+    Assigned,
+    Called,
+    Constraint,
+    Each,
+    Listed,
+    NodeCall,
+    Paced,
+    Remembered,
+    Token,
+)
 from btlang.text.source import Source, Span
 from btlang.tree.ast import (
     Apart,
@@ -14,6 +24,7 @@ from btlang.tree.ast import (
     Chain,
     Check,
     Compared,
+    Constrained,
     Delay,
     Every,
     Exact,
@@ -50,7 +61,7 @@ if TYPE_CHECKING:
 
 CHAINS = {
     "SEMI": "sequence", "BLOCK_AND": "parallel", "BLOCK_OR": "fallback", "BLOCK_CHILD": "children",
-    "OR_ELSE": "fallback", "WIDE_AND": "parallel",
+    "OR_ELSE": "fallback", "WIDE_AND": "and", "WIDE_MEANWHILE": "parallel",
     **{role.upper(): operator for role, operator in CONNECTIVES.items()},
     "COND_OR_ELSE": "any", "COND_WIDE_AND": "all", "COND_OR": "any", "COND_AND": "all",
 }  # fmt: skip
@@ -146,6 +157,8 @@ class Builder:
         span = Span(self.source, opener.start, end)
         if isinstance(value, Each):
             return ForEach(value.key, value.kind, value.values, body, span)
+        if isinstance(value, Constraint):
+            return Constrained(value.kind, value.zones, body, span)
         if isinstance(value, NodeCall):
             children = body.items if isinstance(body, Chain) and body.operator == "children" else (body,)
             return Exact(value.id, value.ports, value.name, children, False, span, value.outputs)

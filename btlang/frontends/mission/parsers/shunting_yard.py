@@ -14,8 +14,9 @@ from btlang.tree.ast import Ast, Chain
 
 PRECEDENCE = {
     "SEMI": 1, "BLOCK_AND": 1, "BLOCK_OR": 1, "BLOCK_CHILD": 1,
-    "IF_WORKS": 2, "OR_ELSE": 3, "WIDE_AND": 4, "THEN": 5, "AFTER": 6, "OR": 7, "AND": 8,
-    "COND_OR_ELSE": 3, "COND_WIDE_AND": 4, "COND_OR": 7, "COND_AND": 8, "NOT": 9,
+    "IF_WORKS": 2, "OR_ELSE": 3, "WIDE_MEANWHILE": 4, "WIDE_AND": 5, "THEN": 6, "AFTER": 7, "OR": 8,
+    "MEANWHILE": 9, "AND": 10,
+    "COND_OR_ELSE": 3, "COND_WIDE_AND": 5, "COND_OR": 8, "COND_AND": 10, "NOT": 11,
 }  # fmt: skip
 _OPENERS = frozenset(("OPEN", "COND_OPEN", "COND_OF", "FORM", "LOOP", "TEST", "AFTER_FORM", "IF_WORKS"))
 _SECTIONS = frozenset(("DO", "ELSE", "STOP"))

@@ -16,9 +16,10 @@ from btlang.tree.ast import Definition
 from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
 from btlang.vocabulary.language_tables import CONNECTIVES
 from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.pattern import Part, Slot, name_form
 from btlang.vocabulary.references import choice_of
-from btlang.vocabulary.trie import Match, TrieNode, add, longest
+from btlang.vocabulary.trie import TrieNode, add, longest
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import END, SLOTS
 

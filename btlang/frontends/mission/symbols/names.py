@@ -13,6 +13,7 @@ from btlang.frontends.mission.symbols.includes import Included, find_includes
 from btlang.frontends.mission.symbols.meanings import find_meanings
 from btlang.frontends.mission.symbols.needs import find_needs
 from btlang.frontends.mission.symbols.nodes import find_main_names
+from btlang.frontends.mission.symbols.permissions import Permissions
 from btlang.frontends.mission.symbols.phrases import Phrases
 from btlang.frontends.mission.symbols.prefixes import find_prefixes
 from btlang.text.source import Span
@@ -59,7 +60,8 @@ class Names:
         given = find_given(text, vocabulary)
         self.given = tuple(given.keys)
         """The keys of the values that the mission is given."""
-        self.ends = includes.ends | facts.ends | needs.ends | meanings.ends | given.ends
+        self.permissions = Permissions(text, vocabulary)
+        self.ends = includes.ends | facts.ends | needs.ends | meanings.ends | given.ends | self.permissions.ends
         self.main_name = ""
         main_span: Span | None = None
         for name, first, last in find_main_names(text, vocabulary):
@@ -77,6 +79,7 @@ class Names:
         self.definitions = find_definitions(self.phrases, self.ends, compared, elsewhere)
         text.going_on -= named_at(self.definitions.trie, self.phrases, text.going_on)
         self.problems: list[Diagnostic] = [*needs.problems, *facts.problems, *meanings.problems, *given.problems]
+        self.problems += self.permissions.problems
         self.problems += self.definitions.problems
         if main_span is not None:
             defined = [header.name for header in self.definitions.headers.values()]

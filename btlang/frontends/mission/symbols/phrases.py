@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.trie import Match, longest
+from btlang.vocabulary.trie import longest
 
 
 class Phrases:

@@ -10,9 +10,10 @@ from btlang.frontends.mission.symbols.scopes import Scopes
 from btlang.frontends.mission.token import Header
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.pattern import Slot, name_form
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.trie import Match, TrieNode, longest
+from btlang.vocabulary.trie import TrieNode, longest
 
 
 class ValueTypes:

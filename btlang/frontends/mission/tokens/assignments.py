@@ -7,9 +7,10 @@ from btlang.frontends.mission.token import Assigned, Each, Remembered, Token
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.nouns import ALL
+from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.trie import SlotValue, all_names, longest, reaches_beyond
+from btlang.vocabulary.references import ALL, Choice
+from btlang.vocabulary.trie import all_names, longest, reaches_beyond
 from btlang.vocabulary.value_type import number_type
 
 
@@ -97,7 +98,13 @@ def _each(
         else ()
     )
     chosen = (prefix.noun, prefix.last) if prefix.noun is not None else inner.choice(text, prefix.value)
-    if chosen is not None and chosen[0].how == ALL:
+    sets = [chosen] if prefix.noun is not None else [*context.values.groups(text, prefix.value)]
+    wide = [way for way in sets if way is not None and text.words[way[1]] in (":", ",")]
+    if wide and wide[-1][0].how == ALL and not context.values.is_listed(wide[-1][0]):
+        meant, last = wide[-1]
+        kind = meant.type
+        values: tuple[str, ...] = (Choice(ALL, kind, prefix.key, meant.parts).text,)
+    elif chosen is not None and chosen[0].how == ALL:
         kind = chosen[0].type
         every = all_names(vocabulary.trie, chosen[0], text, prefix.value, chosen[1], inner)
         values = calls.port_text(every), *every.more

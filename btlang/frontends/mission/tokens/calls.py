@@ -10,9 +10,9 @@ from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import choice_of, keys_in, point_ports, renamed
-from btlang.vocabulary.trie import Match, SlotValue
 from btlang.vocabulary.value_type import PLACE
 from btlang.vocabulary.values import key_of
 
@@ -50,7 +50,7 @@ class Calls:
     def note(self, match: Match) -> None:
         """What pronouns stand for from here on."""
         for value in match.values:
-            latest = value.more[-1] if value.more else value.text
+            latest = value.group or (value.more[-1] if value.more else value.text)
             choice = choice_of(latest) if latest[:1] == "{" else None
             if choice is not None:
                 self._context.met.add(choice.key)
@@ -61,6 +61,10 @@ class Calls:
         if entry.sort == "value" and not (self._context.known and entry.id in self._context.known):
             self._unknown_value(self._text.span(at, match.last), entry.id)
         arguments = []
+        sets = [value for value in match.values if value.group]
+        if sets and entry.sort in ("action", "name"):
+            values = [value.replace(text=value.group, more=()) if value.group else value for value in match.values]
+            match = match.replace(values=tuple(values))
         for value in match.values:
             text = value.text
             if value.more or text[:1] in _ODD or "{" in text:
@@ -79,7 +83,8 @@ class Calls:
         value = match.values[lists[0]]
         each = [value.replace(text=text, more=()) for text in (value.text, *value.more)]
         before, behind = match.values[: lists[0]], match.values[lists[0] + 1 :]
-        return Listed(entry, tuple(self.arguments(entry, (*before, one, *behind)) for one in each), value.joiner)
+        joiner = "or" if entry.first and value.type == PLACE else value.joiner
+        return Listed(entry, tuple(self.arguments(entry, (*before, one, *behind)) for one in each), joiner)
 
     def _check_choices(self, entry: Entry, match: Match, at: int) -> None:
         """BT152 where what is chosen would replace another value of the phrase, or is to be compared with."""

@@ -11,7 +11,7 @@ from btlang.frontends.mission.symbols.includes import misplaced
 from btlang.frontends.mission.symbols.names import Load, Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_details, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
-from btlang.frontends.mission.token import Called, Token, begins_condition, go_on
+from btlang.frontends.mission.token import Called, Token, begins_condition, constraint_of, go_on
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_names import called, condition_names
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing, with_verb
@@ -20,9 +20,10 @@ from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.trie import Match, TrieNode, longest
-from btlang.vocabulary.word_tree import SLOTS
+from btlang.vocabulary.trie import TrieNode, longest
+from btlang.vocabulary.word_tree import SLOTS, find
 
 _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
 """What a word is inside a statement, and where it goes on with the one before."""
@@ -184,7 +185,7 @@ class Lexer:
                     at = end
                     continue
             if match is None or role in _NOT_READ:
-                end = self._partial.add_left_out(at)
+                end = self._says_nothing(match, role, at) or self._partial.add_left_out(at)
                 if end:
                     at = end
                     continue
@@ -199,10 +200,16 @@ class Lexer:
                 if role == "politeness":
                     at = self._politeness(match, at)
                     continue
+                if role == "after" and tokens and tokens[-1].kind == "until":
+                    at = match.last  # `until after going to the lab`
+                    continue
                 if at in going_on:
                     go_on(tokens)
                 if role == "command" and at in articles:
-                    self.problems += self._partial.whole_command(match, at)
+                    end = self._partial.add_left_out(at, match.last)  # `then the dock`: with an article it is a name
+                    if end:
+                        at = end
+                        continue
                 if role in _CONDITIONS:
                     if role != "condition":
                         tokens.append(Token("not", starts[at], starts[at]))
@@ -214,6 +221,8 @@ class Lexer:
                         origin = (token, *origin[1:]) if shared and origin else (token, at, match, root)
                 else:
                     tokens.append(calls.token(match, at))
+                    if len(tokens) > 1 and tokens[-2].kind == "while" and constraint_of(tokens[-1]) is not None:
+                        tokens[-2].kind = "while_doing"  # `while avoiding the kitchen`
                 if words[match.last] in self._details and match.meaning.entry is not None:
                     at = self._with_details(match.last)
                     calls.note(match)
@@ -249,6 +258,28 @@ class Lexer:
             tokens.append(Token("repeat", text.starts[at], text.ends[match.last - 1], role="doing"))
             return match.last
         return self._partial.add_doing(at, match) if at and may_be_doing(tokens) else 0
+
+    def _says_nothing(self, match: Match | None, role: str, at: int) -> int:
+        """Words that say nothing in one place: `until you go to`, `to get to`, `but B first`. Returns the next word."""
+        tokens, vocabulary = self.tokens, self.vocabulary
+        if not tokens:
+            return 0
+        before = tokens[-1]
+        if before.kind in ("until", "before") and self.text.words[at] in vocabulary.subjects:
+            return at + 1
+        if role == "ordinal" and match is not None and before.kind in ("command", "but"):
+            start = next((token for token in reversed(tokens) if token.kind in _BEGINS or token.kind == "but"), before)
+            start.value = "first" if start.kind == "but" else start.value
+            follows = longest(vocabulary.trie, self.text, match.last, self.context)
+            is_last = self.text.words[match.last] in (",", ";", END_OF_TEXT)
+            goes_on = follows is not None and follows.meaning.role in ("then", "and")
+            return match.last if start.kind == "but" or is_last or goes_on else 0
+        purpose = find(vocabulary.purpose, self.text.words, at) if before.kind == "command" else None
+        if purpose is not None and longest(vocabulary.trie, self.text, purpose[1], self.context) is not None:
+            kind = "and" if constraint_of(before) is not None else "then"
+            tokens.append(Token(kind, self.text.starts[at], self.text.ends[purpose[1] - 1]))
+            return purpose[1]
+        return 0
 
     def _is_reported(self, start: int, end: int) -> bool:
         """Whether the latest problem is about these characters already."""
@@ -323,8 +354,6 @@ class Lexer:
                 self.problems.append(self._why(at, at, Match(Meaning(prefix.role), at)))
             self.tokens.append(Token("unknown", span.start, span.end))
             return bisect_right(self.text.starts, span.end - 1)
-        if prefix.role == "remember" and self.tokens and self.tokens[-1].kind == "and":
-            self.tokens[-1].kind = "then"  # `ask ... and remember the answer`: what came of it
         self.tokens.append(read[0])
         return read[1]
 

@@ -6,18 +6,18 @@ Both are read as the words that they stand for would be, in a text put together 
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.calls import Calls
-from btlang.text.source import Span
 from btlang.text.words import END_OF_TEXT, Words
+from btlang.vocabulary.entry import MANNER, VIA
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.trie import Match, TrieNode, longest
+from btlang.vocabulary.trie import TrieNode, longest
 
-BEFORE_DOING = frozenset(("before", "after", "while", "never"))
+BEFORE_DOING = frozenset(("before", "after", "while", "until", "never"))
 """The kinds of tokens behind which a command may have the form of its verb: `after waving`."""
 JOINTS = frozenset(("then", "and", "or", "comma", "otherwise"))
 """Behind these a command may leave out words of the one before it."""
@@ -65,26 +65,15 @@ class PartialCommands:
         self._tokens.append(token)
         return end
 
-    def add_left_out(self, at: int) -> int:
-        """A command whose first words are those of the one before it."""
+    def add_left_out(self, at: int, least: int = 0) -> int:
+        """A command whose first words are those of the one before it, and which ends at a word `least` or behind it."""
         read = self._left_out(at)
-        if read is None:
+        if read is None or read[0].last < least:
             return 0
         token = self._token_of(read[0], at)
         self._said[token.start] = read[1]
         enlist(self._tokens, token)
         return read[0].last
-
-    def whole_command(self, match: Match, at: int) -> Iterator[Diagnostic]:
-        """BT050 where a command that has an article could be the rest of one: `go to the hall, then the dock`."""
-        read = self._left_out(at)
-        if read is not None and read[0].last >= match.last:
-            words, text = self._text.words, self._text
-            span = Span(text.source, text.articles[at][0], text.ends[match.last - 1])
-            front = " ".join(words[place] for place in read[1] if place < at)
-            bare, other = text.span(at, match.last).text, f"{front} {span.text}"
-            problem = diagnostic("BT050", span, taken=bare, other=other, fixed=bare)
-            yield problem.replace(readings=((span, bare), (span, other)))
 
     def _token_of(self, match: Match, at: int) -> Token:
         token = self._calls.token(match, at)
@@ -157,14 +146,44 @@ def left_out(
     A text is never a part of it: `say hello, then goodbye` is no such command.
     """
     rest = _rest(text, at)
+    whole = _match(text, [*said, *said[-1:]], {}, tries, context)
+    values = whole.values if whole else ()
+    if values and _is_own(values[-1]) and text.words[at - 1] in context.joiners:
+        return None  # `through the hall or the lobby`
+    of_values = {number for value in values for number in range(value.first, value.last)}
+    own = [number for value in values if _is_own(value) for number in _with_its_words(value, of_values)]
+    inside = {number for value in values for number in range(value.first + 1, value.last)}
     for kept in range(len(said), 0, -1):
-        places = [*said[:kept], *rest]
+        if kept in inside or kept - 1 in own:
+            continue  # a part of a value: `the orange room, then the yellow room`
+        front = [place for number, place in enumerate(said[:kept]) if number not in own]
+        places = [*front, *rest]
         match = _match(text, places, {}, tries, context)
-        if match is None or match.last <= kept or match.meaning.role not in ("command", "name"):
+        if match is not None and any(
+            value.first < len(front) < value.last or (_is_own(value) and value.last <= len(front))
+            for value in match.values
+        ):
+            continue  # a part of a value, or the way of the command before
+        if match is not None and all(_is_own(value) for value in match.values if value.last > len(front)):
+            continue
+        if match is None or match.last <= len(front) or match.meaning.role not in ("command", "name"):
             continue
         if all(context.types[value.type].kind != "text" for value in match.values):
             return _relocated(match, places), places[: match.last]
     return None
+
+
+def _is_own(value: SlotValue) -> bool:
+    """Whether a part of a command is never repeated by the next one: its way and its manner."""
+    return value.type == MANNER or value.name == VIA
+
+
+def _with_its_words(value: SlotValue, places: Container[int]) -> range:
+    """The words of a value with those that introduce it."""
+    first = value.first
+    while first > 1 and first - 1 not in places:
+        first -= 1
+    return range(first, value.last)
 
 
 def doing(

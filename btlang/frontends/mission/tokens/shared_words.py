@@ -5,8 +5,9 @@ from __future__ import annotations
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.trie import Match, TrieNode, longest, resumed
+from btlang.vocabulary.trie import TrieNode, longest, resumed
 
 
 def continued(

@@ -12,7 +12,7 @@ export interface Change {
 /** A message about the text; see `as_data` in btlang/diagnostics/report.py. */
 export interface Message {
   code: string;
-  severity: "error" | "warning";
+  severity: "error" | "warning" | "note";
   message: string;
   hint: string;
   start: number;

@@ -19,8 +19,8 @@ _ROUNDING = 1e-6
 _JERK = 1.02  # of the limit, for differences of sampled accelerations
 
 
-class Guard:
-    """Of a body."""
+class TrajectoryCheck:
+    """Checks the planned movements of one body."""
 
     def __init__(self, body: Body, kinematics: Kinematics) -> None:
         self._body = body

@@ -1,0 +1,71 @@
+"""What the devices of a robot see around it, as readings for the guard and as a scan."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+
+from btlang.devices.device_set import DeviceSet, reader
+from btlang.devices.driver import DeviceError
+from btlang.devices.kinds import Distance, Pressed, Scan
+from btlang.robots.body import Sensor
+from btlang.robots.geometry import CENTRE
+from btlang.robots.motion.guard.readings import ContactReading, ObstacleReading, RangeReading, ScanReading
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.robots.scan import Array
+
+
+class DeviceSensors:
+    """The distance sensors, the `bumpers` and the lidar of a robot. The lidar is where the `scanner` of its body is."""
+
+    def __init__(
+        self, devices: DeviceSet, bumpers: Sequence[str], lidar: str, scanner: Sensor | None, radius: float
+    ) -> None:
+        self._readers, self._lidar, self._radius = devices.readers, lidar, radius
+        self._scanner = scanner or Sensor("scanner", "")
+        self._near = [device for name, device in devices.devices.items() if device.kind == "range" or name in bumpers]
+        self._seen: tuple[Scan, Array, float] | None = None  # the latest scan, around the centre, and the room it shows
+
+    def scan(self) -> Array:
+        """The distances around the centre; see btlang.robots.capabilities.Sensors. Raises DeviceSilent."""
+        return self._look()[0]
+
+    def readings(self, now: float) -> list[ObstacleReading]:
+        """What the guard lets the base drive by."""
+        found = [self._reading(device.name, device.angle, now) for device in self._near]
+        if self._lidar:
+            view, angle = self._scanner.view, self._scanner.angle
+            try:
+                _, room = self._look()
+            except DeviceError as problem:
+                found.append(ScanReading("scanner", now, str(problem), self.scan, view, angle))
+            else:
+                found.append(ScanReading("scanner", now, "", self.scan, view, angle, room))
+        return found
+
+    def _reading(self, name: str, angle: float, now: float) -> ObstacleReading:
+        try:
+            reading = self._readers[name].read(name)
+        except DeviceError as problem:
+            return RangeReading(name, now, str(problem), inf, angle)
+        if isinstance(reading, Pressed):
+            return ContactReading(name, now, "", reading.pressed, angle)
+        assert isinstance(reading, Distance)
+        return RangeReading(name, now, "", reading.distance, angle)
+
+    def _look(self) -> tuple[Array, float]:
+        reading = reader(self._readers, self._lidar, "lidar").read(self._lidar)
+        assert isinstance(reading, Scan)
+        if self._seen is None or self._seen[0] is not reading:
+            import numpy as np  # most missions need none
+
+            from btlang.robots.scan import around
+
+            ranges = np.asarray(reading.ranges, dtype=np.float64)
+            angles = np.radians(reading.start + reading.step * np.arange(len(ranges)))
+            found = around(ranges, angles, self._scanner.pose if self._scanner.frame else CENTRE, abs(reading.step))
+            room = -self._radius if np.isnan(found).any() else float(found.min(initial=inf)) - self._radius
+            self._seen = reading, found, room
+        return self._seen[1], self._seen[2]

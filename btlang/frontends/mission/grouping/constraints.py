@@ -1,0 +1,101 @@
+"""Commands that constrain the others of their statement: `go to the lab without entering the kitchen`, `avoid Z and A`.
+
+Wherever such a command stands in a statement (or bracket), it holds over the whole of it: what joins it to the others
+is left out, and the statement is put into a loop of one round when it ends. Where it stands alone, or behind `then`, it
+is a command like any other and holds from there on.
+"""
+
+from __future__ import annotations
+
+from btlang.frontends.mission.grouping.scan import ENDS, Scan
+from btlang.frontends.mission.token import Called, Listed, Token, constraint_of
+from btlang.vocabulary.capabilities import MOVES
+
+_JOINTS = frozenset(("AND", "WIDE_AND", "MEANWHILE", "WIDE_MEANWHILE", "COMMA"))
+_FRONTED = frozenset(("and", "comma", "while_doing", "meanwhile"))
+"""What may stand between a constraint in front and the commands that it is about."""
+_UNTIL = frozenset(("until", "before"))
+"""The same where the command ends what is forbidden: `avoid the kitchen until going to the lab`."""
+
+
+def taken(scan: Scan, token: Token) -> bool:
+    """Takes a constraint where an operand must come; False for any other token, and for one that stands alone."""
+    constraint = constraint_of(token)
+    if constraint is None:
+        return False
+    entry, _ = scan.around_statement()
+    has_more = entry.statement == "open" or not entry.is_group
+    if has_more and len(scan.out) > entry.begins:
+        if scan.out[-1].kind in ("OR", "OR_ELSE", "WIDE_OR"):
+            words = scan.words(token)
+            scan.fail("BT155", scan.span(token), words=words, example=f"{words} {scan.word('and')} ...")
+            return True
+        if scan.out[-1].kind not in _JOINTS:
+            return False
+        _unjoin(scan)
+        entry.constraints.append(constraint)
+        scan.next(token, False)
+        return True
+    behind = _behind_joint(scan)
+    if not behind:
+        return False
+    entry.constraints.append(constraint)
+    scan.at = behind
+    return True
+
+
+def fronted(scan: Scan, token: Token) -> bool:
+    """`while remaining in the hall, A`: takes the constraint with the word before it."""
+    constraint = constraint_of(scan.raw[scan.at + 1]) if token.kind == "while_doing" else None
+    following = scan.raw[scan.at + 2] if constraint is not None else token
+    if constraint is None or following.kind not in ("comma", "and", "then"):
+        return False
+    scan.around_statement()[0].constraints.append(constraint)
+    scan.at += 3
+    return True
+
+
+def behind(scan: Scan, token: Token) -> bool:
+    """Takes a constraint that stands right behind a command: `go to the lab avoiding the kitchen`."""
+    constraint = constraint_of(token)
+    if constraint is None or scan.stack[-1].is_condition:
+        return False
+    scan.around_statement()[0].constraints.append(constraint)
+    scan.next(token, False)
+    return True
+
+
+def _unjoin(scan: Scan) -> None:
+    """Leaves out the connective before the constraint."""
+    joint, entry = scan.out.pop(), scan.stack[-1]
+    entry.commas = [comma for comma in entry.commas if comma is not joint]
+    entry.joints = [other for other in entry.joints if other is not joint]
+    entry.last = entry.commas[-1] if entry.commas else entry.joints[-1] if entry.joints else None
+
+
+def _behind_joint(scan: Scan) -> int:
+    """The place of the first command that a constraint in front is about; 0 where there is none."""
+    at, raw = scan.at + 1, scan.raw
+    if raw[at].kind == "comma" and raw[at + 1].kind in ("and", *_UNTIL):
+        at += 1
+    ends = raw[at].kind in _UNTIL
+    if not (ends or raw[at].kind in _FRONTED):
+        return 0
+    at += 1
+    while constraint_of(raw[at]) is not None and raw[at + 1].kind in _FRONTED:
+        return at if _has_journey(scan, at) else 0  # `avoid A and avoid B and go to C`
+    if raw[at].kind != "command" and (ends or raw[at].kind not in ("open", "repeat", "try", "retry", "if", "unless")):
+        return 0
+    return at if _has_journey(scan, at) else 0
+
+
+def _has_journey(scan: Scan, at: int) -> bool:
+    """Whether something in the rest of the statement moves the robot."""
+    while scan.raw[at].kind not in ENDS or scan.raw[at].kind == "close":
+        token = scan.raw[at]
+        if token.kind == "command" and type(token.value) in (Called, Listed) and constraint_of(token) is None:
+            entry = token.value.entry  # type: ignore[union-attr]
+            if entry.sort == "name" or MOVES in entry.resources:
+                return True
+        at += 1
+    return False

@@ -1,0 +1,83 @@
+"""Finds what only permits something: `if you reached the lab then you may go to the hall`, `then stay there or go on`.
+
+A robot need not do what it may do, so such a statement, or end of one, is left out, with a note.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.text.words import END_OF_STATEMENT, Words
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.word_tree import WordTree, find, insert
+
+_STOPS = frozenset((END_OF_STATEMENT, ";"))
+
+
+class Permissions:
+    """What a text permits: the word behind each such part, by its first, and a note about each (BT176)."""
+
+    def __init__(self, text: Words, vocabulary: Lexicon) -> None:
+        self.ends: dict[int, int] = {}
+        self.problems: list[Diagnostic] = []
+        self._allowing = _tree(vocabulary.roles["may"])
+        self._staying = _tree(vocabulary.roles["or_stay"])
+        self._fronts = frozenset(word for role in ("if", "once", "then", "and") for word in _firsts(vocabulary, role))
+        if text.distinct.isdisjoint((*self._allowing, *self._staying)):
+            return
+        for line in text.lines:
+            for number, (first, last) in enumerate(_statements(text, line.first, line.last)):
+                self._look(text, first, last, is_first=number == 0 and line.first == 0)
+
+    def _look(self, text: Words, first: int, last: int, *, is_first: bool) -> None:
+        """A whole statement that is not the first, or its last part behind a joining word."""
+        words = text.words
+        for at in range(first, last):
+            allows, stays = find(self._allowing, words, at), find(self._staying, words, at)
+            if allows is None and stays is None:
+                continue
+            begin = self._begin(text, first, at)
+            if begin == first and is_first:
+                continue  # `you may go to the lab` asks for it
+            if stays is not None and allows is None and not self._offers(text, begin, last):
+                continue
+            self.ends[begin] = last
+            self.problems.append(diagnostic("BT176", text.span(begin, last), words=text.span(begin, last).text))
+            return
+
+    def _begin(self, text: Words, first: int, at: int) -> int:
+        """Where the part begins that permits: behind the latest comma or `and then` before it, or the statement."""
+        words = text.words
+        for place in range(at - 1, first - 1, -1):
+            if words[place] == "," or words[place] in self._fronts:
+                begin = place
+                while begin > first and (words[begin - 1] in self._fronts or words[begin - 1] == ","):
+                    begin -= 1
+                return begin
+        return first
+
+    def _offers(self, text: Words, first: int, last: int) -> bool:
+        """Whether `stay there` is one of two things that may be done."""
+        return "or" in text.words[first:last]
+
+
+def _statements(text: Words, first: int, last: int) -> Iterator[tuple[int, int]]:
+    begin = first
+    for at in range(first, last + 1):
+        if at == last or text.words[at] in _STOPS:
+            if at > begin:
+                yield begin, at
+            begin = at + 1
+
+
+def _tree(phrases: list[str]) -> WordTree:
+    tree: WordTree = {}
+    for phrase in phrases:
+        insert(tree, phrase.split(), True)
+    return tree
+
+
+def _firsts(vocabulary: Lexicon, role: str) -> Iterator[str]:
+    for phrase in vocabulary.roles[role]:
+        yield phrase.split()[0].strip("[]")

@@ -1,0 +1,255 @@
+"""Judges each velocity of a base before it is sent: what may be sent, and the one reason why it is less."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import Enum
+from math import copysign, cos, inf, isfinite, isnan, radians, sqrt
+
+from btlang.record import Record
+from btlang.robots.body import Body
+from btlang.robots.geometry import Pose, wrap
+from btlang.robots.motion.guard.odometry import STANDS, OdometryCheck
+from btlang.robots.motion.guard.people import WalkingPeople, safe_among
+from btlang.robots.motion.guard.readings import (
+    ContactReading,
+    ObstacleReading,
+    OdometryReading,
+    RangeReading,
+    ScanReading,
+    SensorReading,
+    Sensors,
+)
+from btlang.robots.motion.guard.regions import Regions
+from btlang.robots.robot import RobotError
+from btlang.robots.zones import Zones
+
+FASTEST, FASTEST_TURN = 20.0, 1720.0
+"""Metres and degrees a second that no robot exceeds."""
+FRESH = 0.6
+"""Seconds after which a reading says nothing about the way any more."""
+_MARGIN = 0.035  # metres that stay free: less than planners keep beside the robot
+_DELAY = 0.1  # seconds until it brakes
+_LOOKS = 60.0  # degrees from the way: sensors that look farther aside say nothing about it
+_STANDS = 0.02  # metres a second: less is standing
+_TOUCHING = 0.3  # seconds for which it counts that somebody wants to touch what is ahead
+_BESIDE = 1e-3  # metres
+_STEP = 0.3  # metres between two looks at a sensor, after which nothing is known of the time between
+
+
+class Cause(Enum):
+    """What made the guard allow less."""
+
+    NONE, OBSTACLE, ZONE, SENSOR, ODOMETRY, PERSON = range(6)
+
+
+_PATIENCE = {Cause.NONE: inf, Cause.OBSTACLE: 1.0, Cause.ZONE: 1.0, Cause.SENSOR: 1.5, Cause.ODOMETRY: 0.0}
+"""Seconds after which a drive that stands for it has failed; for people it has the patience of the body."""
+
+
+class Verdict(Record):
+    """What may be sent, in metres and degrees a second, and why that is less than what was wanted.
+
+    `who` is the name of the person or the zone that is in the way.
+    """
+
+    linear: float
+    angular: float
+    reason: str = ""
+    cause: Cause = Cause.NONE
+    who: str = ""
+
+
+class Guard:
+    """The guard of one base. `sensors` gives the readings of what looks out for obstacles, `odometry` the latest one of
+    where the robot is; None if it isn't known. `pose` is where it is on the map of zones and people; None likewise.
+
+    Not seen is not clear: a sensor that looks in the direction of travel and says nothing, or nothing that can be true,
+    stops the robot. `judge` is for one thread.
+    """
+
+    def __init__(
+        self,
+        body: Body,
+        zones: Zones,
+        people: WalkingPeople,
+        *,
+        sensors: Sensors,
+        odometry: Callable[[], OdometryReading | None],
+        pose: Callable[[], Pose | None],
+        now: Callable[[], float],
+    ) -> None:
+        self._body, self._people, self._regions = body, people, Regions(zones, body.radius, body.driving.brake)
+        self._sensors, self._odometry, self._pose, self._now = sensors, odometry, pose, now
+        self._check = OdometryCheck(body)
+        self._checked = -inf  # the stamp of the odometry that was compared last
+        self._disagrees = ""
+        self._direction = 0.0, 0.0
+        # what a sensor said last, how far the robot had gone when it said so first, and when it was asked last
+        self._seen: dict[str, tuple[float, float, float]] = {}
+        self._stands_since: float | None = None
+        self._touches_until, self._touches = -inf, False
+        self.verdict = Verdict(0.0, 0.0)
+        """The latest one."""
+
+    @property
+    def held(self) -> str:
+        """Why it has held the robot back for so long that a drive has failed; "" if it hasn't."""
+        verdict, since = self.verdict, self._stands_since
+        if since is None or self._now() - since < _PATIENCE.get(verdict.cause, self._body.patience):
+            return ""
+        return verdict.reason
+
+    @property
+    def stuck(self) -> bool:
+        """Whether the odometry shows no motion although some was commanded."""
+        return self._disagrees == STANDS
+
+    def touch(self) -> None:
+        """The robot may touch what is ahead, at the contact speed of its body. To be repeated, as velocities are."""
+        self._touches_until = self._now() + _TOUCHING
+
+    def rest(self) -> None:
+        """A drive has ended; the next one is judged for itself."""
+        self._check.rest()
+        self._disagrees, self._stands_since = "", None
+
+    def forget(self) -> None:
+        """Somebody else moved the robot, or will."""
+        self.rest()
+        self._check.forget()
+
+    def judge(self, linear: float, angular: float, may_touch: bool = True) -> Verdict:
+        """What may be sent in place of a velocity that is wanted, in metres and degrees a second. Not on every way may
+        it touch what is ahead, even if something else wants it to.
+
+        Raises RobotError for one that isn't finite, or faster than any robot.
+        """
+        check_velocity(linear, angular)
+        now = self._now()
+        self._touches = may_touch and now < self._touches_until
+        verdict = self._judged(linear, angular, now)
+        self._check.sent(now, verdict.linear, verdict.angular)
+        self.verdict = verdict
+        stands = abs(verdict.linear) < min(_STANDS, abs(linear)) or (verdict.angular == 0.0 != angular)
+        if not (verdict.reason and stands):
+            self._stands_since = None
+        elif self._stands_since is None:
+            self._stands_since = now
+        return verdict
+
+    def _judged(self, linear: float, angular: float, now: float) -> Verdict:
+        reading = self._odometry()
+        if reading is not None and not reading.fault and reading.stamp != self._checked:
+            self._checked = reading.stamp
+            fault = self._check.fault(reading.pose, reading.stamp)
+            self._disagrees = self._disagrees or fault
+        direction = copysign(1.0, linear) if linear else 0.0, copysign(1.0, angular) if not linear else 0.0
+        if direction != self._direction or linear == 0.0 == angular:
+            self._direction = direction
+            self.rest()  # the way back is another drive
+        if linear == 0.0 == angular:
+            return Verdict(0.0, 0.0)
+        if reading is not None and self._disagrees:
+            return Verdict(0.0, 0.0, f"{reading.source} {self._disagrees}", Cause.ODOMETRY)
+        if reading is not None and (fault := _fault(reading, now)):
+            return Verdict(0.0, 0.0, fault, Cause.SENSOR)
+        if linear == 0.0:
+            return Verdict(0.0, angular)
+        most, reason, cause, who = self._safe(linear < 0.0, abs(linear), now)
+        if most >= abs(linear):
+            return Verdict(linear, angular)
+        return Verdict(copysign(most, linear) if most else 0.0, angular, reason, cause, who)
+
+    def _safe(self, backward: bool, wanted: float, now: float) -> tuple[float, str, Cause, str]:
+        """Metres a second that are safe straight ahead, or backward, and what limits it most."""
+        found = wanted, "", Cause.NONE, ""
+        pose = self._pose()
+        if pose is not None:
+            if self._people.walking:
+                most, who = safe_among(self._people, pose, backward, self._body.radius, self._body.driving.brake)
+                if most < found[0]:
+                    found = most, f"{who} is in the way", Cause.PERSON, who
+            most, who = self._regions.safe(pose, backward)
+            if most < found[0]:
+                found = most, f"the {who} is in the way, where the robot may not go" if who else "", Cause.ZONE, who
+        for reading in self._sensors():
+            most, reason, cause = self._by_sensor(reading, backward, found[0], now)
+            if most < found[0]:
+                found = most, reason, cause, ""
+        return found
+
+    def _by_sensor(
+        self, reading: ObstacleReading, backward: bool, wanted: float, now: float
+    ) -> tuple[float, str, Cause]:
+        if not _looks(reading, backward):
+            return inf, "", Cause.NONE
+        if fault := _fault(reading, now):
+            return 0.0, fault, Cause.SENSOR
+        side = "behind" if backward else "ahead"
+        if isinstance(reading, ContactReading):
+            return (
+                (0.0, f"the {reading.source} is pressed", Cause.OBSTACLE) if reading.pressed else (inf, "", Cause.NONE)
+            )
+        if isinstance(reading, RangeReading):
+            free = reading.distance
+        else:
+            brake = self._body.driving.brake
+            if reading.room - _MARGIN >= wanted * _DELAY + wanted * wanted / (2 * brake):
+                return inf, "", Cause.NONE
+            assert reading.ranges is not None
+            from btlang.robots.motion.guard.corridor import free_way  # numpy takes longer to import than many missions
+
+            try:
+                free = free_way(reading.ranges(), 180.0 if backward else 0.0, self._body.radius - _BESIDE)
+            except RobotError as problem:
+                return 0.0, str(problem), Cause.SENSOR
+        if isnan(free):
+            return 0.0, f"{reading.source}: no valid beam looks {side}", Cause.SENSOR
+        left = free - self._since_changed(f"{reading.source} {side}", free)
+        most = self._before_contact(left - _MARGIN)
+        if self._touches:
+            most = max(most, self._body.contact_speed)
+        if left < free - _MARGIN and free > 2 * _MARGIN:
+            return most, f"{reading.source}: shows the same for {free - left:.2f} m of the way", Cause.SENSOR
+        return most, f"{reading.source}: {max(0.0, free):.2f} m {side}", Cause.OBSTACLE
+
+    def _since_changed(self, sensor: str, free: float) -> float:
+        """Metres that the robot has gone since a sensor said something else: a sensor may be frozen."""
+        rolled = self._check.rolled
+        before, since, asked = self._seen.get(sensor, (inf, 0.0, 0.0))
+        if before != free or not isfinite(free) or rolled - asked > _STEP:
+            since = rolled
+        self._seen[sensor] = free, since, rolled
+        return rolled - since
+
+    def _before_contact(self, gap: float) -> float:
+        """The speed at which it still stands before something so far away, if it brakes a moment later."""
+        if gap <= 0.0:
+            return 0.0
+        lost = self._body.driving.brake * _DELAY
+        return sqrt(lost * lost + 2 * self._body.driving.brake * gap) - lost
+
+
+def check_velocity(linear: float, angular: float) -> None:
+    """Raises RobotError for metres and degrees a second that aren't finite, or faster than any robot."""
+    if not isfinite(linear) or not isfinite(angular):
+        raise RobotError(f"a velocity of {linear:g} m/s and {radians(angular):g} rad/s is not finite")
+    if abs(linear) > FASTEST or abs(angular) > FASTEST_TURN:
+        raise RobotError(
+            f"a velocity of {linear:.3g} m/s and {radians(angular) + 0.0:.3g} rad/s is beyond the limits of the robot"
+        )
+
+
+def _looks(reading: ObstacleReading, backward: bool) -> bool:
+    """Whether a sensor is there to look in the direction of travel."""
+    away = abs(wrap(reading.angle - 180.0 * backward))
+    if isinstance(reading, ScanReading):
+        return away <= reading.view / 2
+    return cos(radians(away)) >= cos(radians(_LOOKS)) - 1e-9
+
+
+def _fault(reading: SensorReading, now: float) -> str:
+    """Why a reading isn't to be believed now, "" if it is."""
+    age = now - reading.stamp
+    return reading.fault or (f"{reading.source} is silent for {age:.1f} s" if age > FRESH else "")

@@ -1,0 +1,151 @@
+"""How things stand to each other, as descriptions say it: the cup on the table, the person behind Alice.
+
+A relation leads to a thing: a name, or a description such as `kind table; color red`; further filters of it stand
+behind semicolons (`table; near sink`), as btlang/vocabulary/descriptions.py writes them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import dist
+
+from btlang.robots.geometry import Point, Pose
+from btlang.robots.robot import RobotError
+from btlang.robots.world import World, WorldObject, said
+from btlang.vocabulary.references import DENIED, RELATIONS
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from btlang.robots.world import Thing
+
+NEAR = 2.0
+"""Metres within which something is near, beside, behind, left or right of another thing."""
+_ON_THING = 0.5
+_AT_PLACE = 4.0
+_TOGETHER = frozenset(("on", "inside", "at", "off", "part_of"))
+_WORDS = {"inside": "in", "off": "on", "in_front_of": "in front of", "left_of": "left of", "right_of": "right of",
+          "beside": "next to", "part_of": "of"}  # fmt: skip
+
+
+def without_relations(parts: Mapping[str, str]) -> dict[str, str]:
+    """The parts that say what a thing is like, without its name and without how it stands to others."""
+    return {name: text for name, text in parts.items() if not (name == "name" or name in RELATIONS or name in DENIED)}
+
+
+def related_words(parts: Mapping[str, str]) -> str:
+    """The words for what the parts say beyond what a thing is like: ` on the table that isn't red`."""
+    words = [f" {_WORDS.get(name, name)} {_thing(text)}" for name, text in parts.items() if name in RELATIONS]
+    words += [f" that isn't {' or '.join(text.split('; '))}" for name, text in parts.items() if name in DENIED]
+    return "".join(words)
+
+
+def _thing(value: str) -> str:
+    head, *filters = value.split("; ")
+    color, behind = "", ""
+    for each in filters:
+        name, _, of = each.partition(" ")
+        if name == "color":
+            color = f"{of} "
+        else:
+            behind += f" {_WORDS.get(name, name)} {said(of)}"
+    noun = head.removeprefix("kind ")
+    return (f"the {color}{noun}" if color or noun != head else said(noun)) + behind
+
+
+class Relations:
+    """Judges relations in one world. `things` are its objects and people, `where` gives the point of a name."""
+
+    def __init__(self, world: World, things: Mapping[str, Thing], where: Callable[[str], Point | None]) -> None:
+        self._world = world
+        self._things = things
+        self._where = where
+
+    def holds(self, name: str, parts: Mapping[str, str], pose: Pose) -> bool:
+        """Whether a thing stands as the parts say, and is nothing that they deny, as seen from a pose."""
+        for part, text in parts.items():
+            if part == "name" and name.lower() != text.lower():
+                return False
+            if part in DENIED and self._is_like(name, DENIED[part], text.split("; ")):
+                return False
+            if part in RELATIONS and not any(
+                self._stands(name, part, other, pose) for other in self._meant(text, pose)
+            ):
+                return False
+        return True
+
+    def _is_like(self, name: str, part: str, values: list[str]) -> bool:
+        like = dict(self._things[name].parts) if name in self._things else {}
+        wanted = {value.lower() for value in values}
+        return like.get(part, "") in wanted or (part == "kind" and name.lower() in wanted)
+
+    def _meant(self, value: str, pose: Pose) -> Iterator[str]:
+        """The names of what a relation leads to."""
+        head, *filters = value.split("; ")
+        likes = dict(each.split(" ", 1) for each in filters)
+        if head.startswith("kind "):
+            likes["kind"] = head.removeprefix("kind ")
+            names = [name for name, thing in self._things.items() if isinstance(thing, WorldObject)]
+        else:
+            world = self._world
+            known = [place.name for place in world.places] + list(self._things)
+            known += [*(door.name for door in world.doors), *(zone.name for zone in world.zones)]
+            names = [name for name in dict.fromkeys(known) if name.lower() == head.lower()]
+        like = {part: text for part, text in likes.items() if part not in RELATIONS}
+        for name in names:
+            if like and not (name in self._things and self._things[name].fits(like)):
+                continue
+            if self.holds(name, {part: text for part, text in likes.items() if part in RELATIONS}, pose):
+                yield name
+
+    def _stands(self, name: str, relation: str, other: str, pose: Pose) -> bool:
+        """Whether one named thing stands so to another. Raises RobotError for what a map can't tell."""
+        if relation in ("under", "above"):
+            raise RobotError(f"I can't tell what is {relation} {said(other)}")
+        zone = next((zone for zone in self._world.zones if zone.name == other), None)
+        one, point = self._point(name), self._point(other)
+        if one is None or name == other:
+            return False
+        if zone is not None and relation in _TOGETHER:
+            return zone.contains(one)
+        if point is None:
+            return False
+        if relation in _TOGETHER:
+            return self._is_at(one, other, point)
+        if dist(one, point) > NEAR:
+            return False
+        if relation in ("near", "beside"):
+            return True
+        return _is_on_side(relation, one, point, pose)
+
+    def _is_at(self, one: Point, other: str, point: Point) -> bool:
+        """On or in a thing; at a place if no other place is nearer."""
+        if other in self._things:
+            size = getattr(self._things[other], "size", 0.0)
+            return dist(one, point) <= max(_ON_THING, size)
+        nearest = min(dist(one, (place.x, place.y)) for place in self._world.places)
+        return dist(one, point) <= min(_AT_PLACE, nearest + 1e-9)
+
+    def _point(self, name: str) -> Point | None:
+        for door in self._world.doors:
+            if door.name == name:
+                return door.middle
+        for zone in self._world.zones:
+            if zone.name == name and not any(place.name == name for place in self._world.places):
+                xs, ys = zip(*zone.points, strict=True)
+                return sum(xs) / len(xs), sum(ys) / len(ys)
+        try:
+            return self._where(name)
+        except RobotError:
+            return None
+
+
+def _is_on_side(relation: str, one: Point, point: Point, pose: Pose) -> bool:
+    """Whether the first point is on that side of the second one, seen from the pose of the robot."""
+    sight = point[0] - pose.x, point[1] - pose.y
+    offset = one[0] - point[0], one[1] - point[1]
+    ahead = sight[0] * offset[0] + sight[1] * offset[1]
+    left = sight[0] * offset[1] - sight[1] * offset[0]
+    side = {"behind": ahead, "in_front_of": -ahead, "left_of": left, "right_of": -left}[relation]
+    return side > 0 and side >= max(abs(ahead), abs(left)) - 1e-9

@@ -1,0 +1,183 @@
+"""Sets of things: `take every cube from the table and put it in the box` is one round a cube.
+
+A phrase says a set as one argument, a choice of all names that are described. Its round takes in what comes behind it
+in the statement up to the last command that speaks of its thing, and behind a set of places what is joined by `and`
+and neither travels nor names a place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.tree import ast
+from btlang.tree.visit import fold
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.references import ALL, Choice, choice_of
+from btlang.vocabulary.value_type import PLACE
+
+_TRAVELS = "navigation"
+
+
+def with_rounds(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
+    """The mission with a loop for each set that a command of it speaks of."""
+    if not any(map(_set_of, (node for body in _own_bodies(mission) for node in ast.parents_first(body)))):
+        return mission
+    made: ast.Program = mission.replace(
+        body=None if mission.body is None else _looped(mission.body, vocabulary),
+        definitions=tuple(each.replace(body=_looped(each.body, vocabulary)) for each in mission.definitions),
+        includes=tuple(each.replace(mission=with_rounds(each.mission, vocabulary)) for each in mission.includes),
+    )
+    return made
+
+
+def _own_bodies(mission: ast.Program) -> list[ast.Ast]:
+    included = [body for each in mission.includes for body in _own_bodies(each.mission)]
+    return [*included, *(each.body for each in mission.definitions), *([mission.body] if mission.body else [])]
+
+
+def _set_of(node: ast.Ast) -> Choice | None:
+    """The set that a command speaks of."""
+    if not isinstance(node, ast.Phrase | ast.Name):
+        return None
+    for _, text in node.arguments:
+        choice = choice_of(text) if text[:1] == "{" else None
+        if choice is not None and choice.how == ALL:
+            return choice
+    return None
+
+
+class _Round:
+    """A set, the command that speaks of it, and the parts of which chain are in its round; none for itself alone."""
+
+    def __init__(self, choice: Choice, chain: ast.Chain | None, first: int, last: int) -> None:
+        self.choice, self.chain, self.first, self.last = choice, chain, first, last
+
+
+def _looped(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
+    nodes = ast.parents_first(root)
+    sets = [(at, choice) for at, node in enumerate(nodes) if (choice := _set_of(node)) is not None]
+    if not sets:
+        return root
+    parents = {id(part): node for node in nodes for part in ast.parts(node)}
+    of_chain: dict[int, list[_Round]] = {}
+    alone: dict[int, Choice] = {}
+    for at, choice in sets:
+        found = _round(nodes, at, choice, parents)
+        if found.chain is None:
+            alone[id(nodes[at])] = choice
+        else:
+            of_chain.setdefault(id(found.chain), []).append(found)
+
+    def combine(node: ast.Ast, done: list[ast.Ast]) -> ast.Ast:
+        choice = _set_of(node)
+        if choice is not None and isinstance(node, ast.Phrase | ast.Name):
+            key = f"{{{choice.key}}}"
+            one = node.replace(
+                arguments=tuple((name, key if choice_of(text) == choice else text) for name, text in node.arguments)
+            )
+            return _loop(choice, one, vocabulary) if id(node) in alone else one
+        made = _rebuilt(node, done)
+        for each in sorted(of_chain.get(id(node), ()), key=lambda found: -found.first):
+            made = _wrapped(made, each, vocabulary)
+        return made
+
+    return fold(root, ast.parts, combine)
+
+
+def _round(nodes: Sequence[ast.Ast], at: int, choice: Choice, parents: dict[int, ast.Ast]) -> _Round:
+    """How far the round of a set reaches."""
+    key, node = choice.key, nodes[at]
+    last = at
+    for later in range(at + 1, len(nodes)):
+        own = _set_of(nodes[later])
+        if (own is not None and own.key == key) or key in ast.chosen_keys(nodes[later]):
+            break
+        if f"{{{key}}}" in (text for _, text in getattr(nodes[later], "arguments", ())):
+            last = later
+    path = _path(node, parents)
+    if last > at:
+        others = {id(each) for each in _path(nodes[last], parents)}
+        common = next((up for up in path if id(up) in others), None)
+        if isinstance(common, ast.Chain):
+            first, end = (_index(common, _path(one, parents)) for one in (node, nodes[last]))
+            return _Round(choice, common, first, _goes_along(common, first, end, choice))
+    chain = path[1] if len(path) > 1 else None
+    if isinstance(chain, ast.Chain):
+        first = _index(chain, path)
+        end = _goes_along(chain, first, first, choice)
+        if end > first:
+            return _Round(choice, chain, first, end)
+    return _Round(choice, None, 0, 0)
+
+
+def _path(node: ast.Ast, parents: dict[int, ast.Ast]) -> list[ast.Ast]:
+    """The node and what it is in, the innermost first."""
+    found = [node]
+    while id(node) in parents:
+        node = parents[id(node)]
+        found.append(node)
+    return found
+
+
+def _index(chain: ast.Chain, path: Sequence[ast.Ast]) -> int:
+    """The part of a chain in which a path begins."""
+    within = {id(each) for each in path}
+    return next(at for at, item in enumerate(chain.items) if id(item) in within)
+
+
+def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice) -> int:
+    """The last part that is in the round of a set of places without a word about them."""
+    node = chain.items[first]
+    goes = isinstance(node, ast.Phrase) and _TRAVELS in node.entry.needs
+    if choice.type == PLACE and goes and chain.operator == "and":
+        while last + 1 < len(chain.items) and not _travels(chain.items[last + 1]):
+            last += 1
+    return last
+
+
+def _travels(node: ast.Ast) -> bool:
+    """Whether it goes somewhere by itself, or says a place."""
+    for item in ast.parents_first(node):
+        if isinstance(item, ast.Phrase):
+            places = {slot.name for slot in item.entry.slots if slot.type == PLACE}
+            says = places.intersection(name for name, _ in item.arguments)
+            if says or (_TRAVELS in item.entry.needs and not places):
+                return True
+        elif isinstance(item, ast.Name | ast.Exact):
+            return True
+    return False
+
+
+def _rebuilt(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+    """The node with other parts, where one is another."""
+    if all(new is old for new, old in zip(done, ast.parts(node), strict=True)):
+        return node
+    rest, changed = iter(done), dict[str, object]()
+    for field in node.parts:
+        old = getattr(node, field)
+        if old is not None:
+            changed[field] = tuple(next(rest) for _ in old) if type(old) is tuple else next(rest)
+    return node.replace(**changed)  # type: ignore[no-any-return]
+
+
+def _wrapped(chain: ast.Ast, found: _Round, vocabulary: Lexicon) -> ast.Ast:
+    assert isinstance(chain, ast.Chain)
+    items = chain.items[found.first : found.last + 1]
+    body: ast.Ast = items[0] if len(items) == 1 else chain.replace(items=items, bracketed=False)
+    loop = _loop(found.choice, body, vocabulary)
+    rest = (*chain.items[: found.first], loop, *chain.items[found.last + 1 :])
+    return loop if len(rest) == 1 else chain.replace(items=rest)
+
+
+def _loop(choice: Choice, body: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
+    """One round for each name; where the names are known, of a single command the list of all."""
+    names = vocabulary.values.members(choice)
+    if names and isinstance(body, ast.Phrase | ast.Name):
+        each = tuple(_with(body, choice.key, name) for name in names)
+        return each[0] if len(each) == 1 else ast.Chain("sequence", each, True, body.span)
+    return ast.ForEach(choice.key, choice.type, names or (choice.text,), body, body.span)
+
+
+def _with(body: ast.Phrase | ast.Name, key: str, name: str) -> ast.Ast:
+    arguments = tuple((slot, name if text == f"{{{key}}}" else text) for slot, text in body.arguments)
+    return body.replace(arguments=arguments)  # type: ignore[no-any-return]

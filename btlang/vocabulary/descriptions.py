@@ -1,0 +1,167 @@
+"""What a noun phrase says around its head: adjectives, one prepositional phrase, and what the thing is not.
+
+    the red cup on the table near the sink        a soda that isn't a coke        the person behind Alice
+
+The result is a `Choice` whose parts are filters. The value of a relation is the thing that it leads to: a name
+(`table`), or a description of one; each further filter of it stands behind a semicolon (`table; near sink`,
+`kind table; color red`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from btlang.text.words import Words
+from btlang.vocabulary.references import DENIED, RELATIONS, Parts
+from btlang.vocabulary.word_tree import WordTree, find, insert
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import Any, TypeAlias
+
+    Names: TypeAlias = Callable[[str], WordTree]
+
+NAME = "name"
+_HEADS = ("object", "place", "person", "door", "zone")
+"""The types of what a relation may lead to."""
+_MOST_DEEP = 3
+
+
+class Modifiers:
+    """The words of a language around the head of a noun phrase."""
+
+    def __init__(self, language: Mapping[str, Any]) -> None:
+        self._words: Mapping[str, list[str]] = language["relations"]
+        self._relations: WordTree = {}
+        for relation, phrases in self._words.items():
+            for phrase in phrases:
+                insert(self._relations, phrase.split(), relation)
+        self._relatives: list[str] = language["relatives"]
+        self._denials: list[str] = language["relative_denials"]
+        self._clauses: WordTree = {}
+        for phrases, is_so in ((self._relatives, True), (self._denials, False)):
+            for phrase in phrases:
+                insert(self._clauses, phrase.split(), is_so)
+        self._either = frozenset(language["roles"].get("or", ()))
+        self.starts = frozenset((*self._relations, *self._clauses))
+        """The words with which something behind a head may begin."""
+
+    def words(self) -> Iterator[str]:
+        """Every word of it."""
+        for phrases in (*self._words.values(), self._relatives, self._denials):
+            for phrase in phrases:
+                yield from phrase.split()
+
+    def behind(self, kind: str, text: Words, at: int, names: Names) -> Iterator[tuple[Parts, int]]:
+        """The filters that may stand behind a head of a type, and where each ends; the shortest first."""
+        clause = find(self._clauses, text.words, at)
+        if clause is None:
+            yield from self._related(kind, text, at, names, 1)
+        elif clause[0]:
+            color = self._adjective(text, clause[1], names)
+            if color is not None:
+                yield (("color", color[0]),), color[1]
+            yield from self._related(kind, text, clause[1], names, 1)
+        else:
+            yield from self._denied(kind, text, clause[1], names)
+
+    def before(self, text: Words, at: int, names: Names) -> tuple[Parts, int] | None:
+        """The adjectives that begin at a word, and where they end."""
+        color = self._adjective(text, at, names)
+        return ((("color", color[0]),), color[1]) if color is not None else None
+
+    def said(self, parts: Parts, spoken: Callable[[str, str], str]) -> str:
+        """The words of the filters that stand behind a head, "" where there are none."""
+        words: list[str] = []
+        for name, value in parts:
+            if name in RELATIONS:
+                words.append(f"{self._words[name][0]} {self._said_thing(value, spoken)}")
+            elif name in DENIED:
+                kind = DENIED[name]
+                word = f" {self._first_or} ".join(spoken(kind, each) for each in value.split("; "))
+                words.append(f"{self._denials[0]} {word}")
+        return " ".join(words)
+
+    @property
+    def _first_or(self) -> str:
+        return next(iter(sorted(self._either, key=len)), "or")
+
+    def _said_thing(self, value: str, spoken: Callable[[str, str], str]) -> str:
+        head, *filters = value.split("; ")
+        adjectives, behind = [], ""
+        for each in filters:
+            name, _, of = each.partition(" ")
+            if name == "color":
+                adjectives.append(spoken("color", of))
+            else:
+                rest = "; ".join(filters[filters.index(each) :])
+                behind = f" {self._words[name][0]} {self._said_thing(rest.partition(' ')[2], spoken)}"
+                break
+        noun = spoken("kind", head[5:]) if head.startswith("kind ") else head
+        return " ".join((*adjectives, noun)) + behind
+
+    def _adjective(self, text: Words, at: int, names: Names) -> tuple[str, int] | None:
+        return find(names("color"), text.words, at)
+
+    def _related(self, kind: str, text: Words, at: int, names: Names, depth: int) -> Iterator[tuple[Parts, int]]:
+        for relation, last in _prefixes(self._relations, text, at):
+            if kind in RELATIONS[relation]:
+                for value, end in self._thing(text, last, names, depth):
+                    yield ((relation, value),), end
+
+    def _thing(self, text: Words, at: int, names: Names, depth: int) -> Iterator[tuple[str, int]]:
+        """What a relation leads to: a name, or a kind with its adjectives; the shortest first."""
+        head = self._head(text, at, names)
+        if head is None:
+            return
+        kind, value, end = head
+        yield value, end
+        if depth < _MOST_DEEP and text.words[end] in self.starts:
+            for parts, last in self._related(kind, text, end, names, depth + 1):
+                yield "; ".join((value, *(f"{name} {of}" for name, of in parts))), last
+
+    def _head(self, text: Words, at: int, names: Names) -> tuple[str, str, int] | None:
+        best: tuple[str, str, int] | None = None
+        for kind in _HEADS:
+            found = find(names(kind), text.words, at)
+            if found is not None and (best is None or found[1] > best[2]):
+                best = kind, found[0], found[1]
+        color = self._adjective(text, at, names)
+        noun = find(names("kind"), text.words, at if color is None else color[1])
+        if noun is not None and (best is None or noun[1] > best[2]):
+            value = f"kind {noun[0]}" + (f"; color {color[0]}" if color is not None else "")
+            return "object", value, noun[1]
+        if best is None and color is not None:
+            for kind in _HEADS:
+                found = find(names(kind), text.words, color[1])
+                if found is not None:
+                    return kind, f"{found[0]}; color {color[0]}", found[1]
+        return best
+
+    def _denied(self, kind: str, text: Words, at: int, names: Names) -> Iterator[tuple[Parts, int]]:
+        """`that is not red`, `that isn't a coke or a water`."""
+        for part, of in DENIED.items():
+            if part == "not_kind" and kind != "object":
+                continue
+            values: list[str] = []
+            end = at
+            while True:
+                found = find(names(of), text.words, end) or (
+                    find(names(kind), text.words, end) if part == "not_kind" else None
+                )
+                if found is None:
+                    break
+                values.append(found[0])
+                yield ((part, "; ".join(values)),), found[1]
+                end = found[1]
+                if text.words[end] not in self._either:
+                    break
+                end += 1
+
+
+def _prefixes(tree: WordTree, text: Words, at: int) -> Iterator[tuple[str, int]]:
+    """The phrases of a tree that begin at a word, the longest first: `in front of`, not `in`."""
+    found = find(tree, text.words, at)
+    if found is not None:
+        yield found

@@ -1,0 +1,177 @@
+"""Verbs with roles: `bring` with a theme (what), a recipient (to whom) and a manner, said in any order.
+
+A keyword entry declares a verb and its roles; the words that introduce a role, and verbs that mean the same, are data
+of the language. A `Frame` is one verb of one entry with its roles. `fill` reads them from the words behind the verb.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+from btlang.record import Record
+from btlang.text.words import Words
+from btlang.vocabulary.entry import MANNER, PATH, RECIPIENT, THEME, UNMARKED, Entry, Meaning, Role
+from btlang.vocabulary.match import Match, SlotValue
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.vocabulary.reading_context import ReadingContext
+
+    ListOf = Callable[[SlotValue], "SlotValue | None"]
+
+
+class Frame(Record):
+    """One verb of an entry. A `particle` belongs to the verb, and stands behind it or behind the theme."""
+
+    entry: Entry
+    roles: tuple[Role, ...]
+    particle: str = ""
+
+    def role(self, name: str) -> Role | None:
+        """The role of this name, if the verb has it."""
+        return next((role for role in self.roles if role.name == name), None)
+
+
+class RoleWords(Record):
+    """The words of a language around verbs."""
+
+    introducing: Mapping[str, tuple[tuple[str, ...], ...]]
+    synonyms: Mapping[str, tuple[str, ...]]
+    particles: frozenset[str]
+    fillers: frozenset[str]
+    speaker: frozenset[str]
+
+
+def role_words(language: Mapping[str, Any]) -> RoleWords:
+    """The words of the tables of a language."""
+
+    def split_all(phrases: Iterable[str]) -> tuple[tuple[str, ...], ...]:
+        return tuple(tuple(phrase.split()) for phrase in phrases)
+
+    return RoleWords(
+        {role: split_all(phrases) for role, phrases in language["prepositions"].items()},
+        {verb: tuple(verbs) for verb, verbs in language["synonyms"].items()},
+        frozenset(language["particles"]),
+        frozenset(language["fillers"]),
+        frozenset(language["speaker"]),
+    )
+
+
+def canonical(verb: str, roles: Sequence[Role]) -> str:
+    """The pattern of a verb with its roles in their order: `bring {object} to {person} [{manner}]`."""
+    parts = [verb]
+    for role in roles:
+        slot = f"{{{role.slot}}}"
+        said = slot if role.name in UNMARKED or not role.words else f"{' '.join(role.words[0])} {slot}"
+        parts.append(said if role.is_needed else f"[{said}]")
+    return " ".join(parts)
+
+
+def phrases_of(verbs: Sequence[str], roles: Sequence[Role]) -> list[str]:
+    """The patterns that say a frame in its own order: the first verb, then the others."""
+    others = [verb for verb in verbs[1:] if " " not in verb]
+    found = [canonical(verbs[0], roles)]
+    if others:
+        found.append(canonical("/".join(others), roles))
+    return found + [canonical(verb, roles) for verb in verbs[1:] if " " in verb]
+
+
+def parts_of(verb: str, particles: frozenset[str]) -> tuple[tuple[str, ...], str]:
+    """The words of a verb, and its particle: `pick up` as `pick` and `up`."""
+    words = tuple(verb.split())
+    if len(words) == 2 and words[1] in particles:
+        return words[:1], words[1]
+    return words, ""
+
+
+def fill(
+    frames: Iterable[Frame],
+    text: Words,
+    at: int,
+    context: ReadingContext,
+    words: RoleWords,
+    list_of: ListOf,
+    before: SlotValue | None = None,
+) -> Match | None:
+    """The frame that takes most of the words behind its verb, which ends at a word; `before` is the manner before it.
+
+    Of frames that take as many the one with fewer empty roles, then the first.
+    """
+    best: Match | None = None
+    empty = 0
+    for frame in frames:
+        taken = _Filling(frame, text, context, words, list_of).taken(at, before)
+        if taken is None:
+            continue
+        last, values, left = taken
+        if best is None or last > best.last or (last == best.last and left < empty):
+            best, empty = Match(Meaning("command", frame.entry), last, values), left
+    return best
+
+
+class _Filling:
+    """Fills the roles of one frame from the words of one text."""
+
+    def __init__(self, frame: Frame, text: Words, context: ReadingContext, words: RoleWords, list_of: ListOf) -> None:
+        self._frame, self._text, self._context, self._words, self._list_of = frame, text, context, words, list_of
+        self._best: tuple[int, tuple[SlotValue, ...], int] | None = None
+
+    def taken(self, at: int, before: SlotValue | None) -> tuple[int, tuple[SlotValue, ...], int] | None:
+        """Where the longest way to fill the roles ends, its values, and how many roles stay empty."""
+        filled: dict[str, SlotValue | None] = {}
+        if before is not None:
+            role = self._frame.role(MANNER)
+            if role is None:
+                return None
+            filled[MANNER] = before.replace(name=role.slot)
+        self._go_on(at, filled, not self._frame.particle)
+        return self._best
+
+    def _go_on(self, at: int, filled: Mapping[str, SlotValue | None], has_particle: bool) -> None:
+        frame, word = self._frame, self._text.words[at]
+        if has_particle and all(role.name in filled or not role.is_needed for role in frame.roles):
+            if self._best is None or at > self._best[0]:
+                values = sorted((value for value in filled.values() if value is not None), key=lambda v: v.first)
+                self._best = at, tuple(values), len(frame.roles) - len(filled)
+        if not has_particle and word == frame.particle:
+            self._go_on(at + 1, filled, True)
+        if word in self._words.fillers and word != frame.particle:
+            for role, after in self._introduced(at + 1, filled):
+                self._take(role, after, filled, has_particle)
+        for role, after in self._introduced(at, filled):
+            self._take(role, after, filled, has_particle)
+
+    def _introduced(self, at: int, filled: Mapping[str, SlotValue | None]) -> Iterator[tuple[Role, int]]:
+        """The empty roles whose value may begin here, and where: behind the words that introduce them, or at once."""
+        words = self._text.words
+        for role in self._frame.roles:
+            if role.name in filled:
+                continue
+            if role.is_direct and not (role.name == RECIPIENT and THEME in filled):
+                yield role, at
+            for phrase in role.words:
+                if words[at] == phrase[0] and tuple(words[at : at + len(phrase)]) == phrase:
+                    yield role, at + len(phrase)
+
+    def _take(self, role: Role, at: int, filled: Mapping[str, SlotValue | None], has_particle: bool) -> None:
+        text, context = self._text, self._context
+        if role.for_speaker and text.words[at] in self._words.speaker:
+            self._go_on(at + 1, {**filled, role.name: None}, has_particle)
+            return
+        for group, last in context.sets(role.type, text, at):
+            one = SlotValue(role.slot, role.type, group, at, last, group=group)
+            self._go_on(last, {**filled, role.name: one}, has_particle)
+        for value in context.ways(role.type, text, at):
+            one = SlotValue(role.slot, role.type, value[0], at, value[1])
+            self._go_on(one.last, {**filled, role.name: one}, has_particle)
+            if text.words[one.last] in context.joiners:
+                listed = self._list_of(one)
+                if listed is not None and role.name == PATH:
+                    if listed.joiner == "and":  # one way through all of them
+                        through = "; ".join((listed.text, *listed.more))
+                        one = listed.replace(text=through, more=(), joiner="")
+                        self._go_on(one.last, {**filled, role.name: one}, has_particle)
+                elif listed is not None:
+                    self._go_on(listed.last, {**filled, role.name: listed}, has_particle)
