@@ -19,6 +19,7 @@ from btlang.ros.binding import bind_ros
 from btlang.ros.clients import Clients
 from btlang.ros.connected import is_connected
 from btlang.ros.graph import absent, full_name
+from btlang.ros.joint_states import STATES
 from btlang.ros.latest import NodeClock
 from btlang.ros.node import SpunNode
 from btlang.ros.pace import RosPace
@@ -107,7 +108,7 @@ class RosConnection:
         if any(interface.type.startswith(f"{OWN.name}/") for interface in wanted):
             require_interfaces()
         found: dict[Interface, tuple[Node | None, str]] = {}
-        states_until = time.monotonic() + _AGAIN
+        states_until, joints = time.monotonic() + _AGAIN, any(interface.name == STATES for interface in wanted)
 
         def has_all() -> bool:
             found.clear()
@@ -118,7 +119,7 @@ class RosConnection:
             found.update((interface, (node, lacking[interface])) for interface, node in own.items())
             if any(reason for _, reason in found.values()):
                 return False
-            return not self.robot.awaited() or time.monotonic() >= states_until
+            return not self.robot.awaited(joints) or time.monotonic() >= states_until
 
         wait_until(has_all, max(self._discovers_until - time.monotonic(), _AGAIN))
         return {self._named(interface): lack for interface, lack in found.items()}

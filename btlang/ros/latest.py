@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from btlang.engine.leaves.leaf import Unknown
+from btlang.robots.robot import SensorSilent
 from btlang.ros.awake import AWAKE
 from btlang.ros.steady_time import SteadyTime
+from btlang.ros.times import seconds_of
+from btlang.ros.word import type_name
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -44,6 +47,9 @@ class Latest:
     `named` is what it is called, such as "/scan"; `absence` says why nothing may have come, "" for no known reason.
     A message that `refuses` gives a reason for counts as silence (see `btlang.ros.gate`).
     """
+
+    depth = 5
+    """How many messages may wait for the thread that spins."""
 
     def __init__(
         self,
@@ -103,3 +109,39 @@ class Latest:
         if self.has_come:
             return ""
         return self.refused or self._absence() or f"nothing has arrived on {self.named} yet"
+
+
+class LatestJoints(Latest):
+    """The latest position of each joint. A robot may report its limbs in separate messages."""
+
+    depth = 50
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self._joints: dict[str, tuple[float, float, float]] = {}  # position, time of arrival, stamp
+
+    def store(self, message: Any) -> bool:
+        """See Latest."""
+        if not super().store(message):
+            return False
+        now, stamp = self._now(), seconds_of(message.header.stamp)
+        self._joints.update((name, (at, now, stamp)) for name, at in zip(message.name, message.position, strict=False))
+        return True
+
+    def missing(self, joints: Iterable[str]) -> list[str]:
+        """Those of some joints of which no position has ever come."""
+        return [joint for joint in joints if joint not in self._joints]
+
+    def position(self, joint: str, age: float) -> tuple[float, float]:
+        """Where a joint is, in radians or metres, and the stamp of that. Raises SensorSilent if it isn't known."""
+        position, arrived, stamp = self._joints.get(joint, (math.nan, math.inf, 0.0))
+        if not math.isfinite(position):
+            raise SensorSilent(f'{self.named} doesn\'t report the joint "{joint}"')
+        if min(self._now() - arrived, AWAKE.since_woke()) > age:
+            raise SensorSilent(f'{self.named} hasn\'t reported the joint "{joint}" for {age:g} s')
+        return position, stamp
+
+
+def latest_of(cls: type) -> type[Latest]:
+    """What keeps the latest messages of a type."""
+    return LatestJoints if type_name(cls) == "sensor_msgs/msg/JointState" else Latest

@@ -500,9 +500,13 @@ class RosRobot:
         """Whether an object is switched on. Raises RobotError if nothing reports it."""
         return self._doors.is_on(name)
 
-    def awaited(self) -> list[str]:
-        """The topics on the state of things that somebody publishes, but that have reported nothing yet."""
-        return [*self._doors.awaited(), *self._perception.awaited(), *self._hands.awaited()]
+    def awaited(self, joints: bool = False) -> list[str]:
+        """The topics on the state of things that somebody publishes, but that have reported nothing yet.
+
+        With `joints` these too, if some have been reported and others haven't.
+        """
+        missing = self._joints.awaited() if joints else []
+        return [*self._doors.awaited(), *self._perception.awaited(), *self._hands.awaited(), *missing]
 
     # Power
     @property

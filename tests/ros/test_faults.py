@@ -147,6 +147,30 @@ def test_joints_without_positions(lab: Lab) -> None:
     assert lab.run("wait 0.3 s then look left then look ahead") == ""
 
 
+ARM = """
+[[action]]
+phrase = "raise left arm"
+id = "RaiseLeftArm"
+ros.joints = "trajectory_msgs/msg/JointTrajectory"
+ros.name = "/joint_trajectory"
+ros.positions.left_arm_lift = 1.2
+ros.positions.head_turn = 0.3
+ros.duration = 0.5
+"""
+
+
+def test_joints_in_several_messages(lab: Lab) -> None:
+    """One publisher for each limb is usual."""
+    lab.misbehave("joint=split")
+    lab.joints.wait(lambda state: len(state.name) == 1)
+    assert lab.run("look left then raise the left arm then look ahead") == ""
+    assert lab.run("raise left arm", ARM) == ""
+    lab.misbehave("joint=half")
+    assert lab.run("wait 3 s then raise the left arm then look left") == (
+        '/joint_states hasn\'t reported the joint "head_turn" for 2 s'
+    )
+
+
 @pytest.mark.parametrize(
     ("fault", "reason"),
     [("nan", "/scan has no valid beam"), ("flat", "/scan doesn't say where its beams point")],

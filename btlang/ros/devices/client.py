@@ -110,7 +110,7 @@ class TopicClient:
 
     def _read(self, message: Any) -> tuple[str, Reading | None]:
         """The reading of a message, or why there is none."""
-        fault = self._freshness.fault(message)
+        fault = self._freshness.fault(message) if self._translation.concerns(message) else ""
         if fault:
             return f"{self._device.topic} {fault}", None
         try:

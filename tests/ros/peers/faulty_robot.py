@@ -7,7 +7,7 @@ of those before and put the robot back to where it began:
   spin (the heading turns 40 degrees with each message), silent; with `@moving` from the first velocity on
 - `scan=FAULT`: nan, negative, zero, empty, flat (no angle between the beams), close (-inf), free (+inf), silent
 - `battery=FAULT`: nan, high (a percentage of 80), silent
-- `joint=FAULT`: nan
+- `joint=FAULT`: nan, split (each in a message of its own), half (so, and those of the head no more)
 - `clock=FAULT` of simulated time: backward, standing, slow (a thousandth of real time), twice (one that is 1000 s ahead
   in turn with the right one); with `@moving` from the first velocity on
 - `late=SECONDS`: a velocity takes effect so much later
@@ -108,14 +108,22 @@ class FaultyRobot:
         if self.has("battery") != "silent":
             share = {"nan": math.nan, "high": 80.0}.get(self.has("battery"), 0.5)
             self.batteries.publish(BatteryState(percentage=share))
-        positions = [math.nan if self.has("joint") else at for at in self.joints.values()]
-        self.states.publish(JointState(name=list(self.joints), position=positions))
+        self.publish_joints(self.has("joint"))
 
     def publish_clock(self, fault: str, passed: float) -> None:
         self.time += {"backward": -1.0, "standing": 0.0, "slow": 0.001}.get(fault, 1.0) * passed
         self.clock.publish(Clock(clock=stamp(self.time)))
         if fault == "twice":
             self.clock.publish(Clock(clock=stamp(self.time + 1000.0)))
+
+    def publish_joints(self, fault: str) -> None:
+        if fault not in ("split", "half"):
+            positions = [math.nan if fault else at for at in self.joints.values()]
+            self.states.publish(JointState(name=list(self.joints), position=positions))
+            return
+        for name, at in self.joints.items():
+            if fault == "split" or not name.startswith("head"):
+                self.states.publish(JointState(name=[name], position=[at]))
 
     def publish_odometry(self, fault: str) -> None:
         if fault == "silent":
