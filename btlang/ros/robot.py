@@ -14,7 +14,7 @@ from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import Empty, Trigger
 
-from btlang.robots.body import Body
+from btlang.robots.body import TOLERANCE, Body
 from btlang.robots.body_file import standard_body
 from btlang.robots.choices import Choices
 from btlang.robots.ears import Ears
@@ -139,7 +139,10 @@ class RosRobot:
         if self._navigation is None:
             from btlang.ros.navigation_goal import RosNavigation
 
-            self._navigation = RosNavigation(self._node, self._executor, self._base.where, self._now)
+            tolerance = self.body.navigation.tolerance if self.body.navigation is not None else TOLERANCE
+            self._navigation = RosNavigation(
+                self._node, self._executor, self._base.where, self._now, lambda: self._base.is_localized, tolerance
+            )
 
     @property
     def _servers(self) -> list[ServerGoals]:

@@ -22,6 +22,7 @@ from btlang.ros.goal_handle import unanswered
 from btlang.ros.lease import Lease
 from btlang.ros.poses import pose_of
 
+_SHOWS = 1.0  # seconds after a success in which the pose shows it
 _SEEN = 0.3  # seconds after which odometry shows what the robot does
 _SERVER = 2.0  # seconds that a server gets to be there
 _ANSWER = 5.0  # seconds that it gets to accept or reject, and between two of its feedbacks
@@ -33,7 +34,8 @@ class Task(Record):
     """What a server is asked for: the `sort` of server, the `name` of what it is for, and both in sentences, as
     "the navigation to the lab", "navigate to the lab" and " on the way to the lab".
 
-    `reasons` are those of its error codes. `regular` is whether it gives feedback again and again.
+    `reasons` are those of its error codes. `regular` is whether it gives feedback again and again. The robot has to be
+    within the `tolerance` of the `goal` at the end, in metres.
     """
 
     sort: str
@@ -43,6 +45,8 @@ class Task(Record):
     way: str = ""
     reasons: Mapping[int, str] = {}
     regular: bool = True
+    goal: Pose | None = None
+    tolerance: float = math.inf
 
 
 class ServerGoal:
@@ -50,7 +54,8 @@ class ServerGoal:
 
     Nothing waits: `step` looks at what has come, so that a server that never answers costs the tick nothing. `spin` has
     a function called in the thread that spins, where alone the client of an action may be used: elsewhere it could
-    meet an answer before it has noted the question. `where` gives the pose of the robot, None where nobody knows it.
+    meet an answer before it has noted the question. `where` gives the pose of the robot, None where nobody knows it,
+    and `localized` whether that is more than odometry: else a pose that the server reports goes before.
     """
 
     def __init__(
@@ -63,6 +68,7 @@ class ServerGoal:
         spin: Callable[[Callable[[], None]], object],
         where: Callable[[], Pose | None],
         now: Callable[[], float],
+        localized: Callable[[], bool] = lambda: True,
     ) -> None:
         self.name = task.name
         self.done = False
@@ -75,7 +81,8 @@ class ServerGoal:
         self._task = task
         self._server = f"{task.sort} server on {server}"
         self._lock = RLock()
-        self._where, self._now = where, now
+        self._where, self._now, self._localized = where, now, localized
+        self._succeeded_at: float | None = None
         self._since = AWAKE.now()  # of what it waits for now
         self._stood = (where(), now())
         self._sent = self._withdrawing = False
@@ -147,7 +154,7 @@ class ServerGoal:
     def _finish(self, answer: Any) -> None:
         code, reached = answer.result.error_code, answer.status == GoalStatus.STATUS_SUCCEEDED
         if reached and not code:
-            self.end(None, withdraw=False)
+            self._arrive()
             return
         task, gave_up = self._task, f"reported error {code}" if reached else "gave up"
         reason = task.reasons.get(code, f"the {task.sort} server {gave_up}{task.way}")
@@ -156,6 +163,18 @@ class ServerGoal:
         retries = getattr(answer.result, "num_retries", 0)
         again = f" ({retries} {'retry' if retries == 1 else 'retries'})" if retries else ""
         self.end((getattr(answer.result, "error_msg", "") or reason) + again, withdraw=False)
+
+    def _arrive(self) -> None:
+        """The server reports success: so it is, if the robot is there. Its pose may come a moment later."""
+        goal, at = self._task.goal, self._where() if self._localized() else self._reported or self._where()
+        away = 0.0 if goal is None or at is None else at.distance_to((goal.x, goal.y))
+        if self._succeeded_at is None:
+            self._succeeded_at = AWAKE.now()
+        if away <= self._task.tolerance:
+            self.end(None, withdraw=False)
+        elif AWAKE.now() - self._succeeded_at > _SHOWS:
+            reason = f"the {self._task.sort} server reports success, but the robot is {away:.1f} m from the goal"
+            self.end(reason, withdraw=False)
 
     # In the thread that spins
     def _send(self) -> None:
@@ -219,10 +238,15 @@ class ServerGoals:
     """The goals of a kind of server, and the one under way. `stop` may be called from any thread."""
 
     def __init__(
-        self, node: Node, executor: ExecutorThread, where: Callable[[], Pose | None], now: Callable[[], float]
+        self,
+        node: Node,
+        executor: ExecutorThread,
+        where: Callable[[], Pose | None],
+        now: Callable[[], float],
+        localized: Callable[[], bool] = lambda: True,
     ) -> None:
         self._node, self._executor = node, executor
-        self._where, self._now = where, now
+        self._where, self._now, self._localized = where, now, localized
         self._lease = Lease(node)
         self._goal: ServerGoal | None = None
         self._stopped = -math.inf
@@ -231,7 +255,7 @@ class ServerGoals:
     def begin(self, task: Task, client: Any, server: str, request: Any) -> ServerGoal:
         """Sends a goal; see ServerGoal."""
         goal_id, spin = self._lease.goal_id(), self._executor.post
-        self._goal = ServerGoal(task, client, server, request, goal_id, spin, self._where, self._now)
+        self._goal = ServerGoal(task, client, server, request, goal_id, spin, self._where, self._now, self._localized)
         self._goal.step()
         return self._goal
 
