@@ -18,7 +18,7 @@ from btlang.ros.available import OWN, require_interfaces, require_ros
 from btlang.ros.binding import bind_ros
 from btlang.ros.clients import Clients
 from btlang.ros.connected import is_connected
-from btlang.ros.graph import absent, full_name
+from btlang.ros.graph import absent, full_name, mismatch
 from btlang.ros.joint_states import STATES
 from btlang.ros.latest import NodeClock
 from btlang.ros.node import SpunNode
@@ -173,13 +173,15 @@ class RosConnection:
             choices = ()
         offered = next((each for each in choices if not self._absent(each)), wanted)
         reason = self._lacks(offered)
-        others = [self._lacks(each) for each in choices if each != wanted] if reason else []
-        return offered, ", and ".join([reason, *others])
+        others = [self._lacks(each) for each in choices if each != offered] if reason else []
+        return offered, ", and ".join(dict.fromkeys(filter(None, [reason, *others])))
 
     def _lacks(self, wanted: Interface) -> str:
         """What is wrong with an interface that shipped leaves need, "" for nothing."""
         node, name = self._spun.node, self._named(wanted).name
         reason = self._absent(wanted)
+        if not reason and wanted.kind in ("publisher", "listener"):
+            reason = mismatch(node, wanted.kind, name)
         if not reason and wanted.flows:
             reason = self.robot.subscriptions.why_not(wanted.name)
         return reason if reason or is_connected(node, name) else f"{name} is not connected yet"
