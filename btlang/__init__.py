@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     from btlang.decorators import action, condition, quantity
     from btlang.diagnostics.diagnostic import Diagnostic
     from btlang.diagnostics.errors import MissionError
-    from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown
+    from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere, Unknown
     from btlang.run.runner import Outcome
     from btlang.run.statuses import Status
     from btlang.session import Run, Session
 
 __all__ = [
-    "ActionFailed", "Component", "Diagnostic", "Failed", "Mission", "MissionError", "Outcome", "Parameter", "Run",
-    "Session", "Status", "Unknown", "action", "condition", "parse_file", "parse_tree", "quantity",
+    "ActionFailed", "Component", "Diagnostic", "Failed", "Mission", "MissionError", "NotThere", "Outcome", "Parameter",
+    "Run", "Session", "Status", "Unknown", "action", "condition", "parse_file", "parse_tree", "quantity",
 ]  # fmt: skip
 
 _HOMES = {
@@ -32,6 +32,7 @@ _HOMES = {
     "Diagnostic": "btlang.diagnostics.diagnostic",
     "Failed": "btlang.engine.leaves.leaf",
     "MissionError": "btlang.diagnostics.errors",
+    "NotThere": "btlang.engine.leaves.leaf",
     "Outcome": "btlang.run.runner",
     "Parameter": "btlang.components.component",
     "Run": "btlang.session",

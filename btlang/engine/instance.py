@@ -18,7 +18,7 @@ from functools import cache
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
-from btlang.engine.leaves.leaf import REFUSED, ActionFailed, LeafBinding, Reason
+from btlang.engine.leaves.leaf import REFUSED, ActionFailed, LeafBinding, NotThere, Reason
 from btlang.engine.script.values import as_text
 from btlang.engine.status import FAILURE
 from btlang.record import Record
@@ -210,6 +210,13 @@ class NodeInstance:
             return False
         state.fault = state.unknown
         return True
+
+    def is_not_there(self) -> bool:
+        """Whether the latest failure has a reason that may pass by itself."""
+        fault = self.state.fault
+        while fault is not None and fault.cause is not None:
+            fault = fault.cause
+        return fault is not None and isinstance(fault.reason, NotThere)
 
     def pass_on(self, reason: Reason) -> int:
         """Adds this node's reason to the failure below it, which stays the cause; returns FAILURE."""

@@ -13,6 +13,7 @@ from action_msgs.srv import CancelGoal
 from rclpy.node import Node
 from unique_identifier_msgs.msg import UUID
 
+from btlang.engine.leaves.leaf import NotThere
 from btlang.record import Record
 from btlang.robots.geometry import Pose, wrap
 from btlang.ros.awake import AWAKE
@@ -117,13 +118,13 @@ class ServerGoal:
             self._set_out()
         elif self._result is None:
             if self._waited(_ANSWER):
-                self.end(f"the {self._server} does not answer")
+                self.end(NotThere(f"the {self._server} does not answer"))
         elif self._result.done():
             self._finish(self._result.result())
         elif not self._client.server_is_ready():
-            self.end(f"the {self._server} is gone", withdraw=False)
+            self.end(NotThere(f"the {self._server} is gone"), withdraw=False)
         elif self.heard and self._task.regular and self._waited(_ANSWER):
-            self.end(f"no feedback from the {self._server} for {_ANSWER:g} s")
+            self.end(NotThere(f"no feedback from the {self._server} for {_ANSWER:g} s"))
         elif self._stands(seconds := _STANDS if self.heard or not self._task.regular else _MUTE):
             mute = "" if seconds == _STANDS else f", and the {self._server} sends no feedback"
             self.end(f"the robot has not moved for {seconds:g} s{self._task.way}{mute}")
@@ -149,7 +150,7 @@ class ServerGoal:
             self._sent, self._since = True, AWAKE.now()
             self._spin(self._send)
         elif self._waited(_SERVER):
-            self.end(f"no {self._server}")
+            self.end(NotThere(f"no {self._server}"))
 
     def _finish(self, answer: Any) -> None:
         code, reached = answer.result.error_code, answer.status == GoalStatus.STATUS_SUCCEEDED

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from btlang.engine.instance import Fault, NodeInstance, halt_nothing
-from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown, described
+from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere, Unknown, described
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -218,7 +218,15 @@ def failed(instance: NodeInstance, problem: BaseException) -> int:
     """FAILURE, for the reason that the leaf gave, or with the exception that it should not have raised."""
     if not isinstance(problem, ActionFailed):
         return instance.cannot_know(described(problem), problem)
-    return (instance.cannot_know if _is_question(instance, problem) else instance.fail)(str(problem))
+    fail = instance.cannot_know if _is_question(instance, problem) else instance.fail
+    return fail(_reason(problem))
+
+
+def _reason(problem: ActionFailed) -> str:
+    first = problem.args[0] if problem.args else ""
+    if isinstance(first, NotThere):
+        return first
+    return NotThere(problem) if isinstance(problem, Unknown) else str(problem)
 
 
 def _is_question(instance: NodeInstance, problem: ActionFailed) -> bool:

@@ -51,6 +51,12 @@ REFUSED = "it returned False"
 """Stands for the `refusal` of a leaf's binding, which is looked for when somebody asks."""
 
 
+class NotThere(str):
+    """A reason that may pass by itself: a device, a server or a component isn't there now. A retry waits for it."""
+
+    __slots__ = ()
+
+
 def unheard(share: float, state: str = "") -> None:
     """The service `progress` if nobody listens."""
 
@@ -78,7 +84,7 @@ class Failed(Record):
 def reason_text(reason: Reason) -> str:
     """The text of a reason. If a function can't compute it, it is the text of the exception."""
     if isinstance(reason, str):
-        return reason
+        return str(reason)
     try:
         return reason()
     except KeyboardInterrupt:

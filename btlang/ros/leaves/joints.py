@@ -6,7 +6,7 @@ from collections.abc import Callable, Generator, Iterable, Mapping
 
 from sensor_msgs.msg import JointState
 
-from btlang.engine.leaves.leaf import ActionFailed, Failed
+from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere
 from btlang.ros.clients import Clients
 from btlang.ros.commands import trajectory
 from btlang.ros.graph import no_listener
@@ -43,7 +43,7 @@ def joints_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
         until = now() + patience
         while not publisher.get_subscription_count() or not states.has_come:
             if now() >= until:
-                raise ActionFailed(states.why_not() or no_listener(clients.node, cls, name))
+                raise ActionFailed(NotThere(states.why_not() or no_listener(clients.node, cls, name)))
             yield
         until = now() + _OTHERS
         while states.missing(wanted) and now() < until:
