@@ -13,6 +13,7 @@ from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import has_mark, read_source
 from btlang.frontends.table import frontend_of
+from btlang.passes.lint.and_means_then import and_means_then_now
 from btlang.testing.names import is_test_file
 from btlang.text.output import show
 from btlang.text.source import Source
@@ -24,11 +25,11 @@ def serve(options: argparse.Namespace) -> int:
     """Does the verb; returns the exit code: 2 where there is an error in any of the files."""
     check = _Check(options)
     check.read()
-    if options.fix or options.then:
+    if options.fix:
         check.mend()
     check.check()
     if not check.failed and not options.report.is_for_programs:
-        show("No errors found." if options.report.has_any else "No problems found.")
+        show("No errors found." if options.report.has_problems else "No problems found.")
     return _BAD_INPUT if check.failed else _SUCCESS
 
 
@@ -61,10 +62,9 @@ class _Check:
         """Writes corrections into the files; of a text, and of standard input, shows what it becomes."""
         from btlang.diagnostics.mending import mended, mended_together
 
-        options = self._options
-        done = [mended(source, self._problems_alone, fix=options.fix, then=options.then) for source in self._alone]
+        done = [mended(source, self._problems_alone) for source in self._alone]
         self._alone = [source for source, _ in done]
-        if self._trees and options.fix:
+        if self._trees:
             done += (both := mended_together(self._trees, self._problems_together))
             self._trees = [source for source, _ in both]
         for source, count in done:
@@ -92,7 +92,10 @@ class _Check:
 
                     report.add(check_tests(source))
                 else:
-                    mission_of(self._options, source).check(robot)
+                    mission = mission_of(self._options, source)
+                    if mission.syntax is not None and self._options.text is None:
+                        report.add(and_means_then_now(mission.syntax, mission.vocabulary))
+                    mission.check(robot)
         if self._trees:
             with self._reporting():
                 problems = self._problems_together(self._trees)

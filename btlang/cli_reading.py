@@ -73,7 +73,6 @@ def add_check_options(parser: argparse.ArgumentParser) -> None:
         help="XML file with models of nodes (TreeNodesModel); may be repeated",
     )
     parser.add_argument("--fix", action="store_true", help="write the corrections that are certain into the files")
-    parser.add_argument("--then", action="store_true", help="write 'then' where 'and' stands on the way (BT069)")
     several = parser.add_mutually_exclusive_group(required=True)
     about = "mission, tree or folder of trees, or - for standard input; all XML files are one project"
     several.add_argument("file", nargs="*", default=[], metavar="FILE", help=about)

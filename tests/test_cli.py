@@ -290,17 +290,14 @@ def test_a_log_on_a_full_disk_does_not_hide_how_the_mission_ended(
 
 
 def test_certain_corrections_are_written(btc: Screen, tmp_path: Path) -> None:
-    """What leaves a choice stays as it is, until `--then` chooses."""
+    """What leaves a choice stays as it is."""
     file = tmp_path / "mission.txt"
     file.write_text("go to the kitchenn and look around\nwav then nod\nif bumped, nod. Wave. Otherwise say hi\n")
     assert btc("check", "--fix", str(file)) == 0
     assert btc.out == f"Corrected {file}: 2 changes.\nNo errors found.\n"
     mended = "go to the kitchen and look around\nwave then nod\nif bumped, nod. Wave. Otherwise say hi\n"
     assert file.read_text() == mended
-    assert "BT069" in btc.err
     assert "BT050" in btc.err
-    assert btc("check", "--then", str(file)) == 0
-    assert file.read_text() == mended.replace("kitchen and", "kitchen then")
     assert btc("check", "--fix", "-c", "go to the lbby") == 0
     assert btc.out == "go to the lobby\nNo problems found.\n"
     assert btc("check", "--fix", "-c", "frobnicate") == 2
@@ -309,10 +306,65 @@ def test_certain_corrections_are_written(btc: Screen, tmp_path: Path) -> None:
     assert (btc.out.strip(), btc.err) == ("[]", "go to the lobby\n")
 
 
-def test_equal_warnings_are_shown_once(btc: Screen) -> None:
-    text = "\n".join(["go to the lab and wave", *["go to the hall and wave"] * 12])
+def test_notes_are_no_problems(btc: Screen) -> None:
+    assert btc("check", "-c", "turn left and move forward") == 0
+    assert "note BT174: 'and' means 'then' here" in btc.err
+    assert btc.out == "No problems found.\n"
+    assert btc("check", "-c", "turn left and move forward  # allow: shared part") == 0
+    assert (btc.out, btc.err) == ("No problems found.\n", "")
+
+
+@pytest.mark.parametrize(
+    ("text", "both"),
+    [
+        ("go to the lab and wave\npick up the cup and nod", "go to the lab and wave at the same time"),
+        ("wave and nod\ngo to the lab, wave and say hi", "go to the lab, wave and say hi at the same time"),
+        ("go to the lab and if bumped, wave", "go to the lab and (if bumped, wave) at the same time"),
+        ("p is go to the lab\nif bumped:\n  p and wave", "p and wave at the same time"),
+        ("go to the lab and wave  # allow: and\ngo to the hall and nod", "go to the hall and nod at the same time"),
+        ("wave and nod", ""),
+        ("go to the lab and turn left", ""),
+        ("go to the lab then wave, nod", ""),
+        ("go to the lab and the hall", ""),
+        ("go to the lab and wave at the same time", ""),
+        ('ask Alice "Tea?" and remember the last answer as order\nsay {order}', ""),
+        ('here "and" means then\ngo to the lab and wave', ""),
+        ("# allow: and\ngo to the lab and wave", ""),
+    ],
+)
+def test_check_says_once_what_and_meant_before(btc: Screen, tmp_path: Path, text: str, both: str) -> None:
+    """For a text on the command line it says nothing, nor does another verb."""
+    file = tmp_path / "mission.txt"
+    file.write_text(text + "\n")
+    assert btc("check", str(file)) == 0
+    assert btc.err.count("note BT175:") == (1 if both else 0)
+    assert not both or f"  To do both at the same time, write: {both}\n" in btc.err
+    assert btc("tree", str(file)) == 0
+    assert "BT175" not in btc.err
     assert btc("check", "-c", text) == 0
-    assert btc.err.count("BT069:") == 2
+    assert "BT175" not in btc.err
+
+
+def test_what_the_note_says_means_at_the_same_time(btc: Screen) -> None:
+    assert btc("tree", "-c", "go to the lab and (if bumped, wave) at the same time") == 0
+    assert btc.out.startswith("Parallel\n")
+
+
+def test_programs_get_notes_as_notes(btc: Screen, tmp_path: Path) -> None:
+    file = tmp_path / "mission.txt"
+    file.write_text("go to the lab and wave\n")
+    assert btc("check", "--format", "json", str(file)) == 0
+    assert [each["severity"] for each in json.loads(btc.out)] == ["note"]
+    assert btc("check", "--format", "sarif", str(file)) == 0
+    assert [each["level"] for each in json.loads(btc.out)["runs"][0]["results"]] == ["note"]
+    assert btc("check", "--format", "github", str(file)) == 0
+    assert btc.out.startswith("::notice file=")
+
+
+def test_equal_warnings_are_shown_once(btc: Screen) -> None:
+    text = "\n".join(["wave then nod twice", *["nod then wave twice"] * 12])
+    assert btc("check", "-c", text) == 0
+    assert btc.err.count("BT050:") == 2
     assert "  And 11 more: lines 3, 4, 5, 6, 7, 8, 9, 10, ...\n" in btc.err
     assert btc("check", "--format", "json", "-c", text) == 0
-    assert btc.out.count('"BT069"') == 13
+    assert btc.out.count('"BT050"') == 13

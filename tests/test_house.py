@@ -44,6 +44,11 @@ LONG: dict[str, str] = {
     "btlang/run/events.py": "the classes of events, from which the schema of logs is made",
     "btlang/ros/robot.py": "the same over ROS 2",
     "btlang/testing/words.toml": "the words of tests",
+    "btlang/vocabulary/keyword_file.py": "what may stand in a keyword file, one table after the other",
+    "btlang/vocabulary/lexicon.py": "all that the words of a language are made into, which is then frozen",
+    "docs/engine.md": "tables of behaviour that the tests play",
+    "docs/keywords.md": "every key of keyword files",
+    "keywords/en/language.toml": "the words of English",
     "btlang/tree/ast.py": "the classes of syntax nodes, which are read together",
 }
 """Files with more lines, each with the reason why it is one thing: no concept is cut for the sake of its length."""

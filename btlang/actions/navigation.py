@@ -25,11 +25,13 @@ def go_to(
     y: float | None = None,
     facing: float | None = None,
     manner: str | None = None,
-    via: str = "",
+    via: str | None = None,
 ) -> Steps:
     """Drives to a place and faces as the place says, or to a point; past the places of `via` (`hall; lobby`) first."""
     steps = travel(robot, place) if place is not None else _go_to_point(robot, x, y, facing)
-    yield from paced(robot, manner, _past(robot, [name.strip() for name in via.split(";") if name.strip()], steps))
+    yield from paced(
+        robot, manner, _past(robot, [name.strip() for name in (via or "").split(";") if name.strip()], steps)
+    )
 
 
 def _past(robot: Navigation, places: list[str], steps: Steps) -> Steps:

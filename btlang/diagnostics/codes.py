@@ -187,6 +187,8 @@ _ALL = (
     Code("BT173", "'{words}' has only rules, so it goes on for ever here, and other commands don't run meanwhile.",
          "To let it watch beside them, write: {fixed}", "warning", "only rules"),
     Code("BT174", "'{joint}' means '{then}' here: '{first}' and '{second}' both need the {resource}.", "", "note", "shared part"),
+    Code("BT175", "'{joint}' means '{then}' here since version 0.2; before, it meant at the same time.",
+         "To do both at the same time, write: {both}", "note", "and"),
     Code("BT176", "'{words}' only permits something, so it is left out.", "", "note", "permission"),
     Code("BT180", "'{words}' isn't a line of a test.", "Write for example: {wanted}"),
     Code("BT181", "This test can't run: {reason}.", "Write for example: {example}"),

@@ -1,4 +1,4 @@
-"""Changes of a text that its diagnostics offer: corrections that are certain, and one reading of those that it has."""
+"""Changes of a text that its diagnostics offer: the corrections that are certain."""
 
 from __future__ import annotations
 
@@ -21,29 +21,11 @@ def _certain(problems: Iterable[Diagnostic]) -> list[Change]:
     return [problem.fix for problem in problems if problem.fix is not None and not problem.readings]
 
 
-def _one_after_the_other(problems: Iterable[Diagnostic]) -> list[Change]:
-    """For each `and` on the way (BT069), the reading `then`."""
-    return [problem.readings[-1] for problem in problems if problem.code == "BT069"]
-
-
-def mended(
-    source: Source, problems_of: Callable[[Source], Iterable[Diagnostic]], *, fix: bool, then: bool
-) -> tuple[Source, int]:
+def mended(source: Source, problems_of: Callable[[Source], Iterable[Diagnostic]]) -> tuple[Source, int]:
     """The source with all such changes, and their number; included texts stay as they are."""
     count = 0
-    for wanted, choose in ((fix, _certain), (then, _one_after_the_other)):
-        if wanted:
-            source, made = _changed(source, problems_of, choose)
-            count += made
-    return source, count
-
-
-def _changed(
-    source: Source, problems_of: Callable[[Source], Iterable[Diagnostic]], choose: Callable[..., list[Change]]
-) -> tuple[Source, int]:
-    count = 0
     for _ in range(_ROUNDS):
-        source, made = _applied(source, choose(problems_of(source)))
+        source, made = _applied(source, _certain(problems_of(source)))
         if not made:
             break
         count += made

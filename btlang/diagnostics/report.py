@@ -47,9 +47,9 @@ class Report:
             show("\n\n".join(shown), stream=sys.stderr)
 
     @property
-    def has_any(self) -> bool:
-        """Whether anything was reported yet."""
-        return bool(self._held)
+    def has_problems(self) -> bool:
+        """Whether anything but notes was reported yet."""
+        return any(problem.kind.severity != "note" for problem in self._held)
 
     def close(self) -> None:
         """Prints the document, `[]` if there was nothing to report; or, below the text, where more is explained."""

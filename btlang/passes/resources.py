@@ -83,12 +83,19 @@ def _conflict(resource: str, first: Node, second: Node, vocabulary: Lexicon) -> 
 
 
 def _one_after_the_other(first: Span, second: Span, vocabulary: Lexicon) -> tuple[Span, str] | None:
-    """The word `and` that joins them, which may stand behind a later part of the list, as `then`."""
+    """The word `and` that joins them, which may stand behind a later part of the list, as `then`; the words behind
+    the list that say at the same time go.
+    """
     source, text = first.source, first.source.text
     if second.source is not source or not _JOINS.fullmatch(text[first.end : second.start]):
         return None
     joint = re.compile(rf"[^\n;.\"]*?\b({re.escape(vocabulary.word('and'))})\b", re.IGNORECASE).match(text, first.end)
-    return None if joint is None else (Span(source, *joint.span(1)), vocabulary.word("then"))
+    if joint is None:
+        return None
+    then, (start, end) = vocabulary.word("then"), joint.span(1)
+    together = "|".join(re.escape(phrase) for phrase in vocabulary.roles["in_parallel"])
+    behind = re.compile(rf"([^\n;.\"()]*?)\s+(?:{together})\b", re.IGNORECASE).match(text, end)
+    return (Span(source, start, behind.end()), then + behind[1]) if behind else (Span(source, start, end), then)
 
 
 def _sentence_with(span: Span, words: str) -> str:

@@ -235,7 +235,8 @@ class Printer:
 
     def joined_by_and(self, node: ast.Chain) -> bool:
         """Whether `and` alone says that the parts of a parallel run at the same time."""
-        return self._conjunctions.are_simultaneous(node.items)
+        means_otherwise = self.vocabulary.first("and") in self.vocabulary.meanings
+        return not means_otherwise and self._conjunctions.are_simultaneous(node.items)
 
     def condition(self, said: Doc) -> Doc:
         """The condition of a form: no reading needs brackets round it."""

@@ -208,7 +208,7 @@ class Screen:
             if unfinished:
                 parts.append(_indented(problem.message, _UNFINISHED))
                 break
-            style = "red" if problem.is_error else "yellow"
+            style = {"error": "red", "warning": "yellow"}.get(problem.kind.severity, "cyan")
             start, end = problem.span.start, min(problem.span.end, len(self.buffer.text))
             if "\n" not in self.buffer.text and len(PROMPT) + len(self.buffer.text) < self._columns():
                 parts.append(Text(" " * (len(PROMPT) + start) + "^" * max(1, end - start), style))

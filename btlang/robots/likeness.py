@@ -28,11 +28,11 @@ def wears(worn: tuple[str, ...], parts: Mapping[str, str]) -> bool:
 
 def unseen(kind: str, parts: Mapping[str, str], behind: str = "") -> str:
     """What is said where the robot knows nothing like that: `I haven't seen a red cup`; `behind` follows the thing."""
-    if kind == "person" and "name" not in parts:
+    if kind == "person" and "named" not in parts:
         return f"I don't see anybody{_person(parts)}{behind}"
-    words = [parts[name] for name in ("color", "kind", "name") if name in parts]
+    words = [parts[name] for name in ("color", "kind", "named") if name in parts]
     use = f" to {parts['use']}" if "use" in parts else ""
-    if "name" in parts:
+    if "named" in parts:
         return f"I know no {' '.join(words)}{use}{behind}"
     if "kind" not in parts:
         return f"I haven't seen {' '.join(('anything', *words))}{use}{behind}"

@@ -31,7 +31,7 @@ _WORDS = {"inside": "in", "off": "on", "in_front_of": "in front of", "left_of": 
 
 def without_relations(parts: Mapping[str, str]) -> dict[str, str]:
     """The parts that say what a thing is like, without its name and without how it stands to others."""
-    return {name: text for name, text in parts.items() if not (name == "name" or name in RELATIONS or name in DENIED)}
+    return {name: text for name, text in parts.items() if not (name == "named" or name in RELATIONS or name in DENIED)}
 
 
 def related_words(parts: Mapping[str, str]) -> str:
@@ -65,7 +65,7 @@ class Relations:
     def holds(self, name: str, parts: Mapping[str, str], pose: Pose) -> bool:
         """Whether a thing stands as the parts say, and is nothing that they deny, as seen from a pose."""
         for part, text in parts.items():
-            if part == "name" and name.lower() != text.lower():
+            if part == "named" and name.lower() != text.lower():
                 return False
             if part in DENIED and self._is_like(name, DENIED[part], text.split("; ")):
                 return False

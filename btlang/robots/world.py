@@ -104,7 +104,8 @@ class Person(Thing):
     `walks` is the route, which is walked over and over where `again` is true; who `wanders` walks from place to place.
     `answers` go by a word of the question, "*" by any, and take `answers_after` seconds. `follows` is from 0 to 1, how
     well somebody keeps up when guided: 1 always. What he or she `refuses` isn't taken from the robot. `visits` say when
-    somebody comes in place of `comes` and `leaves`; what somebody `asks` is asked now and then near the robot.
+    somebody comes in place of `comes` and `leaves`; the `kind` may be "guest"; what somebody `asks` is
+    asked now and then near the robot.
     """
 
     comes: float = 0.0
@@ -122,15 +123,18 @@ class Person(Thing):
     refuses: tuple[str, ...] = ()
     visits: Visits | None = None
     asks: tuple[str, ...] = ()
+    kind: str = ""
 
     @property
     def parts(self) -> Parts:
         """What he or she can be described by."""
-        return of_person(self.wears, self.gesture)
+        kind = (("kind", self.kind.lower()),) if self.kind else ()
+        return (*of_person(self.wears, self.gesture), *kind)
 
     def fits(self, parts: Mapping[str, str]) -> bool:
         """Whether a description with these parts is one of him or her."""
-        return wears(self.wears, parts) and parts.get("gesture", "") in ("", self.gesture.lower())
+        is_kind = parts.get("kind", "") in ("", self.kind.lower())
+        return is_kind and wears(self.wears, parts) and parts.get("gesture", "") in ("", self.gesture.lower())
 
     @property
     def comes_later(self) -> bool:

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
 
 _MOST_CHECKS = 5_000_000  # of a place with a piece of wall, in some seconds
 _NAMED = ("places", "dock", "docks", "objects", "people", "zones", "doors", "crowds")
+_SORTS = {"dock": "places", "docks": "places", "objects": "things", "people": "things", "crowds": "things"}
 _FAULTS = ("blocked", "slip", "silent scanner", "weak hand", "dock")
 
 
@@ -194,11 +195,12 @@ def _fault(table: Table, places: tuple[str, ...], docks: tuple[str, ...]) -> Fau
 
 
 def _names_given_twice(rows: Rows) -> Iterator[Problem]:
-    seen: dict[str, str] = {}
+    """A name may be that of several sorts: the kitchen is a place and an area, the shed may be a door."""
+    seen: dict[tuple[str, str], str] = {}
     for (section, *index), group in entries(rows, _NAMED):
         for named in group:
-            key = named.name.lower()
-            if key in seen and {seen[key], section} != {"places", "zones"}:  # a place may be an area, too
+            key = _SORTS.get(str(section), str(section)), named.name.lower()
+            if key in seen:
                 message = f'the name "{named.name}" is given twice ({seen[key]} and {section}); give one another name'
                 yield Problem(message, section, *index, "name")
             seen[key] = str(section)

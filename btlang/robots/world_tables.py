@@ -69,6 +69,7 @@ def read_person(table: Table, known: bool, places: Sequence[Place]) -> Person:
         Person(
             name, x, y, radius, known, comes, leaves, speed, walks, again, wanders, wears, gesture, says, answers,
             after, follows, table.texts("refuses"), _visits(table), table.texts("asks"),
+            _optional(table, "kind"),
         )
     )  # fmt: skip
 

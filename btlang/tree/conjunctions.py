@@ -60,6 +60,7 @@ class Conjunctions:
         self._definitions = definitions
         self._vocabulary = vocabulary
         self._named: dict[str, Traits] = {}
+        self._noted: dict[int, tuple[ast.Ast, Traits]] = {}  # with its node, which keeps the identity
 
     def program(self, mission: ast.Program) -> ast.Program:
         """A text with those that it includes."""
@@ -131,8 +132,25 @@ class Conjunctions:
 
     def are_simultaneous(self, items: Iterable[ast.Ast]) -> bool:
         """Whether `and` between such commands means that they all run at the same time."""
-        traits = [self._resolved(item)[1] for item in items]
+        traits = [self._traits(item) for item in items]
         return all(each.accompanies for each in traits) and not (_shared(traits) or _speaks_first(traits))
+
+    def are_independent(self, items: Iterable[ast.Ast]) -> bool:
+        """Whether no two of the commands need the same part of the robot."""
+        return _shared([self._traits(item) for item in items]) is None
+
+    def _traits(self, root: ast.Ast) -> Traits:
+        """Those of a command in which each `and` has its meaning; noted, since they are asked for at every depth."""
+
+        def parts(node: ast.Ast) -> Sequence[ast.Ast]:
+            return () if id(node) in self._noted else ast.parts(node)
+
+        def one(node: ast.Ast, done: list[tuple[ast.Ast, Traits]]) -> tuple[ast.Ast, Traits]:
+            if id(node) not in self._noted:
+                self._noted[id(node)] = node, self._one(node, done)[1]
+            return self._noted[id(node)]
+
+        return fold(root, parts, one)[1]
 
     def _report_shared(self, chain: ast.Chain, resource: str, first: ast.Ast, second: ast.Ast) -> None:
         """BT174: commands that could go along with each other need the same part of the robot."""

@@ -22,6 +22,8 @@ def with_rounds(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
     """The mission with a loop for each set that a command of it speaks of."""
     if not any(map(_set_of, (node for body in _own_bodies(mission) for node in ast.parents_first(body)))):
         return mission
+    if mission.facts:
+        vocabulary = vocabulary.with_places(tuple(fact.name for fact in ast.all_facts(mission)))
     made: ast.Program = mission.replace(
         body=None if mission.body is None else _looped(mission.body, vocabulary),
         definitions=tuple(each.replace(body=_looped(each.body, vocabulary)) for each in mission.definitions),

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
     Names: TypeAlias = Callable[[str], WordTree]
 
-NAME = "name"
+NAME = "named"
+"""The part that is a name of the world; `name` is that of a node."""
 _HEADS = ("object", "place", "person", "door", "zone")
 """The types of what a relation may lead to."""
 _MOST_DEEP = 3

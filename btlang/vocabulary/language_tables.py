@@ -63,7 +63,8 @@ ROLES = {
 COMPARING = {**dict.fromkeys(COMPARISONS, "value"), "between": "low high"}
 """The ways to compare a quantity, each with the slots that its phrases hold."""
 
-EXPLAINED = (*(role for role in ROLES if role != "never"), "compare", "politeness")
+_UNEXPLAINED = ("never", "may", "or_stay", "without_entering", "without_leaving")
+EXPLAINED = (*(role for role in ROLES if role not in _UNEXPLAINED), "compare", "politeness")
 """The roles that the table `about` describes: all that can be said."""
 
 SWITCHES = frozenset(("decimal_comma",))

@@ -78,6 +78,7 @@ class Lexicon:
         self.word_list = os.path.join(folder, f"{name}.words") if folder and name.isalpha() else ""
         """The file of the correct words of the language, which need not be there."""
         self.quantifiers, self.halting = frozenset(language["quantifiers"]), frozenset(language["halting"])
+        """Negations and words for how many, and words like `stop`: corrections are careful about them."""
         self.asked_once = frozenset(language["asked_once"])
         self.subjects = frozenset(language["subjects"])
         """Words that say nothing behind `until` and `before`: `until you go to the lab`."""
@@ -85,7 +86,6 @@ class Lexicon:
         """Words between a command and what it is for: `go through the hall to get to the lab`."""
         for phrase in language["purpose"]:
             insert(self.purpose, phrase.split(), True)
-        """Negations and words for how many, and words like `stop`: corrections are careful about them."""
         self.continuing = frozenset(
             str(form[0]) for role in GOES_ON for phrase in self.roles.get(role, ()) for form in self._forms(phrase)
         )
@@ -272,7 +272,7 @@ class Lexicon:
         if unknown:
             return None
         verbs = tuple((verbs, tuple(map(self._introduced, roles))) for verbs, roles in entry.verbs)
-        said = [phrase for own, roles in verbs for phrase in phrases_of(own, roles)]
+        said = [phrase for own, roles in verbs for phrase in phrases_of(own, roles, self.values.role_words.particles)]
         made: Entry = entry.replace(
             slots=tuple(self._with_port_default(entry, slot) for slot in entry.slots),
             verbs=verbs,

@@ -13,7 +13,9 @@ from btlang.vocabulary.word_tree import END, SLOTS, WordTree, find, insert
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, TypeAlias
+
+    Fits: TypeAlias = Callable[[str, Parts], bool]
 
 Features = Mapping[str, tuple[tuple[str, Parts], ...]]
 """What the names of a world are like, by their types."""
@@ -70,27 +72,34 @@ class Nouns:
             node = {} if known is None else known
             if known is None:
                 edges.append((part.name, of, node))
-        node.setdefault(END, (kind, how))
+        ways = node.setdefault(END, [])
+        if kind not in [known for known, _ in ways]:
+            ways.append((kind, how))
 
-    def longest(self, text: Words, at: int, names: Callable[[str], WordTree]) -> tuple[Description, int] | None:
-        """The longest noun phrase at a word, and where it ends."""
-        return self._longest(self.tree, text, at, names)
+    def longest(
+        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits
+    ) -> tuple[Description, int] | None:
+        """The longest noun phrase at a word whose type and parts fit, and where it ends."""
+        return self._longest(self.tree, text, at, names, fits)
 
-    def plural(self, text: Words, at: int, names: Callable[[str], WordTree]) -> tuple[Description, int] | None:
+    def plural(
+        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits
+    ) -> tuple[Description, int] | None:
         """The longest one in the plural."""
-        return self._longest(self.plurals, text, at, names) or self.noun(text, at, names)
+        return self._longest(self.plurals, text, at, names, fits) or self.noun(text, at, names, fits)
 
     @staticmethod
     def _longest(
-        tree: WordTree, text: Words, at: int, names: Callable[[str], WordTree]
+        tree: WordTree, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits
     ) -> tuple[Description, int] | None:
         best: tuple[Description, int] | None = None
         paths: list[tuple[WordTree, int, Parts]] = [(tree, at, ())]
         while paths:
             node, i, parts = paths.pop()
             if END in node and (best is None or i > best[1] or (i == best[1] and parts and not best[0].parts)):
-                kind, how = node[END]
-                best = Description(kind, how, tuple(sorted(parts))), i
+                way = next((way for way in node[END] if fits(way[0], parts)), None)
+                if way is not None:
+                    best = Description(way[0], way[1], tuple(sorted(parts))), i
             for name, of, child in node.get(SLOTS, ()):
                 value = find(names(of), text.words, i)
                 if value is not None:
@@ -103,12 +112,14 @@ class Nouns:
         """Adds a word for a type: `places`."""
         insert(self._types, words.split(), kind)
 
-    def noun(self, text: Words, at: int, names: Callable[[str], WordTree]) -> tuple[Description, int] | None:
+    def noun(
+        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits
+    ) -> tuple[Description, int] | None:
         """All names that a noun such as `places` or `red cup` is for, and where it ends."""
         kind = find(self._types, text.words, at)
-        if kind is not None:
+        found = self.longest(text, at, names, fits)
+        if kind is not None and fits(kind[0], ()) and (found is None or (found[1] <= kind[1] and not found[0].parts)):
             return Description(kind[0], ALL), kind[1]
-        found = self.longest(text, at, names)
         return (found[0].replace(how=ALL), found[1]) if found is not None and found[0].parts else None
 
     def starts(self, names: Callable[[str], WordTree]) -> frozenset[str]:

@@ -92,7 +92,7 @@ class ReadingContext:
 
     def sets(self, kind: str, text: Words, at: int) -> Iterator[tuple[str, int]]:
         """The sets of names of a type that begin at a word, each as a choice of all, and where it ends."""
-        for meant, end in self.values.groups(text, at) if kind in WORLD else ():
+        for meant, end in self.values.groups(text, at, kind) if kind in WORLD else ():
             if meant.type == kind:
                 yield Choice(ALL, kind, self.keys.get(kind, kind), meant.parts).text, end
 
@@ -150,9 +150,9 @@ class ReadingContext:
         best, end = max((value for _, value in found), key=lambda value: value[1])
         return tuple(kind for kind, (other, last) in found if last == end and other.lower() == best.lower()), best, end
 
-    def choice(self, text: Words, at: int) -> tuple[Description, int] | None:
+    def choice(self, text: Words, at: int, kind: str = "") -> tuple[Description, int] | None:
         """See `Values.choice`."""
-        return self.values.choice(text, at)
+        return self.values.choice(text, at, kind)
 
     def named(self, text: Words, at: int) -> tuple[Known | None, int] | None:
         """The value that the mission names at a place, None for an unknown one in braces, and where its name ends."""
@@ -218,8 +218,8 @@ class ReadingContext:
 
     def _chosen(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """What is chosen of the type, to be put into a key; without a text where there is no name."""
-        chosen = self.choice(text, at)
-        if chosen is None or chosen[0].type != kind or chosen[0].how not in CHOICES:
+        chosen = self.choice(text, at, kind)
+        if chosen is None or chosen[0].how not in CHOICES:
             return None
         choice = Choice(chosen[0].how, kind, self.keys.get(kind, kind), chosen[0].parts)
         return choice.text if self.values.listed(kind) or self.known is None else "", chosen[1]

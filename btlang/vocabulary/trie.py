@@ -181,12 +181,12 @@ def _after_manner(
 
 def _sets(root: TrieNode, text: Words, at: int, context: ReadingContext, name: str, kind: str) -> list[SlotValue]:
     """The sets of names of a type that begin at a word; the shortest first."""
-    ways = [(meant, end) for meant, end in context.values.groups(text, at) if meant.type == kind]
+    ways = [(meant, end) for meant, end in context.values.groups(text, at, kind) if meant.type == kind]
     found: list[SlotValue] = []
     for meant, end in ways:
         group = Choice(ALL, kind, context.keys.get(kind, kind), meant.parts).text
         found.append(SlotValue(name, kind, group, at, end, group=group))
-    if ways and context.choice(text, at) is not None:
+    if ways and context.choice(text, at, kind) is not None:
         listed = all_names(root, ways[0][0], text, at, ways[0][1], context, name)
         same = [at for at, value in enumerate(found) if value.last == listed.last]
         if same:
@@ -203,7 +203,8 @@ def all_names(
     left_out: tuple[str, ...] = ()
     kind = meant.type
     last = context.values.exception(text, at)
-    if last and longest(root, text, at, context, lists=False) is None:  # `except if` is another word
+    other = longest(root, text, at, context, lists=False) if last else None
+    if last and (other is None or other.last <= last):  # `except if` is another word
         value = context.read(kind, text, last)
         if value is None:
             return SlotValue(name, kind, "", first, _end_of_unknown(root, text, last, context))

@@ -1,4 +1,4 @@
-"""Values in slots: numbers in figures and words, units, and names from a list. `reading_context.py` has the others.
+"""Values in slots: names, described things and text. `measures.py` has numbers, `reading_context.py` the others.
 
 A value becomes the text of a port, in the unit whose factor is 1: `half a meter` is "0.5", `two minutes` is "120".
 """
@@ -6,39 +6,32 @@ A value becomes the text of a port, in the unit whose factor is 1: `half a meter
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from marshal import dumps, loads  # a copy of a trie, at a tenth of the time that importing `copy` takes
 
 from btlang.text.source import Source
 from btlang.text.words import Orthography, Words, split
 from btlang.vocabulary.descriptions import NAME, Modifiers
+from btlang.vocabulary.measures import Measures, too_small
 from btlang.vocabulary.nouns import Description, Features, Noun, noun_phrases
 from btlang.vocabulary.references import ALL, COUNT, DENIED, RELATIONS, Choice, Parts, choice_of
-from btlang.vocabulary.value_type import PLACE, ValueType, format_number, with_unit
-from btlang.vocabulary.verbs import role_words
+from btlang.vocabulary.role_words import role_words
+from btlang.vocabulary.value_type import PLACE, ValueType, format_number
 from btlang.vocabulary.word_tree import END, WordTree, find, insert
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_LARGEST = 1e12  # beyond it no quantity of a robot makes sense, and sums stay exact
-_MOST_NUMBER_WORDS = 12
-_FARTHEST = 1e6  # metres, as in a world file
 
-
-class Values:
+class Values(Measures):
     """Reads values at a place in a text. `types` by name; `language` holds the word tables of the language.
 
     Nothing of it changes once the names are added, so all missions of a process share it.
     """
 
     def __init__(self, types: Mapping[str, ValueType], language: Mapping[str, Any], nouns: Iterable[Noun] = ()) -> None:
-        self.types = dict(types)
-        self._numbers: Mapping[str, float] = language["numbers"]
-        self._multipliers: Mapping[str, float] = language["multipliers"]
-        self._joiner = frozenset(language["unit_joiner"])
-        self._one_each = frozenset(language["one_each"])
+        super().__init__(types, language)
         self._orthography = Orthography(frozenset(language["articles"]))
         # words that an article before them makes no text: `print a then wave`
         self._connectives = frozenset(phrase for phrases in language["roles"].values() for phrase in phrases)
@@ -47,23 +40,11 @@ class Values:
         """The first words of what stands between the values of a list."""
         self.pronouns: Mapping[str, Sequence[str]] = language["pronouns"]
         """Words that stand for the latest value of a type, each with the types that it may be of."""
-        self._fractions: WordTree = {}
-        for phrase, value in language["fractions"].items():
-            insert(self._fractions, phrase.split(), value)
-        self._times: WordTree = {}
-        for phrase, value in language["times"].items():
-            insert(self._times, phrase.split(), value)
-        self._number_starts = frozenset((*self._numbers, *self._multipliers, *self._fractions))
-        self._units: WordTree = {}
         self._names: dict[str, WordTree] = {}
         self._listed: dict[str, dict[str, None]] = {}
         for kind in types.values():
-            for unit in kind.units:
-                for word in unit.words:
-                    insert(self._units, word.split(), (kind.name, unit))
             if kind.kind == "names":
                 self._names[kind.name] = {}
-        self._facing = [phrase.split() for phrase in language["roles"].get("facing", ())]
         self.phrases = noun_phrases(self._names, language, nouns)
         self.modifiers = Modifiers(language)
         self.role_words = role_words(language)
@@ -80,11 +61,13 @@ class Values:
         self._openers: dict[str, frozenset[str]] | None = None
         self._choice_starts: frozenset[str] | None = None
         self._group_starts: frozenset[str] | None = None
+        self._kinds: dict[str, frozenset[str]] | None = None
         self._both = frozenset(language["roles"].get("both", ()))
+        self._joining = frozenset((*language["roles"].get("and", ()), *language["roles"].get("or", ())))
 
     def add_name(self, kind: str, words: str, name: str) -> None:
         """Lets the words stand for a name of a type."""
-        insert(self._names[kind], words.lower().split(), name)
+        insert(self._names[kind], self._as_read(words), name)
         self._listed.setdefault(kind, {})[name] = None
         self._spoken.setdefault((kind, name), words)
         self._openers = self._choice_starts = self._group_starts = None
@@ -96,6 +79,7 @@ class Values:
         made._listed = {**self._listed, **{kind: dict(self._listed.get(kind, ())) for kind in names}}
         made._names = {**self._names, **{kind: loads(dumps(self._names[kind])) for kind in names}}
         made._features = self._features if features is None else features
+        made._kinds = None
         made._spoken = dict(self._spoken)
         for kind, pairs in names.items():
             for words, name in pairs:
@@ -105,8 +89,15 @@ class Values:
 
     def _has(self, kind: str, words: str) -> bool:
         """Whether words are a name of a type."""
-        found = find(self._names[kind], [*words.lower().split(), "\n"], 0)
-        return found is not None and found[1] == len(words.split())
+        read = self._as_read(words)
+        found = find(self._names[kind], [*read, "\n"], 0)
+        return found is not None and found[1] == len(read)
+
+    def _as_read(self, words: str) -> list[str]:
+        """The words of a name as they are read in a text, with its marks: `nurses' station`."""
+        if words.replace(" ", "").isalnum():
+            return words.lower().split()  # as nearly always
+        return split(Source(words), self._orthography).words[:-2] or words.lower().split()
 
     @property
     def openers(self) -> Mapping[str, frozenset[str]]:
@@ -143,12 +134,6 @@ class Values:
             *({word: {} for word in table} for table in (self._numbers, self._multipliers)),
         ]
 
-    def is_number(self, words: Sequence[str]) -> bool:
-        """Whether the words are a number, and nothing else."""
-        text = split(Source(" ".join(words)), Orthography())
-        number = self.number(text, 0)
-        return number is not None and number[1] == len(text.words) - 2
-
     def names(self, kind: str) -> list[str]:
         """The names that a slot of the type takes, as they are in a tree."""
         found: dict[str, None] = {}
@@ -168,7 +153,7 @@ class Values:
 
     def noun(self, text: Words, at: int) -> tuple[Description, int] | None:
         """All names that a noun such as `places` or `red cup` is for, and where it ends."""
-        return self.phrases.noun(text, at, self.names_tree)
+        return self.phrases.noun(text, at, self.names_tree, self._fitting(""))
 
     @property
     def choice_starts(self) -> frozenset[str]:
@@ -177,9 +162,35 @@ class Values:
             self._choice_starts = self.phrases.starts(self.names_tree)
         return self._choice_starts
 
-    def choice(self, text: Words, at: int) -> tuple[Description, int] | None:
+    def choice(self, text: Words, at: int, kind: str = "") -> tuple[Description, int] | None:
         """Of words such as `every place` and `the red cup` which names they are for, and where they end."""
-        return self.phrases.longest(text, at, self.names_tree) if text.words[at] in self.choice_starts else None
+        if text.words[at] not in self.choice_starts:
+            return None
+        return self.phrases.longest(text, at, self.names_tree, self._fitting(kind))
+
+    def _fitting(self, wanted: str) -> Callable[[str, Parts], bool]:
+        """Whether a description is of the wanted type, "" for any, and of no kind that only another type has."""
+
+        def fits(kind: str, parts: Parts) -> bool:
+            if wanted not in ("", kind):
+                return False
+            of = [value for name, value in parts if name == "kind"]
+            return not of or kind in self._types_of.get(of[0], ("object",))
+
+        return fits
+
+    @property
+    def _types_of(self) -> Mapping[str, frozenset[str]]:
+        """The types of what there is of each kind, as far as the world is known."""
+        if self._kinds is None:
+            found: dict[str, set[str]] = {}
+            for kind, named in self._features.items():
+                for _, parts in named:
+                    for name, value in parts:
+                        if name == "kind":
+                            found.setdefault(value, set()).add(kind)
+            self._kinds = {value: frozenset(types) for value, types in found.items()}
+        return self._kinds
 
     def choices(self, kind: str) -> list[list[str]]:
         """The words that stand for all names of a type, and for those that are chosen, in the first way to say them."""
@@ -230,20 +241,20 @@ class Values:
             self._group_starts = self.phrases.plural_starts(self.names_tree) | self._numbers.keys() | self._both
         return self._group_starts
 
-    def groups(self, text: Words, at: int, is_bare: bool = False) -> Iterator[tuple[Description, int]]:
+    def groups(self, text: Words, at: int, kind: str = "", is_bare: bool = False) -> Iterator[tuple[Description, int]]:
         """The sets that words describe, and where each ends; the shortest first.
 
         `every cup on the table`, `two red cups`, `the cups except the blue one`; where it `is_bare` also `red cup`.
         """
-        found, count = self.choice(text, at), ""
+        found, count = self.choice(text, at, kind), ""
         if found is None or found[0].how != ALL:
             start = at
             if text.words[at] in self._both:
                 count, start = "2", at + 1
             elif (number := self.number(text, at)) is not None and number[0] >= 1 and number[0] == int(number[0]):
                 count, start = str(int(number[0])), number[1]
-            found = self.phrases.plural(text, start, self.names_tree)
-            if found is None or not (count or is_bare or text.words[at] in self.group_starts):
+            found = self.phrases.plural(text, start, self.names_tree, self._fitting(kind))
+            if found is None or not (count or is_bare or self._is_plural(text, at, found[1], kind)):
                 return
         meant, end = found
         parts: Parts = (*meant.parts, *([(COUNT, count)] if count else []))
@@ -258,21 +269,39 @@ class Values:
             if left_out is not None:
                 yield meant.replace(how=ALL, parts=tuple(sorted((*some, *left_out[0])))), left_out[1]
 
+    def _is_plural(self, text: Words, at: int, end: int, kind: str) -> bool:
+        """Whether words that describe things are in the plural alone: `cups`, not `cup` or `sheep`."""
+        one = self.choice(text, at, kind)
+        return text.words[at] in self.group_starts and (one is None or one[1] < end)
+
     def _left_out(self, meant: Description, text: Words, at: int) -> tuple[Parts, int] | None:
-        """What stands behind `except` as what the things are not: `the blue one`, `the red cups`."""
-        at = self.exception(text, at)
-        if not at:
-            return None
-        found = self.phrases.plural(text, at, self.names_tree) or self.choice(text, at)
+        """What stands behind `except` as what the things are not: `the blue one`, `Alice and Bob`."""
+        found: dict[str, list[str]] = {}
+        last = at = self.exception(text, at)
+        while at:
+            one = self._left_out_one(meant, text, at)
+            if one is None:
+                break
+            part, value, last = one
+            found.setdefault(part, []).append(value)
+            at = last + (text.words[last] == ",")
+            at += text.words[at] in self._joining
+            at = at if at > last else 0
+        parts = tuple((part, "; ".join(values)) for part, values in found.items())
+        return (parts, last) if found else None
+
+    def _left_out_one(self, meant: Description, text: Words, at: int) -> tuple[str, str, int] | None:
+        kind = meant.type
+        found = self.phrases.plural(text, at, self.names_tree, self._fitting(kind)) or self.choice(text, at, kind)
         parts = dict(found[0].parts) if found is not None else {}
-        named = find(self._names[meant.type], text.words, at)
+        named = find(self._names[kind], text.words, at)
         if named is not None and (found is None or named[1] >= found[1]):
-            return (("not_kind", named[0]),), named[1]
+            return "not_kind", named[0], named[1]
         if found is None or not parts.keys() <= {"color", "kind"}:
             return None
         if "color" in parts and parts.get("kind") in (None, dict(meant.parts).get("kind")):
-            return (("not_color", parts["color"]),), found[1]
-        return ((("not_kind", parts["kind"]),), found[1]) if parts.keys() == {"kind"} else None
+            return "not_color", parts["color"], found[1]
+        return ("not_kind", parts["kind"], found[1]) if parts.keys() == {"kind"} else None
 
     def members(self, choice: Choice) -> tuple[str, ...]:
         """The names of a set where what is known of the world decides; () where only the robot can tell."""
@@ -316,7 +345,7 @@ class Values:
         value_type = self.types[kind]
         if value_type.kind == "quantity":
             quantity = self.quantity(text, at)
-            if quantity is None or quantity[1] != kind or _too_small(quantity[0], value_type):
+            if quantity is None or quantity[1] != kind or too_small(quantity[0], value_type):
                 return None
             return format_number(quantity[0]), quantity[2]
         if value_type.kind == "number":
@@ -332,140 +361,6 @@ class Values:
         if value_type.kind == "time":
             return self.time_of_day(text, at)
         return self._text(text, at)
-
-    def time_of_day(self, text: Words, at: int) -> tuple[str, int] | None:
-        """`6 pm`, `7:30 am`, `18:30` or `noon` as a port text of 24 hours (18:30), and where it ends."""
-        word = text.words[at]
-        named = find(self._times, text.words, at)
-        if named is not None and isinstance(named[0], str):
-            return named
-        if ":" in word and word[0].isdecimal():
-            hours, _, minutes = word.partition(":")
-            if len(hours) > 2 or len(minutes) != 2 or int(minutes) > 59:
-                return None
-            number: tuple[float, int] | None = float(hours), at + 1
-        else:
-            minutes, number = "", self.number(text, at)
-        if number is None:
-            return None
-        hour, end = number
-        half = self.half_of_day(text, end)
-        if half is not None:
-            hour, end = (hour % 12 + half[0] if 1 <= hour <= 12 else -1), half[1]
-        if hour not in range(24) or not (minutes or half):
-            return None
-        return f"{int(hour):02}:{int(minutes or 0):02}", end
-
-    def half_of_day(self, text: Words, at: int) -> tuple[int, int] | None:
-        """The hours that a word such as `pm` behind a number adds, and where it ends."""
-        found = find(self._times, text.words, at)
-        return found if found is not None and isinstance(found[0], int) else None
-
-    @property
-    def halves_of_day(self) -> list[str]:
-        """The words for which `half_of_day` looks, where they are one word."""
-        return [word for word, node in self._times.items() if isinstance(node.get(END), int)]
-
-    def quantity(self, text: Words, at: int) -> tuple[float, str, int] | None:
-        """A number with a unit: its value in the base unit, the name of the type, and where it ends."""
-        number = self.number(text, at)
-        if number is None:
-            if at not in text.articles and not (at and text.words[at - 1] in self._one_each):
-                return None
-            number = 1.0, at  # "a minute", "every hour"
-        value, after = number
-        if text.words[after] in self._joiner:
-            after += 1
-        unit = find(self._units, text.words, after)
-        if unit is None:
-            return None
-        (kind, unit_of), end = unit
-        half = find(self._fractions, text.words, end)  # "a minute and a half"
-        if half is not None and half[1] > end + 1 and not find(self._units, text.words, half[1]):
-            value, end = value + half[0], half[1]
-        amount = value * unit_of.numerator / unit_of.denominator
-        return (amount, kind, end) if abs(amount) <= _LARGEST else None
-
-    def number(self, text: Words, at: int) -> tuple[float, int] | None:
-        """A number in figures or words, fractions included, and where it ends."""
-        words = text.words
-        word = words[at]
-        if not (word in self._number_starts or word[0].isdecimal() or "-" in word):
-            return None  # as nearly always
-        value, start = self._whole_number(words, at)
-        fraction = find(self._fractions, words, start)
-        if fraction is not None:
-            value, start = (value or 0) + fraction[0], fraction[1]
-        return None if value is None or abs(value) > _LARGEST else (value, start)
-
-    def _whole_number(self, words: Sequence[str], at: int) -> tuple[float | None, int]:
-        word = words[at]
-        if word[0].isdecimal() or (word[0] == "-" and word[1:2].isdecimal()):
-            if ":" in word:
-                return None, at
-            value = float(word)
-            return (value, at + 1) if abs(value) <= _LARGEST else (None, at)
-        total: float | None = None
-        last = at + _MOST_NUMBER_WORDS
-        while True:
-            pieces = words[at].split("-")  # "twenty-five"
-            if at == last or not all(p in self._numbers or p in self._multipliers for p in pieces):
-                return total, at
-            for piece in pieces:
-                if piece in self._multipliers:
-                    total = (total if total is not None else 1) * self._multipliers[piece]
-                else:
-                    total = (total or 0) + self._numbers[piece]
-            at += 1
-
-    def point(self, text: Words, at: int) -> tuple[float, float, float | None, int] | None:
-        """`(x, y)` in metres, with or without a direction in degrees that it faces, and where it ends."""
-        numbers: list[float] = []
-        for mark in ("(", ","):
-            number = self._metres(text, at + 1) if text.words[at] == mark else None
-            if number is None or abs(number[0]) > _FARTHEST:
-                return None
-            numbers.append(number[0])
-            at = number[1]
-        if text.words[at] != ")":
-            return None
-        at += 1
-        for words in self._facing:
-            last = at + len(words)
-            angle = self.quantity(text, last) if text.words[at:last] == words else None
-            if angle is not None and angle[1] == "angle":
-                return numbers[0], numbers[1], angle[0], angle[2]
-        return numbers[0], numbers[1], None, at
-
-    def point_text(self, x: str, y: str, facing: str | None) -> str:
-        """A point as it is written."""
-        where = f"({x}, {y})"
-        if facing is None:
-            return where
-        return f"{where} {' '.join(self._facing[0])} {with_unit(facing, self.types['angle'].units[0].words[0])}"
-
-    def _metres(self, text: Words, at: int) -> tuple[float, int] | None:
-        quantity = self.quantity(text, at)
-        if quantity is not None:
-            return (quantity[0], quantity[2]) if quantity[1] == "length" else None
-        return self.number(text, at)
-
-    def _point_text(self, text: Words, at: int) -> tuple[str, int] | None:
-        point = self.point(text, at)
-        if point is None:
-            return None
-        x, y, facing, end = point
-        angle = None if facing is None else format_number(facing)
-        return self.point_text(format_number(x), format_number(y), angle), end
-
-    def _plain_number(self, value_type: ValueType, text: Words, at: int) -> tuple[str, int] | None:
-        number = self.number(text, at)
-        if number is None or find(self._units, text.words, number[1]):
-            return None
-        value, end = number
-        if (value_type.whole and value != int(value)) or _too_small(value, value_type):
-            return None
-        return format_number(value), end
 
     def _text(self, text: Words, at: int) -> tuple[str, int] | None:
         word = text.words[at]
@@ -492,7 +387,3 @@ def key_of(words: Iterable[str]) -> str:
     """
     key = re.sub(r"\W", "_", "_".join(words))
     return key if key != "name" else "name_"
-
-
-def _too_small(value: float, value_type: ValueType) -> bool:
-    return value_type.least is not None and value < value_type.least

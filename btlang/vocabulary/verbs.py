@@ -12,11 +12,10 @@ from btlang.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.entry import MANNER, PATH, RECIPIENT, THEME, UNMARKED, Entry, Meaning, Role
 from btlang.vocabulary.match import Match, SlotValue
+from btlang.vocabulary.role_words import RoleWords
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
-
     from btlang.vocabulary.reading_context import ReadingContext
 
     ListOf = Callable[[SlotValue], "SlotValue | None"]
@@ -34,31 +33,6 @@ class Frame(Record):
         return next((role for role in self.roles if role.name == name), None)
 
 
-class RoleWords(Record):
-    """The words of a language around verbs."""
-
-    introducing: Mapping[str, tuple[tuple[str, ...], ...]]
-    synonyms: Mapping[str, tuple[str, ...]]
-    particles: frozenset[str]
-    fillers: frozenset[str]
-    speaker: frozenset[str]
-
-
-def role_words(language: Mapping[str, Any]) -> RoleWords:
-    """The words of the tables of a language."""
-
-    def split_all(phrases: Iterable[str]) -> tuple[tuple[str, ...], ...]:
-        return tuple(tuple(phrase.split()) for phrase in phrases)
-
-    return RoleWords(
-        {role: split_all(phrases) for role, phrases in language["prepositions"].items()},
-        {verb: tuple(verbs) for verb, verbs in language["synonyms"].items()},
-        frozenset(language["particles"]),
-        frozenset(language["fillers"]),
-        frozenset(language["speaker"]),
-    )
-
-
 def canonical(verb: str, roles: Sequence[Role]) -> str:
     """The pattern of a verb with its roles in their order: `bring {object} to {person} [{manner}]`."""
     parts = [verb]
@@ -69,13 +43,19 @@ def canonical(verb: str, roles: Sequence[Role]) -> str:
     return " ".join(parts)
 
 
-def phrases_of(verbs: Sequence[str], roles: Sequence[Role]) -> list[str]:
-    """The patterns that say a frame in its own order: the first verb, then the others."""
+def phrases_of(verbs: Sequence[str], roles: Sequence[Role], particles: frozenset[str]) -> list[str]:
+    """The patterns that say a frame in its order: the first verb, then the others; particles behind the theme, too."""
     others = [verb for verb in verbs[1:] if " " not in verb]
     found = [canonical(verbs[0], roles)]
     if others:
         found.append(canonical("/".join(others), roles))
-    return found + [canonical(verb, roles) for verb in verbs[1:] if " " in verb]
+    found += [canonical(verb, roles) for verb in verbs[1:] if " " in verb]
+    theme = roles[0] if roles and roles[0].name == THEME else None
+    split = [parts_of(verb, particles) for verb in verbs] if theme is not None else []
+    for words, particle in split:
+        if theme is not None and particle:
+            found.append(canonical(f"{' '.join(words)} {{{theme.slot}}} {particle}", roles[1:]))
+    return found
 
 
 def parts_of(verb: str, particles: frozenset[str]) -> tuple[tuple[str, ...], str]:

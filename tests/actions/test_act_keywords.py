@@ -19,7 +19,7 @@ ENTRIES = [entry for entries in VOCABULARY.entries.values() for entry in entries
 
 def meaning(text):
     words = split(Source(text), VOCABULARY.orthography)
-    match = longest(VOCABULARY.trie, words, 0, VOCABULARY.values)
+    match = longest(VOCABULARY.trie, words, 0, VOCABULARY.context)
     return match.meaning.entry.id, {value.name: value.text for value in match.values}
 
 
@@ -28,11 +28,15 @@ def test_entries(entry):
     module, _, name = entry.call.partition(":")
     call = getattr(import_module(module), name)
     parameters = signature(call).parameters
-    ports = set(parameters) - {"robot", "clock", "blackboard", "progress", "kept"}
+    further = {name for name, parameter in parameters.items() if parameter.kind is parameter.VAR_KEYWORD}
+    ports = set(parameters) - further - {"robot", "clock", "blackboard", "progress", "kept"}
     slots = [slot for slot in entry.slots if not entry.measures or slot.name not in COMPARISONS]
-    assert ports == {slot.name for slot in slots}
+    assert ports <= {slot.name for slot in slots}
+    assert further or ports == {slot.name for slot in slots}
     said_always = [slot for slot in slots if all(f"{{{slot.name}}}" in phrase for phrase in entry.phrases)]
     for slot in slots:
+        if slot.name not in ports:
+            continue
         optional = parameters[slot.name].default is None or slot.default is not None
         assert optional or slot in said_always
     assert call.__doc__

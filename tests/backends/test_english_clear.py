@@ -48,7 +48,7 @@ CASES = [
     (fallback(sequence(WAVE, NOD), TURN), "try:\n  wave\n  nod\notherwise:\n  turn left"),
     (fallback(WAVE, sequence(NOD, TURN), WAVE), "try in order:\n  wave\n  nod then turn left\n  wave"),
     (fallback(WAVE, parallel(NOD, TURN)), "try in order:\n  wave\n  nod and turn left"),
-    (parallel(TURN, fallback(NOD, WAVE)), "in parallel:\n  turn left\n  nod or wave"),
+    (parallel(TURN, fallback(NOD, WAVE)), "at the same time:\n  turn left\n  nod or wave"),
     (sequence(WAVE, sequence(NOD, fallback(TURN, WAVE))), "wave\ndo sequence:\n  nod\n  turn left or wave"),
     (when(LOW, sequence(WAVE, NOD), TURN), "if battery is low:\n  wave\n  nod\notherwise:\n  turn left"),
     (when(LOW, when(LOW, WAVE, NOD)), "if battery is low, (if battery is low, wave otherwise nod)"),

@@ -39,7 +39,7 @@ def test_a_diagnostic_of_a_misspelt_name(capsys: pytest.CaptureFixture[str]) -> 
 
 
 def test_notes_have_places(capsys: pytest.CaptureFixture[str]) -> None:
-    main(["check", "--format", "json", "-c", "turn left and move forward"])
+    main(["check", "--format", "json", "-c", "turn left meanwhile move forward"])
     [problem] = json.loads(capsys.readouterr().out)
     [note] = problem["notes"]
     assert note.keys() == PLACE | {"message"}
@@ -86,7 +86,7 @@ def test_every_sample_can_be_used() -> None:
     sources = {problem.span.source.name: problem.span.source for problem in problems}
     for told in document:
         assert told.keys() == KEYS
-        assert told["severity"] in ("error", "warning")
+        assert told["severity"] in ("error", "warning", "note")
         assert between(sources[told["file"]], told) == told["words"]
         if told["fix"] is not None:
             assert told["fix"].keys() == PLACE | {"text"}

@@ -165,7 +165,7 @@ def test_messages_have_offsets_everywhere() -> None:
     [message] = document(Source(text), SHIPPED)["messages"]
     assert text[message["start"] : message["end"]] == message["words"] == "move forwarrd 1 m"
     assert text[message["fix"]["start"] : message["fix"]["end"]] == "move forwarrd"
-    warned = document(Source("go to the lab and wave"), SHIPPED)["messages"]
+    warned = document(Source("when bumped, wave"), SHIPPED)["messages"]
     assert warned[0]["readings"]
     assert all("start" in each for each in (*warned[0]["readings"], *warned[0]["notes"]))
 
@@ -223,7 +223,7 @@ def test_all_of_the_palette_can_be_put_in(world: str | None) -> None:
         for item in topic["items"]:
             before = text + ("check " if item["sort"] == "condition" else "")
             words.mission(Source(before + item["insert"]))
-    going = next(item for topic in others for item in topic["items"] if item["words"] == "go to {place}")
+    going = next(item for topic in others for item in topic["items"] if item["words"].startswith("go to {place}"))
     assert (going["insert"], going["sort"]) == ("go to barn" if world else "go to the kitchen", "action")
 
 

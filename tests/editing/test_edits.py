@@ -45,7 +45,7 @@ CASES = {
     ),
     "a part of a line goes": (
         {"do": "delete", "words": "wave", "nth": "2"},
-        "-Go to the lab, wave and say hello\n+Go to the lab and say hello",
+        "-Go to the lab, wave and say hello\n+Go to the lab, say hello",
     ),
     "the first part of a line goes": (
         {"do": "delete", "words": "go to the lobby"},
@@ -94,7 +94,7 @@ CASES = {
     ),
     "parts of a line at the same time": (
         {"do": "wrap", "words": "go to the lobby", "last": "wave", "form": "in parallel"},
-        "-patrol is go to the lobby then wave\n+patrol is go to the lobby and meanwhile wave",
+        "-patrol is go to the lobby then wave\n+patrol is go to the lobby and wave at the same time",
     ),
     "a condition that isn't so": (
         {"do": "wrap", "words": "battery is low", "form": "not"},

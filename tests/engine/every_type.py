@@ -38,6 +38,8 @@ RUNS: dict[str, tuple[str, dict[str, str]]] = {
     "KeepRunningUntilFailure": ("R", {}),
     "RunOnce": ("R", {}),
     "Precondition": ("R", {"if": "true"}),
+    "KeepOut": ("R", {"zones": "lab"}),
+    "KeepIn": ("R", {"zones": "lab"}),
     **{f"Loop{kind}": ("R", {"queue": "1"}) for kind in ("Int", "Bool", "Double", "String")},
     "SkipUnlessUpdated": ("R", {"entry": "x"}),
     "WaitValueUpdate": ("R", {"entry": "x"}),

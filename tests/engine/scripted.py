@@ -28,6 +28,35 @@ def said(letter: str) -> int:
     return STATUS[letter]
 
 
+class Zones:
+    """The zones of a robot: those that it keeps out of, or stays in."""
+
+    def __init__(self) -> None:
+        self.closed: list[str] = []
+
+    def keep_out(self, *names: str) -> Any:
+        closed = self.closed
+
+        class Held:
+            def begin(self) -> None:
+                closed.extend(names)
+
+            def end(self) -> None:
+                for name in names:
+                    closed.remove(name)
+
+        return Held()
+
+    keep_in = keep_out
+
+
+class Zoned:
+    """A robot that has zones, and nothing else."""
+
+    def __init__(self) -> None:
+        self.zones = Zones()
+
+
 class World:
     """Binds leaf ids to scripts and logs what the engine does with them.
 
@@ -42,6 +71,7 @@ class World:
         self.log: list[str] = []
         self.bindings: dict[str, LeafBinding] = {}
         self.clock = Clock()
+        self.robot = Zoned()
         self.changes: list[tuple[int, int]] = []
 
     def bind(self, id: str, call: Callable[..., Any], **options: Any) -> Node:
@@ -95,7 +125,8 @@ class World:
     def engine(self, root: Node | Tree, watched: bool = False, **options: Any) -> Engine:
         listener = (lambda told: self.changes.extend(change[:2] for change in told)) if watched else None
         tree = root if isinstance(root, Tree) else Tree(root)
-        return Engine(tree, self.bindings.get, clock=self.clock, listener=listener, **options)
+        services = {"robot": self.robot, **options.pop("services", {})}
+        return Engine(tree, self.bindings.get, clock=self.clock, listener=listener, services=services, **options)
 
     def since(self) -> list[str]:
         """The log since the last call."""

@@ -353,8 +353,8 @@ CASES |= {
     ),
     "delivery": Case(
         world="hotel",
-        done=("WaitForWay 10", "AvoidZone wet floor", "PickUp parcel", "GoTo store", "Say Delivered.",
-              "PutDown parcel"),
+        done=("WaitForWay 10", "AvoidZone wet floor", "PickUp parcel", "GoTo store", "PutDown parcel",
+              "Say Delivered."),
         said=("Delivered.",),
         put={"parcel": "store"},
         seconds=(40, 60),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 from btlang.frontends.mission.reader import read_mission
 from btlang.text.source import Source
@@ -22,13 +23,22 @@ ENTRIES = (
 )
 
 
+MIXED: dict[str, dict[str, Any]] = {
+    "w": {"resources": ("voice",)},
+    "x": {"accompaniment": False},
+    "y": {"resources": ("base",)},
+}
+"""What is otherwise where `and` depends on the commands: w speaks, x is a task, y moves the robot."""
+
+
 @cache
-def letters() -> Lexicon:
-    return load_vocabulary(ENTRIES)
+def letters(is_mixed: bool = False) -> Lexicon:
+    changes = MIXED if is_mixed else {}
+    return load_vocabulary([entry.replace(**changes.get(entry.phrases[0], {})) for entry in ENTRIES])
 
 
-def read(text: str, parser: str = "shunting-yard") -> ast.Program:
-    return read_mission(Source(text), letters(), parser).mission
+def read(text: str, parser: str = "shunting-yard", is_mixed: bool = False) -> ast.Program:
+    return read_mission(Source(text), letters(is_mixed), parser).mission
 
 
 def shown(node: ast.Ast | None) -> str:

@@ -43,7 +43,8 @@ UNCHANGED = [
     "go to the document then nod",
     "wave at Rob then nod",
     "go to lab2 then nod",
-    "bring the cup then nod",
+    "bring the cap then nod",
+    "nod o wave",
     "move forward 2 feat then nod",
     "wave within 5 parsecs",
     "say hello dear never wave",
@@ -51,7 +52,7 @@ UNCHANGED = [
     "if bumped, wave, within 5 s, nod",
     "nod then wave) 3 times",
     "wave not battery is low",
-    "move foward and trun left",
+    "move foward and trun left at the same time",
     "go to the ktichen then frobnicate",
     'set counter to 3; say "{count}"',
     "move forward 2 mn then nod",
@@ -60,7 +61,7 @@ UNCHANGED = [
 
 CORRECTED = [
     ("go t the lab", "go to the lab"),
-    ("nod o wave", "nod or wave"),
+    ("nod orr wave", "nod or wave"),
     ("wave a nd nod", "wave a and nod"),
     ("if anbody is near, wave", "if anybody is near, wave"),
     ("if nbody is near, wave", "if nobody is near, wave"),

@@ -26,10 +26,10 @@ def tree_of(text: str) -> str:
         ("go to the lobby and the lab and the dock", f"Sequence|{THREE}"),
         ("go to the lobby, the lab or the dock", f"Fallback|{THREE}"),
         ("go to the lobby and the lab twice", "Repeat num_cycles=2|Sequence|GoTo place=lobby|GoTo place=lab"),
-        ("go to the lobby, the lab and wave", "Parallel|Sequence|GoTo place=lobby|GoTo place=lab|Wave"),
-        ("go to the lobby and wave", "Parallel|GoTo place=lobby|Wave"),
+        ("go to the lobby, the lab and wave", "Sequence|Sequence|GoTo place=lobby|GoTo place=lab|Wave"),
+        ("go to the lobby and wave", "Sequence|GoTo place=lobby|Wave"),
         ("go to the lobby, then go to the lab", "Sequence|GoTo place=lobby|GoTo place=lab"),
-        ("go to the lobby and say lab", "Parallel|GoTo place=lobby|Say text=lab"),
+        ("go to the lobby and say lab", "Sequence|GoTo place=lobby|Say text=lab"),
         ("go to Alice or Bob", "Fallback|GoToPerson person=Alice|GoToPerson person=Bob"),
         ("go to the living room and the lab", 'Sequence|GoTo place="living room"|GoTo place=lab'),
         (
@@ -60,7 +60,7 @@ def test_a_list_is_one_command() -> None:
 
 def test_a_list_ends_before_a_longer_phrase() -> None:
     found = tree_of("lab tour is nod\ngo to the lobby and lab tour")
-    assert found.startswith("Parallel|  GoTo place=lobby|  SubTree")
+    assert found.startswith("Sequence|  GoTo place=lobby|  SubTree")
 
 
 @pytest.mark.parametrize(

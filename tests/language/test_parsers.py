@@ -26,21 +26,21 @@ BOTH = ("shunting-yard", "lark")
 GRAMMAR = Path(__file__).parents[2] / "grammar"
 
 
-def reading(text: str, parser: str) -> ast.Program | tuple[str, ...]:
+def reading(text: str, parser: str, is_mixed: bool = False) -> ast.Program | tuple[str, ...]:
     """The mission, or the codes of what is wrong."""
     try:
-        return read(text, parser)
+        return read(text, parser, is_mixed)
     except MissionError as error:
         return tuple(problem.code for problem in error.diagnostics)
 
 
 @searches(150, 30000)
-@given(st.one_of(missions, broken_missions()))
-@example("a repeat until p NL")
-@example("not ( p ) NL")
-@example("a and not ( p or q ) NL")
-def test_parsers_agree(words: str) -> None:
-    shunted, larked = (reading(english(words), parser) for parser in BOTH)
+@given(st.one_of(missions, broken_missions()), st.booleans())
+@example("a repeat until p NL", False)
+@example("not ( p ) NL", False)
+@example("a and not ( p or q ) NL", False)
+def test_parsers_agree(words: str, is_mixed: bool) -> None:
+    shunted, larked = (reading(english(words), parser, is_mixed) for parser in BOTH)
     assert shunted == larked
     if isinstance(shunted, ast.Program):
         assert _spans(shunted) == _spans(larked)  # type: ignore[arg-type]
@@ -132,10 +132,14 @@ def test_each_parser_rejects_tokens_that_are_no_mission(kinds: str) -> None:
             parser.parse(tokens, Builder(Source("")))
 
 
-def oracle(words: str) -> object:
+_MIXED = {"c": (False, frozenset(["voice"])), "d": (True, frozenset()), "e": (False, frozenset(["base"]))}
+"""What the oracle knows of the letters that are mixed."""
+
+
+def oracle(words: str, is_mixed: bool) -> object:
     """The oracle's tree in the form of `ours`, None where it rejects the words."""
     try:
-        return _from_oracle(grouping_oracle.parse(grouping_oracle.lex(words)))
+        return _from_oracle(grouping_oracle.parse(grouping_oracle.lex(words), _MIXED if is_mixed else {}))
     except (SyntaxError, IndexError):
         return None
 
@@ -184,13 +188,18 @@ def ours(node: ast.Ast | None) -> object:
 
 
 @searches(150, 30000)
-@given(st.one_of(missions, broken_missions()))
-def test_groups_as_the_oracle_does(words: str) -> None:
+@given(st.one_of(missions, broken_missions()), st.booleans())
+@example("a and ( c and e ) NL", True)
+@example("a then b and d , and e NL", True)
+@example("every5 , a and d NL", True)
+@example("( repeat a ) and d NL", True)
+@example("a and b or c and e NL", True)
+def test_groups_as_the_oracle_does(words: str, is_mixed: bool) -> None:
     """The language takes a little more than the oracle (`then` at the start, empty lines); never anything else."""
-    expected = oracle(words)
+    expected = oracle(words, is_mixed)
     if expected is None:
         return
-    mission = reading(english(words), "shunting-yard")
+    mission = reading(english(words), "shunting-yard", is_mixed)
     assert isinstance(mission, ast.Program), mission
     assert ours(mission.body) == expected
 

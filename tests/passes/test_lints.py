@@ -52,9 +52,9 @@ TWO_READINGS = [
     "try if bumped, wave otherwise nod",
     "if bumped, wave if stuck otherwise nod",
     "if bumped, repeat if stuck, wave otherwise nod",
-    "go to the lobby and the lab and wave",
-    "go to the lobby, the lab and wave",
-    "say hello and go to the lobby and the lab",
+    "look at the lobby and the lab and wave",
+    "look at the lobby, the lab and wave",
+    "say hello and look at the lobby and the lab",
 ]
 ONE_READING = [
     "if (not bumped) or stuck, wave",
@@ -105,6 +105,8 @@ ONE_READING = [
     "if bumped, say hello and (if stuck, wave otherwise nod)",
     "go to the lobby and the lab",
     "go to the lobby and the lab twice",
+    "go to the lobby, the lab and wave",
+    "say hello and go to the lobby and the lab",
     "go to the lobby and the lab, and wave",
     "(go to the lobby and the lab) and wave",
     "go to the lobby and the lab then wave",
@@ -134,7 +136,7 @@ def test_what_two_readings_shows() -> None:
     assert warning.message == "This can be read in two ways."
     assert warning.hint.splitlines() == [
         "I read: go to lobby then (wave and look around)",
-        "It could also mean: (go to lobby then wave) and look around",
+        "It could also mean: (go to lobby then wave) and look around at the same time",
         "Decide with a comma or brackets, for example: go to the lobby, then wave and look around",
     ]
 

@@ -67,10 +67,11 @@ def test_texts_of_one_meaning_print_the_same(one: str, other: str) -> None:
 
 
 def test_resources_are_found_through_names_and_forms() -> None:
-    text = "spin is turn left\nslow spin is after 1 s, spin\nif bumped, ((slow spin twice) and wave and go to the lab)"
+    together = "(slow spin twice) and wave and go to the lab at the same time"
+    text = f"spin is turn left\nslow spin is after 1 s, spin\nif bumped, ({together})"
     with pytest.raises(MissionError, match="'slow spin' and 'go to the lab' both need the base at the same time"):
         parse_tree(text)
-    parse_tree("wave and go to the lab and say hello and look around")
+    parse_tree("wave and go to the lab and say hello and look around at the same time")
 
 
 def test_all_circles_are_told() -> None:

@@ -59,25 +59,38 @@ def _placed(fact: ast.Fact) -> tuple[object, ...]:
 
 
 @searches(40, 3000)
-@given(st.one_of(sentences.missions, sentences.broken_missions()))
-@example("repeat a until p 3t NL")
-@example("try try a 3t otherwise b NL")
-@example("a then repeat : NL IN a NL DE NL otherwise : NL IN a then repeat : NL IN a NL DE NL otherwise a NL DE NL")
-def test_sentences_keep_their_tree(words: str) -> None:
+@given(st.one_of(sentences.missions, sentences.broken_missions()), st.booleans())
+@example("repeat a until p 3t NL", False)
+@example("try try a 3t otherwise b NL", True)
+@example("( a and d ) or b NL", True)
+@example("c and e NL", True)
+@example("a and ( repeat b ) NL", True)
+@example(
+    "a then repeat : NL IN a NL DE NL otherwise : NL IN a then repeat : NL IN a NL DE NL otherwise a NL DE NL", False
+)
+def test_sentences_keep_their_tree(words: str, is_mixed: bool) -> None:
     try:
-        mission = read(sentences.english(words))
+        mission = read(sentences.english(words), is_mixed=is_mixed)
     except MissionError:
         return
-    keeps_its_tree(mission, letters())
+    keeps_its_tree(mission, letters(is_mixed))
 
 
 @searches(20, 3000)
-@given(trees.missions())
-@example(ast.Program(ast.Every("5", ast.Repeat("1", trees.phrase("u"), trees.SPAN), "", trees.SPAN), (), trees.SPAN))
-@example(ast.Program(ast.Try(trees.phrase("u"), trees.either("v", "w"), trees.SPAN), (), trees.SPAN))
-@example(ast.Program(trees.and_remember("u"), (), trees.SPAN))
-def test_syntax_trees_keep_their_tree(mission: ast.Program) -> None:
-    keeps_its_tree(mission, letters())
+@given(trees.missions(), st.booleans())
+@example(
+    ast.Program(ast.Every("5", ast.Repeat("1", trees.phrase("u"), trees.SPAN), "", trees.SPAN), (), trees.SPAN), False
+)
+@example(ast.Program(ast.Try(trees.phrase("u"), trees.either("v", "w"), trees.SPAN), (), trees.SPAN), False)
+@example(ast.Program(trees.and_remember("u"), (), trees.SPAN), False)
+def test_syntax_trees_keep_their_tree(mission: ast.Program, is_mixed: bool) -> None:
+    vocabulary = letters(is_mixed)
+    try:
+        compile_mission(mission, vocabulary)
+    except MissionError:  # two that need the same part at the same time
+        assert is_mixed
+        return
+    keeps_its_tree(mission, vocabulary)
 
 
 @searches(20, 2000)

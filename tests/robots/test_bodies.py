@@ -157,4 +157,4 @@ def test_words_in_python_say_what_they_need() -> None:
     with pytest.raises(MissionError, match="The robot 'standard' has no lift, which"):
         mission.run(speed="max")
     with pytest.raises(MissionError, match="BT041"):
-        btlang.parse_tree("lift up and lift up", keywords=[lift_up])
+        btlang.parse_tree("lift up and lift up at the same time", keywords=[lift_up])

@@ -84,7 +84,7 @@ def test_all_is_told_at_once_and_at_its_line() -> None:
     )
     assert told(text) == [
         (4, '"x" must be a number; write x = 1.5'),
-        (10, '"kind" must be one of "keep out", "slow"'),
+        (10, '"kind" must be one of "keep out", "slow", "area"'),
         (6, 'the name "bay" is given twice (places and places); give one another name'),
         (6, 'the place "bay" at (3.1, 1) is inside a wall or a box; leave 0.2 m to every wall'),
         (5, 'the place "bay" at (9, 1) is outside the outer walls'),

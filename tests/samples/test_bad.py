@@ -57,7 +57,7 @@ def test_message(sample: Path, capsys: pytest.CaptureFixture[str], monkeypatch: 
     errors = without_pointer(capsys.readouterr().err).replace(f"process {os.getpid()}", "process 4711")
     assert sample.stem[:5] in errors
     assert "Traceback" not in errors
-    expected = 0 if CODES[sample.stem[:5]].severity == "warning" else 2
+    expected = 2 if CODES[sample.stem[:5]].severity == "error" else 0
     assert code == {"BT099": CRASHED, **dict.fromkeys(REFUSALS, 1)}.get(sample.stem[:5], expected)
     matches_golden(errors, sample.with_suffix(".out"))
 

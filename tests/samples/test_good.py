@@ -48,7 +48,8 @@ ROWS = {
     "neither, both, any of": "lists_of_conditions", "Shared words": "shared_words",
     "Where a condition ends": "conditions", "Names of conditions": "definitions",
     # joining.md
-    "After a command": "postfix", "At the same time": "connectives", "One if the other fails": "connectives",
+    "After a command": "postfix", "and": "connectives", "At the same time": "connectives",
+    "One if the other fails": "connectives",
     "One after the other": "connectives", "Tighter and looser": "connectives",
     "How far a form before a command reaches": "reach", "Where repeat ends": "reach",
     "Which form an otherwise belongs to": "otherwise",

@@ -60,8 +60,8 @@ ROUNDS = ["0 work", "1 work ended", "1 work", "2 work ended"]
     ("text", "log", "status", "seconds"),
     [
         ("work then play", [*WORK, "1 play", "2 play ended"], SUCCESS, 2),
-        ("work and play", ["0 work", "0 play", "1 work ended", "1 play ended"], SUCCESS, 1),
-        ("work and slip", ["0 work", "0 slip", "0.5 slip ended", "0.5 work halted"], FAILURE, 0.5),
+        ("work and play at the same time", ["0 work", "0 play", "1 work ended", "1 play ended"], SUCCESS, 1),
+        ("work and slip at the same time", ["0 work", "0 slip", "0.5 slip ended", "0.5 work halted"], FAILURE, 0.5),
         ("slip or work", ["0 slip", "0.5 slip ended", "0.5 work", "1.5 work ended"], SUCCESS, 1.5),
         ("work or play", WORK, SUCCESS, 1),
         ("work after play", ["0 play", "1 play ended", "1 work", "2 work ended"], SUCCESS, 2),
@@ -91,7 +91,7 @@ ROUNDS = ["0 work", "1 work ended", "1 work", "2 work ended"]
         ("wait until it is late within 1 s", [], FAILURE, 1),
         ("check it is late", [], FAILURE, 0),
         ("do nothing or fail", [], SUCCESS, 0),
-        ("both is work and play\nboth", ["0 work", "0 play", "1 work ended", "1 play ended"], SUCCESS, 1),
+        ("p is work and play at the same time\np", ["0 work", "0 play", "1 work ended", "1 play ended"], SUCCESS, 1),
         ("repeat 2 times: work if it is late", [], SUCCESS, 0.1),
     ],
 )  # fmt: skip

@@ -21,7 +21,7 @@ from btlang.printer.mission import english
 from btlang.robots.world_file import world_names
 from btlang.text.source import Source
 from btlang.tree.node import Node, Tree
-from btlang.vocabulary.entry import Entry, SlotSpec
+from btlang.vocabulary.entry import Entry, Role, SlotSpec
 from btlang.vocabulary.keyword_file import KeywordFile, read_keyword_file
 from btlang.vocabulary.language_tables import WORD_LISTS
 from btlang.vocabulary.lexicon import Lexicon
@@ -47,7 +47,13 @@ def _pattern(text: str) -> str:
 def _entry(entry: Entry) -> Entry:
     slots = tuple(SlotSpec(s.name, s.type, s.default and invented(s.default)) for s in entry.slots)
     phrases, quantity = (tuple(map(_pattern, patterns)) for patterns in (entry.phrases, entry.quantity))
-    return entry.replace(phrases=phrases, quantity=quantity, slots=slots)  # type: ignore[no-any-return]
+    verbs = tuple((tuple(map(invented, own)), tuple(map(_role, roles))) for own, roles in entry.verbs)
+    return entry.replace(phrases=phrases, quantity=quantity, slots=slots, verbs=verbs)  # type: ignore[no-any-return]
+
+
+def _role(role: Role) -> Role:
+    words = tuple(tuple(map(invented, phrase)) for phrase in role.words)
+    return role.replace(words=words)  # type: ignore[no-any-return]
 
 
 def _type(kind: ValueType) -> ValueType:
@@ -62,13 +68,13 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
             made[key] = list(map(invented, value))
         elif key in ("roles", "comparisons"):
             made[key] = {name: list(map(_pattern, patterns)) for name, patterns in value.items()}
-        elif key in ("nouns", "everyone"):
+        elif key in ("nouns", "everyone", "relations", "prepositions"):
             made[key] = {kind: list(map(invented, words)) for kind, words in value.items()}
         elif key == "plural_endings":
             made[key] = {invented(ending): invented(other) for ending, other in value.items()}
         elif key == "nodes":
             made[key] = {node_id: _pattern(words) for node_id, words in value.items()}
-        elif key in ("negations", "negative_subjects", "plurals", "doing"):
+        elif key in ("negations", "negative_subjects", "plurals", "doing", "synonyms"):
             made[key] = {invented(word): list(map(invented, words)) for word, words in value.items()}
         elif key in ("counts", "numbers", "multipliers", "fractions", "times", "pronouns", "meanings"):
             made[key] = {invented(word): meaning for word, meaning in value.items()}

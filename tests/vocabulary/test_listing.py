@@ -71,7 +71,7 @@ def test_examples_of_conditions_are_asked(name: str, example: str) -> None:
 def test_everything_has_its_topic_help_and_example() -> None:
     said = [item for item in ITEMS if item.sort != "value"]
     phrased = {node_id for node_id, entries in VOCABULARY.entries.items() if entries[0].phrases}
-    assert VOCABULARY.entries.keys() - phrased == {"Choose"}
+    assert VOCABULARY.entries.keys() - phrased == {"Choose", "ChooseAll"}
     assert {name for item in said for name in item.names} == {*phrased, *EXPLAINED}
     for item in said:
         assert item.topic not in ("", "other", "other words"), item
@@ -101,7 +101,7 @@ def test_lines_fit_a_terminal() -> None:
 
 def test_entries_of_the_list() -> None:
     assert (
-        "  go to {place}\n      Drives to a place. Fails if there is no free way.\n"
+        "  go to {place} [through {via}] [{manner}]\n      Drives to a place. Fails if there is no free way.\n"
         "      For example: go to the kitchen\n"
     ) in WHOLE
     assert "  battery is low  (condition)\n" in WHOLE
@@ -177,7 +177,10 @@ charge [to {percent}]
 @pytest.mark.parametrize(
     ("text", "firsts"),
     [
-        ("go to", ["go to {place}", "go to {person}", "approach {object}"]),
+        (
+            "go to",
+            ["go to {place} [through {via}] [{manner}]", "go to {person} [{manner}]", "approach {object} [{manner}]"],
+        ),
         ("wall in front", ["wall in front  (condition)"]),
         ("after", ["after", "after {duration}"]),
         (
@@ -189,7 +192,7 @@ charge [to {percent}]
                 "wait until {time_of_day}",
             ],
         ),
-        ("and at the same time", ["and"]),
+        ("and at the same time", ["meanwhile"]),
         ("is", ["is below {value}", "is"]),
         ("define_strong", ["means"]),
         ("forever", ["twice"]),
@@ -213,7 +216,7 @@ def test_the_overview_counts_what_each_topic_lists() -> None:
     for line in lines:
         topic, count = line[2:16].strip(), int(line[16:18])
         assert count == sum(item.topic == topic for item in ITEMS)
-    assert "  joining       14  then, and, or, one of, in parallel, after, before, and ..." in lines
+    assert "  joining       14  then, and, or, one of, at the same time, after, before, ..." in lines
     assert f"{more} {last}" == (
         "btc words motion lists a topic, btc words battery finds a word, btc words --all lists everything."
     )
@@ -231,7 +234,7 @@ def test_packs_and_functions_are_listed(tmp_path: Path) -> None:
     pack.write_text(
         '[[type]]\nname = "song"\nvalues = ["la paloma", "yesterday"]\n'
         '[[action]]\nphrase = "play {song}"\nid = "Play"\ntopic = "music"\nhelp = "Plays."\n'
-        '[roles]\nthen = ["und"]\nand = ["while also"]\n'
+        '[roles]\nthen = ["und"]\nand = ["as well as"]\n'
         '[about]\nthen = { topic = "zusammen", help = "Danach.", example = "wave und nod" }\n',
         encoding="utf-8",
     )

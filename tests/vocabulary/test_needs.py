@@ -26,7 +26,7 @@ def together(folder: Path, keys: str) -> btlang.Mission:
     """Two words of the same keys at the same time."""
     path = folder / "words.toml"
     path.write_text(FILE.format(keys=keys))
-    return btlang.parse_tree("measure and polish", keywords=[str(path)])
+    return btlang.parse_tree("measure and polish at the same time", keywords=[str(path)])
 
 
 @pytest.mark.parametrize(

@@ -77,5 +77,5 @@ def test_it_is_read_and_said(pack: str, capsys: pytest.CaptureFixture[str]) -> N
     said = printed(capsys, "explain", "--keywords", pack, "-c", "juggle two balls; juggle three balls for Alice twice")
     assert "  read as: juggle 2 balls\n" in said
     assert "  read as: juggle 3 balls for Alice 2 times\n" in said
-    clash = printed(capsys, "check", "--keywords", pack, "-c", "juggle 3 balls and wave")
+    clash = printed(capsys, "check", "--keywords", pack, "-c", "juggle 3 balls and wave at the same time")
     assert "both need the right arm at the same time" in clash

@@ -37,9 +37,9 @@ def test_a_pack_adds_a_phrase_and_a_type(tmp_path: Path) -> None:
 
 def test_a_pack_sets_what_a_connective_means(tmp_path: Path) -> None:
     pack = tmp_path / "referee.toml"
-    pack.write_text('[roles]\nand = ["while also"]\nthen = ["then", "and", "and then"]\n')
+    pack.write_text('[roles]\nand = ["and also"]\nthen = ["then", "and", "and then"]\n')
     assert plain(parse_tree("wave and nod", keywords=[str(pack)]).tree) == "Sequence\n  Wave\n  Nod"
-    assert plain(parse_tree("wave while also nod", keywords=[str(pack)]).tree) == "Parallel\n  Wave\n  Nod"
+    assert plain(parse_tree("wave and also nod", keywords=[str(pack)]).tree) == "Parallel\n  Wave\n  Nod"
 
 
 def test_an_invented_language_is_one_file(tmp_path: Path) -> None:
@@ -86,7 +86,8 @@ def test_every_example_of_a_phrase_compiles_to_its_node(parser: str) -> None:
     for entries in vocabulary.entries.values():
         for entry in entries:
             text = entry.example if entry.sort == "action" else f"check {entry.example}"
-            assert parse_tree(text, parser=parser).tree.root.id == entry.id, entry.example
+            ids = [node.id for node in parse_tree(text, parser=parser).tree.walk()]
+            assert ids[0] == entry.id or (not entry.phrases and entry.id in ids), entry.example
 
 
 def test_a_module_beside_its_keyword_file_is_found(tmp_path: Path) -> None:

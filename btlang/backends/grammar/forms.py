@@ -88,7 +88,7 @@ BEFORE = {
 
 BEHIND = {
     "behind": "if-behind | unless-behind | while-behind | provided | stop-when | once-behind | times | if-possible"
-    " | within | for | up-to | until-time | times-every | times-apart | delayed-behind",
+    " | within | for | up-to | until-time | times-every | times-apart | delayed-behind | constrained",
     "if-behind": 'unit " " <if> " " part (", " <otherwise> " " unit)?',
     "unless-behind": 'unit " " <unless> " " part',
     "while-behind": '<repeat> " " lasting " " (<while> | <until>) " " part',
@@ -104,6 +104,7 @@ BEHIND = {
     "times-every": 'lasting " " <every> " " <count>',
     "times-apart": 'lasting " " <count> " " <apart>',
     "delayed-behind": 'unit " " <delay>',
+    "constrained": 'lasting " " (<but> " ")? (<without_entering> | <without_leaving>)',
     "lasting": 'steady | "(" steady " " <then> " " steady ")"',
 }
 """A command that is repeated takes time, and one that may be stopped half-way doesn't mind."""

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator
 from btlang.diagnostics.codes import NAMES
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
-from btlang.text.source import Span
+from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
 from btlang.text.words import Words, split
 from btlang.vocabulary.lexicon import Lexicon
@@ -30,30 +30,43 @@ def silence(compilation: Compilation) -> Iterator[Diagnostic]:
     if "#" not in source.text or not re.search(_ALLOW, source.text):
         return
     words = split(source, vocabulary.orthography)
+    for _, span, code in _named(words):
+        if not code:
+            from btlang.frontends.mission.explanations.spelling_rule import (
+                is_respelling,  # most comments name what there is
+            )
+
+            near = nearest(span.text.lower(), NAMES)
+            fix = (span, near[0]) if near and is_respelling(span.text, near[0], vocabulary) else None
+            yield diagnostic("BT056", span, fix=fix, name=span.text, near=", ".join(near or sorted(NAMES)))
+    compilation.warnings = _left(compilation.warnings, words, vocabulary)
+
+
+def not_silenced(problems: Iterable[Diagnostic], source: Source, vocabulary: Lexicon) -> list[Diagnostic]:
+    """Those that no comment of their mission silences."""
+    return _left(problems, split(source, vocabulary.orthography), vocabulary)
+
+
+def _left(problems: Iterable[Diagnostic], words: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     silent: dict[str, list[tuple[int, int]]] = {}
+    for comment, _, code in _named(words):
+        silent.setdefault(code, []).append(_scope(comment, words, vocabulary))
+    return [
+        problem
+        for problem in problems
+        if problem.span.source is not words.source
+        or not any(start <= problem.span.start < end for start, end in silent.get(problem.code, ()))
+    ]
+
+
+def _named(words: Words) -> Iterator[tuple[Span, Span, str]]:
+    """Each name in such a comment: the comment, the place of the name, and its code, "" for none."""
     for comment in words.comments:
         match = re.fullmatch(_ALLOW, comment.text.rstrip())
         for name in re.finditer(_NAME, match["names"]) if match else ():
             start = comment.start + match.start("names") + name.start() if match else 0
-            span = Span(source, start, start + len(name[0]))
-            code = NAMES.get(" ".join(name[0].lower().split()))
-            if code is None:
-                from btlang.frontends.mission.explanations.spelling_rule import (
-                    is_respelling,  # most comments name what there is
-                )
-
-                near = nearest(name[0].lower(), NAMES)
-                fix = (span, near[0]) if near and is_respelling(name[0], near[0], vocabulary) else None
-                known = ", ".join(near or sorted(NAMES))
-                yield diagnostic("BT056", span, fix=fix, name=name[0], near=known)
-            else:
-                silent.setdefault(code, []).append(_scope(comment, words, vocabulary))
-    compilation.warnings = [
-        warning
-        for warning in compilation.warnings
-        if warning.span.source is not source
-        or not any(start <= warning.span.start < end for start, end in silent.get(warning.code, ()))
-    ]
+            code = NAMES.get(" ".join(name[0].lower().split()), "")
+            yield comment, Span(comment.source, start, start + len(name[0])), code
 
 
 def silence_in_xml(compilation: Compilation) -> Iterable[Diagnostic]:

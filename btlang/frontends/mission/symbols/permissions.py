@@ -23,7 +23,10 @@ class Permissions:
         self.problems: list[Diagnostic] = []
         self._allowing = _tree(vocabulary.roles["may"])
         self._staying = _tree(vocabulary.roles["or_stay"])
-        self._fronts = frozenset(word for role in ("if", "once", "then", "and") for word in _firsts(vocabulary, role))
+        self._asking = frozenset(word for role in ("if", "once") for word in _firsts(vocabulary, role))
+        self._joining = {word for role in ("then", "and") for word in _firsts(vocabulary, role)}
+        self._fronts = self._asking | self._joining
+        self._either = frozenset(_firsts(vocabulary, "or"))
         if text.distinct.isdisjoint((*self._allowing, *self._staying)):
             return
         for line in text.lines:
@@ -35,9 +38,13 @@ class Permissions:
         words = text.words
         for at in range(first, last):
             allows, stays = find(self._allowing, words, at), find(self._staying, words, at)
+            if stays is not None and stays[1] < last and words[stays[1]] != "," and words[stays[1]] not in self._either:
+                stays = None  # `stay with Bob`
             if allows is None and stays is None:
                 continue
-            begin = self._begin(text, first, at)
+            if at > first and words[at - 1] != "," and words[at - 1] not in self._joining and stays is None:
+                continue  # `if you can see somebody`, `until you can`
+            begin = first if text.words[first] in self._asking else self._begin(text, first, at)
             if begin == first and is_first:
                 continue  # `you may go to the lab` asks for it
             if stays is not None and allows is None and not self._offers(text, begin, last):
@@ -59,7 +66,7 @@ class Permissions:
 
     def _offers(self, text: Words, first: int, last: int) -> bool:
         """Whether `stay there` is one of two things that may be done."""
-        return "or" in text.words[first:last]
+        return not self._either.isdisjoint(text.words[first:last])
 
 
 def _statements(text: Words, first: int, last: int) -> Iterator[tuple[int, int]]:

@@ -103,7 +103,8 @@ def _each(
     if wide and wide[-1][0].how == ALL and not context.values.is_listed(wide[-1][0]):
         meant, last = wide[-1]
         kind = meant.type
-        values: tuple[str, ...] = (Choice(ALL, kind, prefix.key, meant.parts).text,)
+        some = Choice(ALL, kind, prefix.key, meant.parts)
+        values: tuple[str, ...] = context.values.members(some) or (some.text,)
     elif chosen is not None and chosen[0].how == ALL:
         kind = chosen[0].type
         every = all_names(vocabulary.trie, chosen[0], text, prefix.value, chosen[1], inner)

@@ -21,6 +21,12 @@ NEGATED = frozenset(("negated", "negated_twice"))
 _ODD = ("", "{", "(")  # how texts begin that are no plain values: of unknown names, references, choices and points
 
 
+def _leaves_none(value: SlotValue) -> bool:
+    """Whether words leave out by name every name that there is: `everyone except Alice`."""
+    choice = choice_of(value.group)
+    return not value.text and choice is not None and [name for name, _ in choice.parts] == ["not_kind"]
+
+
 def _keys(text: str) -> Iterable[str]:
     """The keys that a port text refers to, or into which it chooses."""
     choice = choice_of(text)
@@ -61,9 +67,9 @@ class Calls:
         if entry.sort == "value" and not (self._context.known and entry.id in self._context.known):
             self._unknown_value(self._text.span(at, match.last), entry.id)
         arguments = []
-        sets = [value for value in match.values if value.group]
+        sets = [value for value in match.values if value.group and not _leaves_none(value)]
         if sets and entry.sort in ("action", "name"):
-            values = [value.replace(text=value.group, more=()) if value.group else value for value in match.values]
+            values = [value.replace(text=value.group, more=()) if value in sets else value for value in match.values]
             match = match.replace(values=tuple(values))
         for value in match.values:
             text = value.text

@@ -15,6 +15,7 @@ from btlang.frontends.mission.token import Called, Token, begins_condition, cons
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_names import called, condition_names
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing, with_verb
+from btlang.frontends.mission.tokens.silent_words import BEGINS, without_meaning
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.entry import Meaning
@@ -23,13 +24,11 @@ from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.word_tree import SLOTS, find
+from btlang.vocabulary.word_tree import SLOTS
 
 _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
 """What a word is inside a statement, and where it goes on with the one before."""
 _NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
-_BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon", "comma", "then"))
-"""Behind these a statement, or an item of a list, begins."""
 _CONDITIONS = frozenset(("condition", *NEGATED))
 _JOINING = ("and", "or")
 _MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
@@ -185,7 +184,9 @@ class Lexer:
                     at = end
                     continue
             if match is None or role in _NOT_READ:
-                end = self._says_nothing(match, role, at) or self._partial.add_left_out(at)
+                end = without_meaning(
+                    tokens, text, match, role, at, self.vocabulary, self.context
+                ) or self._partial.add_left_out(at)
                 if end:
                     at = end
                     continue
@@ -252,34 +253,12 @@ class Lexer:
     def _in_its_place(self, match: Match | None, role: str, at: int) -> int:
         """Words that say something in one place only, and forms of verbs. Returns where to go on, 0 for any other."""
         text, tokens = self.text, self.tokens
-        if match is not None and role == "ordinal" and (not tokens or tokens[-1].kind in _BEGINS):
+        if match is not None and role == "ordinal" and (not tokens or tokens[-1].kind in BEGINS):
             return match.last + (text.words[match.last] == ",")
         if match is not None and role == "keep" and self._partial.doing(match.last) is not None:
             tokens.append(Token("repeat", text.starts[at], text.ends[match.last - 1], role="doing"))
             return match.last
         return self._partial.add_doing(at, match) if at and may_be_doing(tokens) else 0
-
-    def _says_nothing(self, match: Match | None, role: str, at: int) -> int:
-        """Words that say nothing in one place: `until you go to`, `to get to`, `but B first`. Returns the next word."""
-        tokens, vocabulary = self.tokens, self.vocabulary
-        if not tokens:
-            return 0
-        before = tokens[-1]
-        if before.kind in ("until", "before") and self.text.words[at] in vocabulary.subjects:
-            return at + 1
-        if role == "ordinal" and match is not None and before.kind in ("command", "but"):
-            start = next((token for token in reversed(tokens) if token.kind in _BEGINS or token.kind == "but"), before)
-            start.value = "first" if start.kind == "but" else start.value
-            follows = longest(vocabulary.trie, self.text, match.last, self.context)
-            is_last = self.text.words[match.last] in (",", ";", END_OF_TEXT)
-            goes_on = follows is not None and follows.meaning.role in ("then", "and")
-            return match.last if start.kind == "but" or is_last or goes_on else 0
-        purpose = find(vocabulary.purpose, self.text.words, at) if before.kind == "command" else None
-        if purpose is not None and longest(vocabulary.trie, self.text, purpose[1], self.context) is not None:
-            kind = "and" if constraint_of(before) is not None else "then"
-            tokens.append(Token(kind, self.text.starts[at], self.text.ends[purpose[1] - 1]))
-            return purpose[1]
-        return 0
 
     def _is_reported(self, start: int, end: int) -> bool:
         """Whether the latest problem is about these characters already."""

@@ -164,8 +164,9 @@ def left_out(
             for value in match.values
         ):
             continue  # a part of a value, or the way of the command before
-        if match is not None and all(_is_own(value) for value in match.values if value.last > len(front)):
-            continue
+        added = [value for value in match.values if value.last > len(front)] if match is not None else []
+        if added and all(map(_is_own, added)):
+            continue  # only the way or the manner of the command before: `to the lab, going through the hall`
         if match is None or match.last <= len(front) or match.meaning.role not in ("command", "name"):
             continue
         if all(context.types[value.type].kind != "text" for value in match.values):

@@ -134,7 +134,7 @@ export class Editor {
       return {
         from,
         to: Math.max(Math.min(each.end, length), from),
-        severity: each.severity,
+        severity: each.severity === "note" ? "info" : each.severity,
         message: [each.message, each.hint].filter(Boolean).join("\n"),
         source: each.code,
         actions: this.actions(each, from),

@@ -1,0 +1,47 @@
+"""Words that say nothing in one place: `until you go to`, `go through the hall to get to the lab`, `but B first`."""
+
+from __future__ import annotations
+
+from btlang.frontends.mission.token import Token, constraint_of
+from btlang.text.words import END_OF_TEXT, Words
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.match import Match
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.trie import longest
+from btlang.vocabulary.word_tree import find
+
+BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon", "comma", "then"))
+"""Behind these a statement, or an item of a list, begins."""
+
+
+def without_meaning(
+    tokens: list[Token],
+    text: Words,
+    match: Match | None,
+    role: str,
+    at: int,
+    vocabulary: Lexicon,
+    context: ReadingContext,
+) -> int:
+    """The word behind those at a place that say nothing behind these tokens, 0 if there are none.
+
+    What a command is for goes on as `then` would, and as `and` behind a constraint. `first` moves `but B` to the front.
+    """
+    if not tokens:
+        return 0
+    before = tokens[-1]
+    if before.kind in ("until", "before") and text.words[at] in vocabulary.subjects:
+        return at + 1
+    if role == "ordinal" and match is not None and before.kind in ("command", "but"):
+        start = next((token for token in reversed(tokens) if token.kind in BEGINS or token.kind == "but"), before)
+        start.value = "first" if start.kind == "but" else start.value
+        follows = longest(vocabulary.trie, text, match.last, context)
+        is_last = text.words[match.last] in (",", ";", END_OF_TEXT)
+        goes_on = follows is not None and follows.meaning.role in ("then", "and")
+        return match.last if start.kind == "but" or is_last or goes_on else 0
+    purpose = find(vocabulary.purpose, text.words, at) if before.kind == "command" else None
+    if purpose is not None and longest(vocabulary.trie, text, purpose[1], context) is not None:
+        kind = "and" if constraint_of(before) is not None else "then"
+        tokens.append(Token(kind, text.starts[at], text.ends[purpose[1] - 1]))
+        return purpose[1]
+    return 0

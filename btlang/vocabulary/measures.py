@@ -1,0 +1,187 @@
+"""Numbers in figures and words, quantities with their units, times of day and points: what a mission measures with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from btlang.text.source import Source
+from btlang.text.words import Orthography, Words, split
+from btlang.vocabulary.value_type import ValueType, format_number, with_unit
+from btlang.vocabulary.word_tree import END, WordTree, find, insert
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_LARGEST = 1e12  # beyond it no quantity of a robot makes sense, and sums stay exact
+_MOST_NUMBER_WORDS = 12
+_FARTHEST = 1e6  # metres, as in a world file
+
+
+class Measures:
+    """Reads numbers at a place in a text, with the units of `types` and the number words of a language."""
+
+    def __init__(self, types: Mapping[str, ValueType], language: Mapping[str, Any]) -> None:
+        self.types = dict(types)
+        self._numbers: Mapping[str, float] = language["numbers"]
+        self._multipliers: Mapping[str, float] = language["multipliers"]
+        self._joiner = frozenset(language["unit_joiner"])
+        self._one_each = frozenset(language["one_each"])
+        self._fractions: WordTree = {}
+        for phrase, value in language["fractions"].items():
+            insert(self._fractions, phrase.split(), value)
+        self._times: WordTree = {}
+        for phrase, value in language["times"].items():
+            insert(self._times, phrase.split(), value)
+        self._number_starts = frozenset((*self._numbers, *self._multipliers, *self._fractions))
+        self._units: WordTree = {}
+        for kind in types.values():
+            for unit in kind.units:
+                for word in unit.words:
+                    insert(self._units, word.split(), (kind.name, unit))
+        self._facing = [phrase.split() for phrase in language["roles"].get("facing", ())]
+
+    def is_number(self, words: Sequence[str]) -> bool:
+        """Whether the words are a number, and nothing else."""
+        text = split(Source(" ".join(words)), Orthography())
+        number = self.number(text, 0)
+        return number is not None and number[1] == len(text.words) - 2
+
+    def time_of_day(self, text: Words, at: int) -> tuple[str, int] | None:
+        """`6 pm`, `7:30 am`, `18:30` or `noon` as a port text of 24 hours (18:30), and where it ends."""
+        word = text.words[at]
+        named = find(self._times, text.words, at)
+        if named is not None and isinstance(named[0], str):
+            return named
+        if ":" in word and word[0].isdecimal():
+            hours, _, minutes = word.partition(":")
+            if len(hours) > 2 or len(minutes) != 2 or int(minutes) > 59:
+                return None
+            number: tuple[float, int] | None = float(hours), at + 1
+        else:
+            minutes, number = "", self.number(text, at)
+        if number is None:
+            return None
+        hour, end = number
+        half = self.half_of_day(text, end)
+        if half is not None:
+            hour, end = (hour % 12 + half[0] if 1 <= hour <= 12 else -1), half[1]
+        if hour not in range(24) or not (minutes or half):
+            return None
+        return f"{int(hour):02}:{int(minutes or 0):02}", end
+
+    def half_of_day(self, text: Words, at: int) -> tuple[int, int] | None:
+        """The hours that a word such as `pm` behind a number adds, and where it ends."""
+        found = find(self._times, text.words, at)
+        return found if found is not None and isinstance(found[0], int) else None
+
+    @property
+    def halves_of_day(self) -> list[str]:
+        """The words for which `half_of_day` looks, where they are one word."""
+        return [word for word, node in self._times.items() if isinstance(node.get(END), int)]
+
+    def quantity(self, text: Words, at: int) -> tuple[float, str, int] | None:
+        """A number with a unit: its value in the base unit, the name of the type, and where it ends."""
+        number = self.number(text, at)
+        if number is None:
+            if at not in text.articles and not (at and text.words[at - 1] in self._one_each):
+                return None
+            number = 1.0, at  # "a minute", "every hour"
+        value, after = number
+        if text.words[after] in self._joiner:
+            after += 1
+        unit = find(self._units, text.words, after)
+        if unit is None:
+            return None
+        (kind, unit_of), end = unit
+        half = find(self._fractions, text.words, end)  # "a minute and a half"
+        if half is not None and half[1] > end + 1 and not find(self._units, text.words, half[1]):
+            value, end = value + half[0], half[1]
+        amount = value * unit_of.numerator / unit_of.denominator
+        return (amount, kind, end) if abs(amount) <= _LARGEST else None
+
+    def number(self, text: Words, at: int) -> tuple[float, int] | None:
+        """A number in figures or words, fractions included, and where it ends."""
+        words = text.words
+        word = words[at]
+        if not (word in self._number_starts or word[0].isdecimal() or "-" in word):
+            return None  # as nearly always
+        value, start = self._whole_number(words, at)
+        fraction = find(self._fractions, words, start)
+        if fraction is not None:
+            value, start = (value or 0) + fraction[0], fraction[1]
+        return None if value is None or abs(value) > _LARGEST else (value, start)
+
+    def _whole_number(self, words: Sequence[str], at: int) -> tuple[float | None, int]:
+        word = words[at]
+        if word[0].isdecimal() or (word[0] == "-" and word[1:2].isdecimal()):
+            if ":" in word:
+                return None, at
+            value = float(word)
+            return (value, at + 1) if abs(value) <= _LARGEST else (None, at)
+        total: float | None = None
+        last = at + _MOST_NUMBER_WORDS
+        while True:
+            pieces = words[at].split("-")  # "twenty-five"
+            if at == last or not all(p in self._numbers or p in self._multipliers for p in pieces):
+                return total, at
+            for piece in pieces:
+                if piece in self._multipliers:
+                    total = (total if total is not None else 1) * self._multipliers[piece]
+                else:
+                    total = (total or 0) + self._numbers[piece]
+            at += 1
+
+    def point(self, text: Words, at: int) -> tuple[float, float, float | None, int] | None:
+        """`(x, y)` in metres, with or without a direction in degrees that it faces, and where it ends."""
+        numbers: list[float] = []
+        for mark in ("(", ","):
+            number = self._metres(text, at + 1) if text.words[at] == mark else None
+            if number is None or abs(number[0]) > _FARTHEST:
+                return None
+            numbers.append(number[0])
+            at = number[1]
+        if text.words[at] != ")":
+            return None
+        at += 1
+        for words in self._facing:
+            last = at + len(words)
+            angle = self.quantity(text, last) if text.words[at:last] == words else None
+            if angle is not None and angle[1] == "angle":
+                return numbers[0], numbers[1], angle[0], angle[2]
+        return numbers[0], numbers[1], None, at
+
+    def point_text(self, x: str, y: str, facing: str | None) -> str:
+        """A point as it is written."""
+        where = f"({x}, {y})"
+        if facing is None:
+            return where
+        return f"{where} {' '.join(self._facing[0])} {with_unit(facing, self.types['angle'].units[0].words[0])}"
+
+    def _metres(self, text: Words, at: int) -> tuple[float, int] | None:
+        quantity = self.quantity(text, at)
+        if quantity is not None:
+            return (quantity[0], quantity[2]) if quantity[1] == "length" else None
+        return self.number(text, at)
+
+    def _point_text(self, text: Words, at: int) -> tuple[str, int] | None:
+        point = self.point(text, at)
+        if point is None:
+            return None
+        x, y, facing, end = point
+        angle = None if facing is None else format_number(facing)
+        return self.point_text(format_number(x), format_number(y), angle), end
+
+    def _plain_number(self, value_type: ValueType, text: Words, at: int) -> tuple[str, int] | None:
+        number = self.number(text, at)
+        if number is None or find(self._units, text.words, number[1]):
+            return None
+        value, end = number
+        if (value_type.whole and value != int(value)) or too_small(value, value_type):
+            return None
+        return format_number(value), end
+
+
+def too_small(value: float, value_type: ValueType) -> bool:
+    """Whether a number is below the least of its type."""
+    return value_type.least is not None and value < value_type.least

@@ -1,0 +1,89 @@
+"""What verbs with roles, described things, sets and constraints mean: each row of meaning.txt, and back again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import btlang
+from btlang.tree.dump import plain
+
+HERE = Path(__file__).parent
+WORLD = str(HERE / "meaning.toml")
+PARSERS = ("shunting-yard", "lark")
+
+
+def rows() -> list[tuple[str, str]]:
+    """Two lines a row, a sentence and its tree, with comments and empty lines between them."""
+    text = (HERE / "meaning.txt").read_text(encoding="utf-8").splitlines()
+    lines = [line for line in text if line and not line.startswith("#")]
+    return list(zip(lines[::2], lines[1::2], strict=True))
+
+
+def in_one_line(mission: btlang.Mission) -> str:
+    """The tree with a mark for each level."""
+    return " | ".join(plain(mission.tree).replace("  ", ">").splitlines())
+
+
+@pytest.mark.parametrize(("sentence", "tree"), rows(), ids=lambda text: text)
+def test_meaning(sentence: str, tree: str) -> None:
+    missions = [btlang.parse_tree(sentence, world=WORLD, parser=parser) for parser in PARSERS]
+    assert [in_one_line(mission) for mission in missions] == [tree.strip()] * 2
+    for form in ("xml", "json", "english"):
+        text = str(missions[0].to(form))
+        assert btlang.parse_tree(text, world=WORLD).tree == missions[0].tree, text
+
+
+@pytest.mark.parametrize(
+    ("sentence", "code"),
+    [
+        ("go to the lab or avoid the hall", "BT155"),
+        ("wave through the door", "BT010"),
+        ("do you think you can find the book", "BT010"),
+        ("pick up the shiny cup", "BT013"),
+    ],
+)
+def test_what_is_refused(sentence: str, code: str) -> None:
+    for parser in PARSERS:
+        with pytest.raises(btlang.MissionError) as refused:
+            btlang.parse_tree(sentence, world=WORLD, parser=parser)
+        assert refused.value.diagnostics[0].code == code
+
+
+def test_what_only_permits_is_noted() -> None:
+    mission = btlang.parse_tree("go to the lab. Then you may go to the hall.", world=WORLD)
+    assert [warning.code for warning in mission.warnings] == ["BT176"]
+
+
+def run(sentence: str) -> btlang.Outcome:
+    """The outcome of a mission on the simulated robot."""
+    return btlang.parse_tree(sentence, world=WORLD).run(speed="max")
+
+
+def test_a_closed_zone_is_driven_round() -> None:
+    through, around = run("go to the lab"), run("go to the lab without entering the hall")
+    assert through.succeeded
+    assert around.succeeded
+    assert around.seconds > through.seconds
+
+
+@pytest.mark.parametrize(
+    ("sentence", "reason"),
+    [
+        ("go to the kitchen, then (go to the hall without leaving the kitchen)", "outside the kitchen"),
+        ("go to the hall without entering the hall", "where the robot may not go"),
+        ("pick up the red cup in the hall", "I know no red cup in the hall"),
+        ("pick up three cups", "3 are needed"),
+        ("look at every book near Alice", "book near Alice"),
+    ],
+)
+def test_what_cannot_be_done_says_why(sentence: str, reason: str) -> None:
+    outcome = run(sentence)
+    assert not outcome.succeeded
+    assert reason in outcome.why()
+
+
+def test_zones_open_again_however_their_statement_ends() -> None:
+    assert run("try (go to the hall without entering the hall). Go to the hall.").succeeded
+    assert run("(go to the lab without entering the hall) within 1 s if possible. Go to the hall.").succeeded
