@@ -16,21 +16,23 @@ if TYPE_CHECKING:
     from btlang.decorators import action, condition, quantity
     from btlang.diagnostics.diagnostic import Diagnostic
     from btlang.diagnostics.errors import MissionError
-    from btlang.engine.leaves.leaf import ActionFailed, Unknown
+    from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere, Unknown
     from btlang.run.runner import Outcome
     from btlang.run.statuses import Status
     from btlang.session import Run, Session
 
 __all__ = [
-    "ActionFailed", "Component", "Diagnostic", "Mission", "MissionError", "Outcome", "Parameter", "Run", "Session",
-    "Status", "Unknown", "action", "condition", "parse_file", "parse_tree", "quantity",
+    "ActionFailed", "Component", "Diagnostic", "Failed", "Mission", "MissionError", "NotThere", "Outcome", "Parameter",
+    "Run", "Session", "Status", "Unknown", "action", "condition", "parse_file", "parse_tree", "quantity",
 ]  # fmt: skip
 
 _HOMES = {
     "ActionFailed": "btlang.engine.leaves.leaf",
     "Component": "btlang.components.component",
     "Diagnostic": "btlang.diagnostics.diagnostic",
+    "Failed": "btlang.engine.leaves.leaf",
     "MissionError": "btlang.diagnostics.errors",
+    "NotThere": "btlang.engine.leaves.leaf",
     "Outcome": "btlang.run.runner",
     "Parameter": "btlang.components.component",
     "Run": "btlang.session",

@@ -6,6 +6,7 @@ import atexit
 import gc
 import os
 import re
+import signal
 import socket
 import sys
 from contextlib import suppress
@@ -28,6 +29,13 @@ sys.dont_write_bytecode = False  # and each worker the tests
 # with shared memory, who writes to a peer that was killed may wait for a second, and the next in its domain prints an
 # error about locked ports (Fast DDS 5737, 6117)
 os.environ["FASTDDS_BUILTIN_TRANSPORTS"] = "UDPv4"
+
+for number, usual in (
+    (signal.SIGINT, signal.default_int_handler), (signal.SIGQUIT, signal.SIG_DFL), (signal.SIGHUP, signal.SIG_DFL),
+    (signal.SIGTERM, signal.SIG_DFL),
+):  # fmt: skip
+    if signal.getsignal(number) == signal.SIG_IGN:  # as with `nohup ... &`: what tests start would inherit that
+        signal.signal(number, usual)
 
 REAL_TIME = ("tests/ros/", "tests/terminal/", "tests/web/")
 """Folders of tests in which several processes must be quick enough for one another."""

@@ -88,8 +88,9 @@ def answers(texts: Iterable[str], body: Body) -> Expected:
     phrases: dict[str, None] = {}
     for text in texts:
         meaning = meaning_of(text)
-        if meaning in MEANINGS:
-            phrases.update(dict.fromkeys(map(spoken, _answers().get(language, _answers()["en"])[meaning])))
+        if meaning in MEANINGS:  # both: who says no to ears that only know forms of yes would be heard to say one
+            forms = _answers().get(language, _answers()["en"])
+            phrases.update(dict.fromkeys(spoken(form) for each in MEANINGS for form in forms[each]))
         elif words := spoken(text):
             phrases[f"[i would like/want] [a/an/the/some] {words} [please]"] = None
             phrases[f"i'd like [a/an/the/some] {words} [please]"] = None

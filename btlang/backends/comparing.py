@@ -9,7 +9,7 @@ import operator
 from collections.abc import Callable, Mapping
 from inspect import Parameter, signature
 
-from btlang.engine.leaves.leaf import Failed
+from btlang.engine.leaves.leaf import Failed, Unknown
 from btlang.vocabulary.entry import MEASURED
 
 TYPE_CHECKING = False
@@ -43,7 +43,11 @@ def comparing(
         value = quantity(**given)
         if store is not None:
             store(value)
-        return _hold(limits, value) or Failed(lambda: say(given, _rounded(value, limits)))
+        if _hold(limits, value):
+            return True
+        if value != value:
+            raise Unknown("it is not a number")
+        return Failed(lambda: say(given, _rounded(value, limits)))
 
     own = signature(quantity)
     ports = [Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in (*_HOLDS, MEASURED)]

@@ -41,7 +41,7 @@ def bind_leaf(
     for entry in reversed(entries) if own is not None and not replacing else ():
         binding = own(entry, vocabulary)  # type: ignore[misc]
         if binding is not None:
-            return binding
+            return binding.replace(condition=True) if entry.sort != "action" else binding
     if not entries:
         return None
     entry = (replacing or entries)[-1 if replacing else 0]
@@ -67,14 +67,14 @@ def leaf_binding(
         raise EngineError("it is asynchronous, but a condition must answer at once", Node(entry.id, span=entry.span))
     if not entry.measures:
         binding = LeafBinding(call, converters, defaults, entry.outputs, thread=entry.thread)
-        return binding if entry.sort == "action" else binding.replace(refusal="it is not true")
+        return binding if entry.sort == "action" else binding.replace(refusal="it is not true", condition=True)
 
     def say(given: Mapping[str, Any], value: str) -> str:
         ports = {slot.name: str(given[slot.name]) for slot in slots if slot.name in given}
         return leaf_words(entry.id, {**ports, "equal": value}, vocabulary) or f"it is {value}"
 
     try:
-        return LeafBinding(comparing(call, say), converters, defaults, (MEASURED,))
+        return LeafBinding(comparing(call, say), converters, defaults, (MEASURED,), condition=True)
     except (TypeError, ValueError) as error:
         raise EngineError(f"{entry.call} cannot be a quantity: {error}", Node(entry.id, span=entry.span)) from error
 

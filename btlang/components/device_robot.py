@@ -73,7 +73,7 @@ class DeviceSimulation(Simulation):
         self.devices.step()
         if not self._drives:
             with suppress(RobotError):  # it stays where it was seen last
-                self._twin.put(self.robot.pose)
+                self._twin.carry(self.robot.pose)
         self._twin.step(seconds)
 
 

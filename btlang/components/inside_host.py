@@ -10,7 +10,7 @@ from inspect import isgenerator, signature
 from btlang.components.component import Component, ComponentError
 from btlang.components.life_cycle import ACTIVE, TRANSITIONS, UNCONFIGURED
 from btlang.components.location import describe, load_class
-from btlang.engine.leaves.leaf import ActionFailed, described, reason_of
+from btlang.engine.leaves.leaf import ActionFailed, NotThere, described, reason_of
 from btlang.robots.proxy import RobotProxy
 
 TYPE_CHECKING = False
@@ -119,7 +119,7 @@ class InsideHost:
     def check_active(self) -> None:
         """Raises ActionFailed where it isn't active any more."""
         if self.state != ACTIVE:
-            raise ActionFailed(f"the {self._part.name} {self.problem or f'is {self.state}'}")
+            raise ActionFailed(NotThere(f"the {self._part.name} {self.problem or f'is {self.state}'}"))
 
     def _fail(self, problem: BaseException) -> None:
         try:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from btlang.components.component import ComponentAbsent, ComponentError
 from btlang.components.life_cycle import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED
 from btlang.components.location import located
-from btlang.engine.leaves.leaf import ActionFailed, described
+from btlang.engine.leaves.leaf import ActionFailed, NotThere, described
 from btlang.record import Record
 from btlang.robots.body import ComponentPart
 
@@ -240,7 +240,7 @@ class Keeper:
         """Where it lives now. Raises ActionFailed where it isn't active."""
         host = self.host
         if host is None or self.state != ACTIVE or host.state != ACTIVE:
-            raise ActionFailed(f"the {self.part.name} {self.why or f'is {self.state}'}")
+            raise ActionFailed(NotThere(f"the {self.part.name} {self.why or f'is {self.state}'}"))
         return host
 
     def _keep(self) -> None:

@@ -22,7 +22,7 @@ from btlang.components.life_cycle import ACTIVE, UNCONFIGURED
 from btlang.components.plain import packed, refused, unpacked
 from btlang.components.remote_leaf import RemoteLeaf, Request
 from btlang.devices.driver import DeviceError
-from btlang.engine.leaves.leaf import ActionFailed, Unknown, described
+from btlang.engine.leaves.leaf import ActionFailed, NotThere, Unknown, described
 from btlang.robots.sockets import socket_folder
 
 TYPE_CHECKING = False
@@ -157,7 +157,7 @@ class ProcessHost:
     def begin(self, method: str, arguments: dict[str, Any], wake: Callable[[], object]) -> Request:
         """Calls a method. Raises ActionFailed where it can't be called now."""
         if self._lost is not None or self.state != ACTIVE:
-            raise ActionFailed(f"the {self._part.name} {self._lost or f'is {self.state}'}")
+            raise ActionFailed(NotThere(f"the {self._part.name} {self._lost or f'is {self.state}'}"))
         return self._request("call", wake, method=method, arguments=arguments)
 
     def halt(self, request: Request) -> None:

@@ -12,9 +12,10 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 
 from btlang.devices.driver import Device, DeviceError, DeviceSilent, Driver
-from btlang.devices.kinds import KINDS, Command, JointTarget, Reading
+from btlang.devices.kinds import KINDS, Charge, Command, JointTarget, Reading
 from btlang.devices.value_checks import check_command, wrong_content, wrong_field
 from btlang.engine.leaves.leaf import described
+from btlang.robots.charge import ChargeCheck
 
 SILENCE = 0.2
 """Seconds after which a command no longer counts, and after which a device that moves is silent."""
@@ -42,6 +43,7 @@ class DeviceLoop:
         self._readings: dict[str, tuple[Reading, float]] = {}
         self._wrong: dict[str, str | None] = dict.fromkeys(self.devices, _NOT_YET)
         self._followers: dict[str, list[Callable[[Reading], object]]] = {}
+        self._charges = {device.name: ChargeCheck() for device in devices if device.kind == "battery"}
         self.settled = threading.Event()
         """Set once it is known of each device whether it answers."""
         self._stopped = threading.Event()
@@ -148,6 +150,11 @@ class DeviceLoop:
             self._set_wrong(name, wrong)
         else:
             calibrated = _calibrated(reading, self.devices[name])
+            if isinstance(calibrated, Charge) and not self._charges[name].believes(calibrated.percent, now):
+                before = self._readings.get(name)
+                if before is not None and self._charges[name].is_recent(now):
+                    self._readings[name] = before[0], now
+                return
             self._readings[name] = calibrated, now
             for take in self._followers.get(name, ()):
                 take(calibrated)

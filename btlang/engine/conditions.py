@@ -93,28 +93,28 @@ def _watched_by_scripts(instance: NodeInstance, compiled: Compiled, texts: Mappi
     on_halted = scripts.get("_onHalted")
     running = False
 
-    def verdict() -> tuple[int, str]:
-        """What the pre-conditions decide, IDLE where nothing, and the reason of a FAILURE."""
+    def verdict() -> int:
+        """What the pre-conditions decide, IDLE where nothing; a FAILURE is recorded."""
         try:
             if running:
-                return (IDLE if goes_on is None or truth(goes_on(scope)) else SKIPPED), ""
+                return IDLE if goes_on is None or truth(goes_on(scope)) else SKIPPED
             for port, script, answer, status in before:
                 if truth(script(scope)) == answer:
-                    return status, f"{port} holds: {texts[port]}"
+                    return instance.fail(f"{port} holds: {texts[port]}") if status == FAILURE else status
         except ActionFailed as failed:
-            return FAILURE, str(failed)
-        return IDLE, ""
+            return instance.cannot_know(str(failed))
+        return IDLE
 
     def tick() -> int:
         nonlocal running
-        status, reason = verdict() if before else (IDLE, "")
+        status = verdict() if before else IDLE
         if status == IDLE:
             status = tick_node()
             running = status == RUNNING
         else:
+            fault = instance.state.fault
             halt(False)
-            if status == FAILURE:
-                instance.fail(reason)
+            instance.state.fault = fault
         if status in (SUCCESS, FAILURE):
             try:
                 for script in after[status]:

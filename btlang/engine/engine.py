@@ -62,8 +62,8 @@ class Engine:
     `hooks` may step in before and behind each tick of a node, which then takes longer.
 
     Raises EngineError where the tree cannot be compiled. `listener` gets lists of status changes, children before
-    parents; see status_trace.py for what counts as one, and when it gets them. `on_unknown` is called during a tick if
-    a condition does not know (Unknown), once for each until the tree is halted.
+    parents; see status_trace.py for what counts as one, and when it gets them. `on_warning` is called during a tick if
+    a condition isn't known, or a leaf raises what isn't ActionFailed: once for each node until the tree is halted.
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class Engine:
         listener: Listener | None = None,
         enums: Mapping[str, float] = {},
         stopwatch: Stopwatch | None = None,
-        on_unknown: Callable[[Failure], object] | None = None,
+        on_warning: Callable[[Failure], object] | None = None,
         proxies: Mapping[str, Callable[..., Any]] = {},
         hooks: Hooks | None = None,
     ) -> None:
@@ -88,8 +88,8 @@ class Engine:
         self._beside: set[object] = set()
         own = {"wake": self._wake, "wake_at": clock.leaf_wake_at, "progress": unheard, "beside": self._beside}
         self._state = EngineState(bind, clock, {**own, **services}, enums, stopwatch, proxies)
-        if on_unknown is not None:
-            self._state.on_unknown = lambda fault: on_unknown(self._failure(fault))
+        if on_warning is not None:
+            self._state.on_warning = lambda fault: on_warning(self._failure(fault))
         with gc_paused:
             self._instances = expand(tree, self.blackboard, self._state)
             self._trace = None if listener is None else StatusTrace(self._state, listener)
@@ -246,6 +246,11 @@ class Engine:
     def values(self, index: int) -> dict[str, Any]:
         """The values of the blackboard of a node, but for those that it shares with the one above. From any thread."""
         return self._instances[index].scope.own_values()
+
+    def is_question(self, index: int) -> bool:
+        """Whether a node is a condition, or a node that asks a script."""
+        signature = self._state.signatures.get(self.node(index).id)
+        return signature is None or signature.binding.condition
 
     def parent(self, index: int) -> int:
         """The node above a node, -1 for the root."""

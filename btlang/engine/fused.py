@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from btlang.engine.instance import NodeInstance
-from btlang.engine.leaves.callables import as_function, status_of, unanswered
+from btlang.engine.leaves.callables import as_function, failed, status_of
 from btlang.engine.nodes import control
 from btlang.engine.nodes.reactive import reactive_fallback, reactive_sequence
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
@@ -58,7 +58,7 @@ def normalize_status(instance: NodeInstance | None, answer: object) -> int:
         return answer
     if answer is FAILURE:
         return instance.refuse()
-    return unanswered(instance, answer) if isinstance(answer, BaseException) else status_of(instance, answer)
+    return failed(instance, answer) if isinstance(answer, BaseException) else status_of(instance, answer)
 
 
 def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> Compiled:

@@ -18,7 +18,7 @@ from functools import cache
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
-from btlang.engine.leaves.leaf import REFUSED, ActionFailed, LeafBinding, Reason
+from btlang.engine.leaves.leaf import REFUSED, ActionFailed, LeafBinding, NotThere, Reason
 from btlang.engine.script.values import as_text
 from btlang.engine.status import FAILURE
 from btlang.record import Record
@@ -102,7 +102,7 @@ class EngineState:
         "halt_faults",
         "interrupts",
         "node_trace",
-        "on_unknown",
+        "on_warning",
         "proxies",
         "service_names",
         "services",
@@ -132,10 +132,10 @@ class EngineState:
         self.enums = {name: float(value) for name, value in enums.items()}  # names that scripts and Switch nodes know
         self.background: BackgroundWork | None = None  # where a leaf works beside the tick
         self.fault: Fault | NodeInstance | None = None  # the latest failure
-        self.unknown: Fault | NodeInstance | None = None  # the latest condition that could not know
+        self.unknown: Fault | NodeInstance | None = None  # the latest failure that isn't an answer
         self.unknowns = 0  # how many there have been
-        self.warned: set[int] = set()  # which of them `on_unknown` knows of
-        self.on_unknown: Callable[[Fault | NodeInstance], object] | None = None
+        self.warned: set[int] = set()  # which of them `on_warning` knows of
+        self.on_warning: Callable[[Fault | NodeInstance], object] | None = None
         # exceptions that leaves raised while they were halted; only the latest, should nobody ask for them
         self.halt_faults: deque[Fault] = deque(maxlen=1000)
         self.emergency = False  # whether the halt in progress is an emergency stop, which starts nothing
@@ -191,25 +191,32 @@ class NodeInstance:
         self.state.fault = fault
         return FAILURE
 
-    def cannot_know(self, reason: Reason) -> int:
-        """Records that this condition failed because it is unknown; returns FAILURE."""
-        self.fail(reason)
+    def cannot_know(self, reason: Reason, exception: BaseException | None = None) -> int:
+        """Records that this node failed without an answer: its failure doesn't mean no. Returns FAILURE."""
+        self.fail(reason, exception)
         state = self.state
         state.unknown = state.fault
         state.unknowns += 1
         if self.index not in state.warned and state.fault is not None:
             state.warned.add(self.index)
-            if state.on_unknown is not None:
-                state.on_unknown(state.fault)
+            if state.on_warning is not None:
+                state.on_warning(state.fault)
         return FAILURE
 
     def not_known(self, before: int) -> bool:
-        """Whether a condition below was unknown since `unknowns` was `before`; then that is the latest failure."""
+        """Whether a node below gave no answer since `unknowns` was `before`; then that is the latest failure."""
         state = self.state
         if state.unknowns == before:
             return False
         state.fault = state.unknown
         return True
+
+    def is_not_there(self) -> bool:
+        """Whether the latest failure has a reason that may pass by itself."""
+        fault = self.state.fault
+        while fault is not None and fault.cause is not None:
+            fault = fault.cause
+        return fault is not None and isinstance(fault.reason, NotThere)
 
     def pass_on(self, reason: Reason) -> int:
         """Adds this node's reason to the failure below it, which stays the cause; returns FAILURE."""

@@ -13,19 +13,21 @@ from btlang.engine.status import RUNNING
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.engine.instance import Compiled, NodeInstance, Tick
+    from btlang.engine.instance import Compiled, EngineState, NodeInstance, Tick
 
 
 class ResumePath:
     """`top` is the number of the highest node, `resumed` the tick of the child that is RUNNING."""
 
-    __slots__ = ("answer", "resumed", "top", "used")
+    __slots__ = ("answer", "answers", "resumed", "state", "top", "used")
 
-    def __init__(self, top: int) -> None:
+    def __init__(self, top: int, state: EngineState) -> None:
         self.top = top
+        self.state = state
         self.used = False  # whether there is a child for which it is worth the effort
         self.resumed: Tick | None = None
         self.answer: int | None = None  # what that child has returned in this tick
+        self.answers = True  # whether that is an answer, see NodeInstance.cannot_know
 
 
 def resume_paths(instances: Sequence[NodeInstance], waits: Callable[[NodeInstance], bool]) -> list[ResumePath | None]:
@@ -36,7 +38,7 @@ def resume_paths(instances: Sequence[NodeInstance], waits: Callable[[NodeInstanc
             found.append(None)
             continue
         around = None if instance.above is None else found[instance.above.index]
-        found.append(ResumePath(instance.index) if around is None else around)
+        found.append(ResumePath(instance.index, instance.state) if around is None else around)
     return found
 
 
@@ -49,6 +51,8 @@ def resumable(path: ResumePath, compiled: Compiled) -> Compiled:
         status = path.answer
         if status is None:
             status = tick()
+        elif not path.answers:
+            path.state.unknowns += 1  # again, for the nodes on the way down, which begin to count only now
         path.answer = None
         path.resumed = tick if status == RUNNING else None
         return status
@@ -63,13 +67,15 @@ def resumable(path: ResumePath, compiled: Compiled) -> Compiled:
 def resuming(path: ResumePath, compiled: Compiled) -> Compiled:
     """The highest node of the path."""
     tick, halt = compiled
+    state = path.state
 
     def resume() -> int:
         if path.resumed is not None:
+            unknowns = state.unknowns
             status = path.resumed()
             if status == RUNNING:
                 return RUNNING
-            path.answer = status
+            path.answer, path.answers = status, state.unknowns == unknowns
         return tick()
 
     return resume, halt

@@ -5,7 +5,7 @@ from __future__ import annotations
 from _thread import get_ident  # `threading` takes longer to import
 from collections.abc import Callable, Iterator, Mapping
 
-from btlang.engine.leaves.callables import FunctionLeaf, as_function, status_of, unanswered
+from btlang.engine.leaves.callables import FunctionLeaf, as_function, failed, status_of
 from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SUCCESS
 from btlang.tree.catalogue import CATALOGUE, ON_SUCCESS
 
@@ -185,7 +185,7 @@ class NodeTrace:
             except KeyboardInterrupt:
                 raise
             except BaseException as problem:
-                status = unanswered(leaf.instance, problem)
+                status = failed(leaf.instance, problem)
             else:
                 if status is None:
                     status = SUCCESS

@@ -46,11 +46,19 @@ class Base(Record):
     contact_speed: float = 0.1
 
 
+TOLERANCE = 0.5
+"""Metres from the goal of a journey, where the robot file doesn't say another distance."""
+
+
 class Navigation(Record):
-    """How near it goes to objects (within reach of its hands) and to people, in metres from centre to centre."""
+    """How near it goes to objects (within reach of its hands) and to people, in metres from centre to centre.
+
+    A navigation server that reports success is believed within `tolerance` metres of the goal.
+    """
 
     objects: float
     people: float
+    tolerance: float = TOLERANCE
 
 
 class Joint(Record):

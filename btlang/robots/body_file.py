@@ -11,6 +11,7 @@ from btlang.diagnostics.reading import is_below, real_path
 from btlang.robots import joint_tables
 from btlang.robots.body import (
     PATIENCE,
+    TOLERANCE,
     Base,
     Battery,
     Body,
@@ -181,7 +182,8 @@ def _navigation(top: Table, radius: float) -> Navigation | None:
     if not top.has("navigation"):
         return None
     table = top.table("navigation")
-    return table.finish(Navigation(table.number("objects", low=radius), table.number("people", low=radius)))
+    near = table.number("objects", low=radius), table.number("people", low=radius)
+    return table.finish(Navigation(*near, table.number("tolerance", TOLERANCE, low=_LEAST, high=100.0)))
 
 
 def _battery(top: Table) -> Battery | None:

@@ -433,6 +433,10 @@ class SimulatedRobot:
         """Puts an object or a person somewhere else, as somebody in the world would. Raises RobotError."""
         self._surroundings.move(name, x, y)
 
+    def carry(self, pose: Pose) -> None:
+        """Moves the base alone, as somebody who pushes it would; everything else goes on."""
+        self._base.put(pose)
+
     def put(self, pose: Pose) -> None:
         """Puts the robot somewhere else, at rest, as somebody who carries it would."""
         self._rest()

@@ -64,7 +64,7 @@ class Voice:
         self.said: Utterance | None = None
         """What it says, or said last."""
         self.position = 0.0
-        """Seconds since that began, negative before."""
+        """Seconds since that began, also after its end; negative before."""
 
     @property
     def speaking(self) -> bool:
@@ -103,7 +103,9 @@ class Voice:
         """Moves on by `dt` seconds."""
         if not self._ended:
             self._step(dt)
-        elif self._shape != "rest":
+            return
+        self.position += dt
+        if self._shape != "rest":
             self._show("rest")
 
     def show(self, shape: str) -> None:

@@ -177,6 +177,11 @@ class RosBase:
         message, arrived, fault = found
         return OdometryReading(self._subscriptions.shown(ODOMETRY), arrived, fault, pose_of(message.pose.pose))
 
+    @property
+    def is_localized(self) -> bool:
+        """Whether the pose is more than that of the odometry."""
+        return self._fix is not None
+
     def where(self) -> Pose | None:
         """The pose; None where the odometry is silent."""
         try:

@@ -18,7 +18,7 @@ from btlang.record import Record
 from btlang.ros.executor_thread import ExecutorThread
 from btlang.ros.gate import Gate
 from btlang.ros.graph import full_name, is_ready, no_listener, no_publisher, no_server
-from btlang.ros.latest import Latest, NodeClock
+from btlang.ros.latest import Latest, NodeClock, latest_of
 from btlang.ros.lease import Lease
 from btlang.ros.waiting import wait_until
 from btlang.ros.word import type_name
@@ -108,8 +108,10 @@ class Clients:
         name = self._claim("publisher", cls, name)
 
         def make() -> tuple[Latest, Missing]:
-            made = Latest(name, self.clock.now, lambda: no_publisher(self.node, cls, name), self._gate(cls).refuses)
-            qos = _qos(True) if latched else QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+            made = latest_of(cls)(
+                name, self.clock.now, lambda: no_publisher(self.node, cls, name), self._gate(cls).refuses
+            )
+            qos = _qos(True) if latched else QoSProfile(depth=made.depth, reliability=ReliabilityPolicy.BEST_EFFORT)
             self.node.create_subscription(cls, name, made.store, qos)
             return made, made.why_not
 

@@ -18,16 +18,18 @@ from btlang.ros.available import OWN, require_interfaces, require_ros
 from btlang.ros.binding import bind_ros
 from btlang.ros.clients import Clients
 from btlang.ros.connected import is_connected
-from btlang.ros.graph import absent, full_name
+from btlang.ros.graph import absent, full_name, mismatch
+from btlang.ros.joint_states import STATES
 from btlang.ros.latest import NodeClock
 from btlang.ros.node import SpunNode
 from btlang.ros.pace import RosPace
 from btlang.ros.robot import RosRobot
-from btlang.ros.robot_interface import ALTERNATIVES, CLOCK, VELOCITY, Interface, needs
+from btlang.ros.robot_interface import ALTERNATIVES, CLOCK, ONE_SOURCE, VELOCITY, Interface, needs
 from btlang.ros.serving.names import served
 from btlang.ros.waiting import wait_until
 from btlang.run.bus import Bus
 from btlang.run.controls import Controls
+from btlang.run.events import Warned
 from btlang.run.pace import Pace
 from btlang.text.source import Source, Span
 from btlang.tree.node import Node, Tree
@@ -69,7 +71,6 @@ class RosConnection:
         self._discovers_until = time.monotonic() + _DISCOVERY
         self._spun = SpunNode(name, namespace=namespace, use_sim_time=sim_time)
         self.node = self._spun.node
-        self._now = self._ros_time if sim_time else time.monotonic
         now = NodeClock(self._spun.node).now
         try:
             self.robot = RosRobot(self._spun.node, world, on_event=self._report, now=now, body=body)
@@ -108,7 +109,7 @@ class RosConnection:
         if any(interface.type.startswith(f"{OWN.name}/") for interface in wanted):
             require_interfaces()
         found: dict[Interface, tuple[Node | None, str]] = {}
-        states_until = time.monotonic() + _AGAIN
+        states_until, joints = time.monotonic() + _AGAIN, any(interface.name == STATES for interface in wanted)
 
         def has_all() -> bool:
             found.clear()
@@ -119,7 +120,7 @@ class RosConnection:
             found.update((interface, (node, lacking[interface])) for interface, node in own.items())
             if any(reason for _, reason in found.values()):
                 return False
-            return not self.robot.awaited() or time.monotonic() >= states_until
+            return not self.robot.awaited(joints) or time.monotonic() >= states_until
 
         wait_until(has_all, max(self._discovers_until - time.monotonic(), _AGAIN))
         return {self._named(interface): lack for interface, lack in found.items()}
@@ -129,22 +130,37 @@ class RosConnection:
         return lacking(self.robot.body, tree, vocabulary, but=self._bound(tree, vocabulary)[0])
 
     def warnings(self, needs: Iterable[Interface]) -> list[str]:
-        """What is there and may do harm: others who command the robot to move. Waits until DDS has found everybody."""
-        if VELOCITY not in (need.name.rpartition("/")[2] for need in needs):
-            return []
-        name = full_name(self.node, "listener", VELOCITY)
+        """What is there and may do harm: others who command the robot to move, and two who say the same of it.
+
+        Waits until DDS has found everybody.
+        """
+        wanted = {(need.kind, full_name(self.node, need.kind, need.name)) for need in needs}
+        drives = full_name(self.node, "listener", VELOCITY)
+        commands = [drives] if ("listener", drives) in wanted else []
+        said = [name for kind, name in sorted(wanted) if kind == "publisher" and name.rpartition("/")[2] in ONE_SOURCE]
         own = self.node.get_namespace().rstrip("/"), self.node.get_name()
 
-        def others() -> set[tuple[str, str]]:
+        def others(name: str) -> list[tuple[str, str]]:
             ends = self.node.get_publishers_info_by_topic(name)
-            return {(end.node_namespace.rstrip("/"), end.node_name) for end in ends} - {own}
+            named = ((end.node_namespace.rstrip("/"), end.node_name) for end in ends)
+            return sorted(each for each in named if each != own)
 
         def are_named() -> bool:
-            return bool(others()) and not any(node == _UNNAMED for _, node in others())
+            """Whether all that can be found has been: with one of a kind there may be another."""
+            found = [others(name) for name in commands] + [others(name)[1:] for name in said]
+            return all(found) and not any(node == _UNNAMED for each in found for _, node in each)
 
-        wait_until(are_named, self._discovers_until - time.monotonic())
-        shown = ["another node" if node == _UNNAMED else f"{place}/{node}" for place, node in sorted(others())]
-        return [f"{node} publishes {name} too, so the robot follows both" for node in shown]
+        def shown(name: str) -> list[str]:
+            return ["another node" if node == _UNNAMED else f"{place}/{node}" for place, node in others(name)]
+
+        if commands or said:
+            wait_until(are_named, self._discovers_until - time.monotonic())
+        twice = [(name, " and ".join(shown(name))) for name in said if len(others(name)) > 1]
+        rivals = [(name, node) for name in commands for node in dict.fromkeys(shown(name))]
+        return [
+            *(f"{node} publishes {name} too, so the robot follows both" for name, node in rivals),
+            *(f"{nodes} publish {name}, so it contradicts itself" for name, nodes in twice),
+        ]
 
     def _spoken(self, wanted: Mapping[Interface, Node | None]) -> dict[Interface, Node | None]:
         """With the type of velocity that the robot listens to."""
@@ -158,13 +174,15 @@ class RosConnection:
             choices = ()
         offered = next((each for each in choices if not self._absent(each)), wanted)
         reason = self._lacks(offered)
-        others = [self._lacks(each) for each in choices if each != wanted] if reason else []
-        return offered, ", and ".join([reason, *others])
+        others = [self._lacks(each) for each in choices if each != offered] if reason else []
+        return offered, ", and ".join(dict.fromkeys(filter(None, [reason, *others])))
 
     def _lacks(self, wanted: Interface) -> str:
         """What is wrong with an interface that shipped leaves need, "" for nothing."""
         node, name = self._spun.node, self._named(wanted).name
         reason = self._absent(wanted)
+        if not reason and wanted.kind in ("publisher", "listener"):
+            reason = mismatch(node, wanted.kind, name)
         if not reason and wanted.flows:
             reason = self.robot.subscriptions.why_not(wanted.name)
         return reason if reason or is_connected(node, name) else f"{name} is not connected yet"
@@ -208,7 +226,7 @@ class RosConnection:
         """Raises ValueError for another speed than 1: the robot's time passes by itself."""
         if speed != 1.0:
             raise ValueError('a ROS 2 robot runs in real time: speed must be "real"')
-        return RosPace(controls, self._now)
+        return RosPace(controls, self._ros_time if self._sim_time else None, self._clock_failed)
 
     def close(self) -> None:
         """Leaves the robot at rest and its goals cancelled, then the ROS graph. Takes a few seconds at most."""
@@ -220,6 +238,9 @@ class RosConnection:
 
     def _ros_time(self) -> float:
         return float(self._spun.node.get_clock().now().nanoseconds) * 1e-9
+
+    def _clock_failed(self, what: str) -> None:
+        self.bus.emit(Warned, f"{CLOCK.name} {what}, so that the mission's time goes on with the computer's clock")
 
     def _report(self, kind: str, data: Mapping[str, Any]) -> None:
         self.bus.emit_robot(kind, data)

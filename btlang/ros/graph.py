@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rclpy.action import ActionClient, get_action_names_and_types
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from btlang.ros.word import type_name
 
@@ -43,6 +44,39 @@ def absent(node: Any, kind: str, name: str, wanted: Any) -> str:
     return _NOBODY[kind].format(name=name)
 
 
+def mismatch(node: Any, kind: str, name: str) -> str:
+    """Why nothing that the node hears or publishes on a topic can be exchanged with anybody, "" where it can.
+
+    Reliability and durability alone: rclpy shows limits of time that aren't set differently at both ends.
+    """
+    heard = kind == "publisher"
+    name = full_name(node, kind, name)
+    own = [each.qos_profile for each in (node.subscriptions if heard else node.publishers) if each.topic_name == name]
+    infos = (node.get_publishers_info_by_topic if heard else node.get_subscriptions_info_by_topic)(name)
+    others = [each.qos_profile for each in infos]
+    lacks = [_lacking(*((other, each) if heard else (each, other))) for each in own for other in others]
+    if not lacks or not all(lacks):
+        return ""
+    sent, asked = (
+        " and ".join(each.name.lower().replace("_", " ") for each in side) for side in zip(*lacks[0], strict=True)
+    )
+    who = (
+        f"{name} is published as {sent}, but btlang"
+        if heard
+        else f"btlang publishes {name} as {sent}, but its listener"
+    )
+    return f"{who} asks for {asked}: the quality of service doesn't match"
+
+
+def _lacking(offered: QoSProfile, requested: QoSProfile) -> list[tuple[Any, Any]]:
+    """The policies of a publisher that are too weak, each with what the listener asks for."""
+    policies = (
+        (offered.reliability, requested.reliability, ReliabilityPolicy.BEST_EFFORT, ReliabilityPolicy.RELIABLE),
+        (offered.durability, requested.durability, DurabilityPolicy.VOLATILE, DurabilityPolicy.TRANSIENT_LOCAL),
+    )
+    return [(sent, asked) for sent, asked, weak, strong in policies if sent == weak and asked == strong]
+
+
 def is_ready(client: Any) -> bool:
     """Whether there is a server for a client of an action or a service."""
     return bool(client.server_is_ready() if isinstance(client, ActionClient) else client.service_is_ready())
@@ -56,12 +90,13 @@ def no_server(node: Any, cls: Any, name: str) -> str:
 
 def no_listener(node: Any, cls: Any, name: str) -> str:
     """Why nobody hears what is published."""
-    return absent(node, "listener", name, cls) or f"nobody listens to {name} yet"
+    why = absent(node, "listener", name, cls) or mismatch(node, "listener", name)
+    return why or f"nobody listens to {name} yet"
 
 
 def no_publisher(node: Any, cls: Any, name: str) -> str:
     """Why nothing comes on a topic, "" where it is only silent."""
-    return absent(node, "publisher", name, cls)
+    return absent(node, "publisher", name, cls) or mismatch(node, "publisher", name)
 
 
 def types_of(node: Any, kind: str, name: str) -> set[str]:

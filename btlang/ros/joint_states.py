@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from math import isfinite
-
 from sensor_msgs.msg import JointState
 
 from btlang.robots.body import Body
 from btlang.robots.joints import joint_of
-from btlang.robots.robot import SensorSilent
 from btlang.ros.subscription_cache import SubscriptionCache
 
 STATES, TRAJECTORY = "joint_states", "joint_trajectory"
@@ -22,23 +19,21 @@ class JointStates:
         self._subscriptions, self._body = subscriptions, body
         subscriptions.listen(STATES, JointState, "joint states")
 
-    @property
-    def message(self) -> JointState:
-        """The latest one. Raises SensorSilent."""
-        return self._subscriptions.get(STATES, _SILENT)
+    def awaited(self) -> list[str]:
+        """The joints of the body that haven't been reported yet, although others have."""
+        states = self._subscriptions.latest_joints(STATES)
+        return states.missing(on_wire(joint.name) for joint in self._body.joints) if states.has_come else []
 
     def angle(self, name: str) -> float:
         """Raises RobotError for an unknown joint, and where the joint states are silent."""
+        return self.stamped(name)[0]
+
+    def stamped(self, name: str) -> tuple[float, float]:
+        """As `angle`, with the time stamp of the message."""
         joint = joint_of(self._body, name)
-        position = positions(self.message).get(on_wire(name))
-        if position is None:
-            raise SensorSilent(f'{self._subscriptions.shown(STATES)} doesn\'t report the joint "{on_wire(name)}"')
-        return position / joint.si
-
-
-def positions(states: JointState) -> dict[str, float]:
-    """The joints that it says a position of, which is finite, in radians or metres."""
-    return {name: at for name, at in zip(states.name, states.position, strict=False) if isfinite(at)}
+        self._subscriptions.get(STATES, _SILENT)
+        position, stamp = self._subscriptions.latest_joints(STATES).position(on_wire(name), _SILENT)
+        return position / joint.si, stamp
 
 
 def on_wire(name: str) -> str:

@@ -24,6 +24,7 @@ class JointsOverRos(Protocol):
 
     @property
     def moving(self) -> bool: ...
+    def awaited(self) -> list[str]: ...
     def angle(self, name: str) -> float: ...
     def move(self, targets: Mapping[str, float]) -> None: ...
     def at_target(self, names: tuple[str, ...]) -> bool: ...
@@ -49,6 +50,10 @@ class RosJoints:
         self._targets: dict[str, float] = {}
         self._progress = JointProgress(body, AWAKE.now)
         self._publisher = node.create_publisher(JointTrajectory, TRAJECTORY, 10)
+
+    def awaited(self) -> list[str]:
+        """See JointStates."""
+        return self._states.awaited()
 
     @property
     def moving(self) -> bool:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from btlang.engine.leaves.leaf import Unknown
+from btlang.robots.robot import SensorSilent
 from btlang.ros.awake import AWAKE
+from btlang.ros.steady_time import SteadyTime
+from btlang.ros.times import seconds_of
+from btlang.ros.word import type_name
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -15,39 +18,27 @@ if TYPE_CHECKING:
 
 AGE = 5.0
 """Seconds after which what came last no longer counts, where a table says nothing else."""
-_STANDING = 1.0  # real seconds for which the clock of a simulation may stand still, as it does between its ticks
 
 
 class NodeClock:
     """The clock of a node in seconds, from any thread.
 
-    Without simulated time those are real ones in which this process is awake. If simulated time stands still because
-    nobody publishes it, real time counts on; if it restarts, it goes on from there: a limit is always reached.
+    Without simulated time those are real ones in which this process is awake; else those of SteadyTime: a limit is
+    always reached.
     """
 
     def __init__(self, node: Any) -> None:
         self._clock = node.get_clock()
-        self._simulated = getattr(self._clock, "ros_time_is_active", True)
-        # what the clock said, when it said so first, and how far `now` is ahead of it; replaced as one
-        self._seen: tuple[float, float, float] | None = None
-
-    def now(self) -> float:
+        simulated = getattr(self._clock, "ros_time_is_active", True)
+        self.now: Callable[[], float] = SteadyTime(self._seconds).now if simulated else AWAKE.now
         """Seconds of the node's clock."""
-        if not self._simulated:
-            return AWAKE.now()
-        said = self._clock.now().nanoseconds * 1e-9
-        real = time.monotonic()
-        before, since, ahead = self._seen or (said, real, 0.0)
-        stood = max(0.0, real - since - _STANDING)
-        if said != before:
-            ahead += max(0.0, before + stood - said)  # never back: what is compared with it would be young for long
-            since, stood = real, 0.0
-        self._seen = said, since, ahead
-        return float(said + ahead + stood)
 
     def message(self) -> Any:
         """The time as builtin_interfaces/Time."""
         return self._clock.now().to_msg()
+
+    def _seconds(self) -> float:
+        return float(self._clock.now().nanoseconds) * 1e-9
 
 
 class Latest:
@@ -56,6 +47,9 @@ class Latest:
     `named` is what it is called, such as "/scan"; `absence` says why nothing may have come, "" for no known reason.
     A message that `refuses` gives a reason for counts as silence (see `btlang.ros.gate`).
     """
+
+    depth = 5
+    """How many messages may wait for the thread that spins."""
 
     def __init__(
         self,
@@ -115,3 +109,39 @@ class Latest:
         if self.has_come:
             return ""
         return self.refused or self._absence() or f"nothing has arrived on {self.named} yet"
+
+
+class LatestJoints(Latest):
+    """The latest position of each joint. A robot may report its limbs in separate messages."""
+
+    depth = 50
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self._joints: dict[str, tuple[float, float, float]] = {}  # position, time of arrival, stamp
+
+    def store(self, message: Any) -> bool:
+        """See Latest."""
+        if not super().store(message):
+            return False
+        now, stamp = self._now(), seconds_of(message.header.stamp)
+        self._joints.update((name, (at, now, stamp)) for name, at in zip(message.name, message.position, strict=False))
+        return True
+
+    def missing(self, joints: Iterable[str]) -> list[str]:
+        """Those of some joints of which no position has ever come."""
+        return [joint for joint in joints if joint not in self._joints]
+
+    def position(self, joint: str, age: float) -> tuple[float, float]:
+        """Where a joint is, in radians or metres, and the stamp of that. Raises SensorSilent if it isn't known."""
+        position, arrived, stamp = self._joints.get(joint, (math.nan, math.inf, 0.0))
+        if not math.isfinite(position):
+            raise SensorSilent(f'{self.named} doesn\'t report the joint "{joint}"')
+        if min(self._now() - arrived, AWAKE.since_woke()) > age:
+            raise SensorSilent(f'{self.named} hasn\'t reported the joint "{joint}" for {age:g} s')
+        return position, stamp
+
+
+def latest_of(cls: type) -> type[Latest]:
+    """What keeps the latest messages of a type."""
+    return LatestJoints if type_name(cls) == "sensor_msgs/msg/JointState" else Latest

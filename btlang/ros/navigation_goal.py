@@ -8,6 +8,7 @@ from nav2_msgs.action import NavigateToPose
 from rclpy.action import ActionClient
 from rclpy.node import Node
 
+from btlang.robots.body import TOLERANCE
 from btlang.robots.geometry import Pose
 from btlang.robots.world import said
 from btlang.ros.executor_thread import ExecutorThread
@@ -21,9 +22,16 @@ class RosNavigation(ServerGoals):
     """The client of the navigation server, and the goal under way."""
 
     def __init__(
-        self, node: Node, executor: ExecutorThread, where: Callable[[], Pose | None], now: Callable[[], float]
+        self,
+        node: Node,
+        executor: ExecutorThread,
+        where: Callable[[], Pose | None],
+        now: Callable[[], float],
+        localized: Callable[[], bool] = lambda: True,
+        tolerance: float = TOLERANCE,
     ) -> None:
-        super().__init__(node, executor, where, now)
+        super().__init__(node, executor, where, now, localized)
+        self._tolerance = tolerance
         self._client = ActionClient(node, NavigateToPose, ACTION)
         self._server = node.resolve_service_name(ACTION)
 
@@ -31,6 +39,7 @@ class RosNavigation(ServerGoals):
         """Sets out; a goal under way is given up."""
         self.stop(f"the robot set out for {said(name)} instead")
         goal = said(name)
-        task = Task("navigation", name, f"the navigation to {goal}", f"navigate to {goal}", f" on the way to {goal}")
+        nouns = f"the navigation to {goal}", f"navigate to {goal}", f" on the way to {goal}"
+        task = Task("navigation", name, *nouns, goal=pose, tolerance=self._tolerance)
         request = NavigateToPose.Goal(pose=stamped_pose(pose, self._node.get_clock().now().to_msg()))
         return self.begin(task, self._client, self._server, request)

@@ -3,32 +3,33 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
-from time import monotonic, sleep
 
+from btlang.ros.steady_time import STANDING, SteadyTime
 from btlang.run.controls import Controls
 from btlang.run.pace import Pace
 
-_STANDING = 2.0  # seconds of real time after which a clock that stands still is not waited for any more
+_SLOW = 6.0  # how often as long as it says the time after a run may take: a simulator may be slow
 _LOOK = 0.002  # seconds between two looks at a clock that may run faster than the system's
 
 
 class RosPace(Pace):
-    """Sleeps by `now`: seconds of the system's clock, or of a simulator's.
+    """Sleeps by a simulator's clock `now`, or by that of the system (None).
 
-    What `sleep` returns is all the time since the sleep before it, the tick included. A clock that stands still, as
-    that of a simulator that has died, is not waited for without end: time goes on with the system's clock, so that the
-    mission still ticks and its leaves find out what is wrong.
+    What `sleep` returns is all the time since the sleep before it, the tick included. A simulator's clock may do what
+    it likes (see SteadyTime): the mission still ticks, its leaves find out what is wrong, and it ends. `said` is called
+    once with each thing that the clock should not do.
     """
 
-    def __init__(self, controls: Controls, now: Callable[[], float]) -> None:
+    def __init__(
+        self, controls: Controls, now: Callable[[], float] | None = None, said: Callable[[str], object] = str
+    ) -> None:
         super().__init__(1.0, controls)
-        self._now = now
-        self._look = math.inf if now is monotonic else _LOOK
+        self._time = time.monotonic if now is None else SteadyTime(now, said).now
+        self._look = math.inf if now is None else _LOOK
         self._last = 0.0
-        self._seen, self._looked = now(), monotonic()
-        self._stands = 0.0
-        self._more = 0.0  # how far the time of the mission is ahead of `now`
+        self._spare = STANDING  # real seconds that the time after a run may take beyond _SLOW
 
     def begin(self) -> None:
         """A period begins now."""
@@ -48,22 +49,11 @@ class RosPace(Pace):
         return passed
 
     def rest(self, seconds: float) -> float:
-        """As `sleep`, whatever is asked for meanwhile."""
-        begin = now = self._time()
-        while now < begin + seconds:
-            sleep(min(begin + seconds - now, self._look))
-            now = self._time()
-        return now - begin
-
-    def _time(self) -> float:
-        """Never goes back, even if a simulator restarts."""
-        now, looked = self._now(), monotonic()
-        if now == self._seen:
-            self._stands += looked - self._looked
-            if self._stands > _STANDING:
-                self._more += looked - self._looked
-        else:
-            self._stands = 0.0
-            self._more += max(0.0, self._seen - now)
-        self._seen, self._looked = now, looked
-        return now + self._more
+        """As `sleep`, whatever is asked for meanwhile. Waits for no clock that stands still or is much too slow."""
+        begin, began = self._time(), time.monotonic()
+        allowed, took = self._spare + _SLOW * seconds, 0.0
+        while (passed := self._time() - begin) < seconds and took < allowed:
+            time.sleep(min(seconds - passed, self._look))
+            took = time.monotonic() - began
+        self._spare = min(STANDING, allowed - took)
+        return max(passed, seconds)

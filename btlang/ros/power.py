@@ -11,6 +11,7 @@ from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
 from btlang.robots.capabilities import Operation
+from btlang.robots.charge import ChargeCheck
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError
 from btlang.ros.awake import AWAKE
@@ -54,7 +55,8 @@ class RosPower:
         self._docks = False
         self._docked: bool | None = None
         self._since = -_SETTLED
-        subscriptions.listen(BATTERY, BatteryState, "battery state", refuses=_no_percentage)
+        self._charge = ChargeCheck()
+        subscriptions.listen(BATTERY, BatteryState, "battery state", refuses=self._charge_fault)
         subscriptions.listen(BATTERY, BatteryState, "battery state", key=STATUS)
         subscriptions.listen(DOCKED, Bool, "message from the dock", qos="state")
         services.add(DOCK, Trigger)
@@ -121,6 +123,11 @@ class RosPower:
         if ended is not None and ended.failure is None:
             self._connected(self._docks)
 
+    def _charge_fault(self, state: BatteryState) -> str:
+        if not 0.0 <= state.percentage <= 1.0:
+            return f"gives no percentage from 0 to 1, but {state.percentage:g}"
+        return self._charge.fault(100.0 * state.percentage, AWAKE.now())
+
     def _hear_battery(self) -> None:
         """What the battery reports about the dock, if no topic does."""
         if not self._subscriptions.has(DOCKED) and AWAKE.now() - self._since > _SETTLED:
@@ -140,7 +147,3 @@ def make_docking_clients(
     from btlang.ros.docking import RosDocking
 
     return RosDocking(node, executor, where, now)
-
-
-def _no_percentage(state: BatteryState) -> str:
-    return "" if 0.0 <= state.percentage <= 1.0 else f"gives no percentage from 0 to 1, but {state.percentage:g}"

@@ -14,7 +14,7 @@ from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import Empty, Trigger
 
-from btlang.robots.body import Body
+from btlang.robots.body import TOLERANCE, Body
 from btlang.robots.body_file import standard_body
 from btlang.robots.choices import Choices
 from btlang.robots.ears import Ears
@@ -141,7 +141,10 @@ class RosRobot:
         if self._navigation is None:
             from btlang.ros.navigation_goal import RosNavigation
 
-            self._navigation = RosNavigation(self._node, self._executor, self._base.where, self._now)
+            tolerance = self.body.navigation.tolerance if self.body.navigation is not None else TOLERANCE
+            self._navigation = RosNavigation(
+                self._node, self._executor, self._base.where, self._now, lambda: self._base.is_localized, tolerance
+            )
 
     @property
     def _servers(self) -> list[ServerGoals]:
@@ -512,9 +515,13 @@ class RosRobot:
         """Whether an object is switched on. Raises RobotError if nothing reports it."""
         return self._doors.is_on(name)
 
-    def awaited(self) -> list[str]:
-        """The topics on the state of things that somebody publishes, but that have reported nothing yet."""
-        return [*self._doors.awaited(), *self._perception.awaited(), *self._hands.awaited()]
+    def awaited(self, joints: bool = False) -> list[str]:
+        """The topics on the state of things that somebody publishes, but that have reported nothing yet.
+
+        With `joints` these too, if some have been reported and others haven't.
+        """
+        missing = self._joints.awaited() if joints else []
+        return [*self._doors.awaited(), *self._perception.awaited(), *self._hands.awaited(), *missing]
 
     # Power
     @property

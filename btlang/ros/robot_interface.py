@@ -35,6 +35,8 @@ class Interface(Record):
 VELOCITY = "cmd_vel"
 """The topic whose type is Twist, or TwistStamped where the robot listens to that."""
 CLOCK = Interface("publisher", "/clock", "rosgraph_msgs/msg/Clock", flows=True)
+ONE_SOURCE = ("odom", "clock", "battery_state", "docked")
+"""Topics on which two publishers would contradict one another."""
 _BASE = (
     Interface("listener", VELOCITY, "geometry_msgs/msg/Twist"),
     Interface("publisher", "odom", "nav_msgs/msg/Odometry", flows=True),

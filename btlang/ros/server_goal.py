@@ -13,6 +13,7 @@ from action_msgs.srv import CancelGoal
 from rclpy.node import Node
 from unique_identifier_msgs.msg import UUID
 
+from btlang.engine.leaves.leaf import NotThere
 from btlang.record import Record
 from btlang.robots.geometry import Pose, wrap
 from btlang.ros.awake import AWAKE
@@ -22,6 +23,7 @@ from btlang.ros.goal_handle import unanswered
 from btlang.ros.lease import Lease
 from btlang.ros.poses import pose_of
 
+_SHOWS = 1.0  # seconds after a success in which the pose shows it
 _SEEN = 0.3  # seconds after which odometry shows what the robot does
 _SERVER = 2.0  # seconds that a server gets to be there
 _ANSWER = 5.0  # seconds that it gets to accept or reject, and between two of its feedbacks
@@ -33,7 +35,8 @@ class Task(Record):
     """What a server is asked for: the `sort` of server, the `name` of what it is for, and both in sentences, as
     "the navigation to the lab", "navigate to the lab" and " on the way to the lab".
 
-    `reasons` are those of its error codes. `regular` is whether it gives feedback again and again.
+    `reasons` are those of its error codes. `regular` is whether it gives feedback again and again. The robot has to be
+    within the `tolerance` of the `goal` at the end, in metres.
     """
 
     sort: str
@@ -43,6 +46,8 @@ class Task(Record):
     way: str = ""
     reasons: Mapping[int, str] = {}
     regular: bool = True
+    goal: Pose | None = None
+    tolerance: float = math.inf
 
 
 class ServerGoal:
@@ -50,7 +55,8 @@ class ServerGoal:
 
     Nothing waits: `step` looks at what has come, so that a server that never answers costs the tick nothing. `spin` has
     a function called in the thread that spins, where alone the client of an action may be used: elsewhere it could
-    meet an answer before it has noted the question. `where` gives the pose of the robot, None where nobody knows it.
+    meet an answer before it has noted the question. `where` gives the pose of the robot, None where nobody knows it,
+    and `localized` whether that is more than odometry: else a pose that the server reports goes before.
     """
 
     def __init__(
@@ -63,6 +69,7 @@ class ServerGoal:
         spin: Callable[[Callable[[], None]], object],
         where: Callable[[], Pose | None],
         now: Callable[[], float],
+        localized: Callable[[], bool] = lambda: True,
     ) -> None:
         self.name = task.name
         self.done = False
@@ -75,7 +82,8 @@ class ServerGoal:
         self._task = task
         self._server = f"{task.sort} server on {server}"
         self._lock = RLock()
-        self._where, self._now = where, now
+        self._where, self._now, self._localized = where, now, localized
+        self._succeeded_at: float | None = None
         self._since = AWAKE.now()  # of what it waits for now
         self._stood = (where(), now())
         self._sent = self._withdrawing = False
@@ -110,13 +118,13 @@ class ServerGoal:
             self._set_out()
         elif self._result is None:
             if self._waited(_ANSWER):
-                self.end(f"the {self._server} does not answer")
+                self.end(NotThere(f"the {self._server} does not answer"))
         elif self._result.done():
             self._finish(self._result.result())
         elif not self._client.server_is_ready():
-            self.end(f"the {self._server} is gone", withdraw=False)
+            self.end(NotThere(f"the {self._server} is gone"), withdraw=False)
         elif self.heard and self._task.regular and self._waited(_ANSWER):
-            self.end(f"no feedback from the {self._server} for {_ANSWER:g} s")
+            self.end(NotThere(f"no feedback from the {self._server} for {_ANSWER:g} s"))
         elif self._stands(seconds := _STANDS if self.heard or not self._task.regular else _MUTE):
             mute = "" if seconds == _STANDS else f", and the {self._server} sends no feedback"
             self.end(f"the robot has not moved for {seconds:g} s{self._task.way}{mute}")
@@ -142,12 +150,12 @@ class ServerGoal:
             self._sent, self._since = True, AWAKE.now()
             self._spin(self._send)
         elif self._waited(_SERVER):
-            self.end(f"no {self._server}")
+            self.end(NotThere(f"no {self._server}"))
 
     def _finish(self, answer: Any) -> None:
         code, reached = answer.result.error_code, answer.status == GoalStatus.STATUS_SUCCEEDED
         if reached and not code:
-            self.end(None, withdraw=False)
+            self._arrive()
             return
         task, gave_up = self._task, f"reported error {code}" if reached else "gave up"
         reason = task.reasons.get(code, f"the {task.sort} server {gave_up}{task.way}")
@@ -156,6 +164,18 @@ class ServerGoal:
         retries = getattr(answer.result, "num_retries", 0)
         again = f" ({retries} {'retry' if retries == 1 else 'retries'})" if retries else ""
         self.end((getattr(answer.result, "error_msg", "") or reason) + again, withdraw=False)
+
+    def _arrive(self) -> None:
+        """The server reports success: so it is, if the robot is there. Its pose may come a moment later."""
+        goal, at = self._task.goal, self._where() if self._localized() else self._reported or self._where()
+        away = 0.0 if goal is None or at is None else at.distance_to((goal.x, goal.y))
+        if self._succeeded_at is None:
+            self._succeeded_at = AWAKE.now()
+        if away <= self._task.tolerance:
+            self.end(None, withdraw=False)
+        elif AWAKE.now() - self._succeeded_at > _SHOWS:
+            reason = f"the {self._task.sort} server reports success, but the robot is {away:.1f} m from the goal"
+            self.end(reason, withdraw=False)
 
     # In the thread that spins
     def _send(self) -> None:
@@ -219,10 +239,15 @@ class ServerGoals:
     """The goals of a kind of server, and the one under way. `stop` may be called from any thread."""
 
     def __init__(
-        self, node: Node, executor: ExecutorThread, where: Callable[[], Pose | None], now: Callable[[], float]
+        self,
+        node: Node,
+        executor: ExecutorThread,
+        where: Callable[[], Pose | None],
+        now: Callable[[], float],
+        localized: Callable[[], bool] = lambda: True,
     ) -> None:
         self._node, self._executor = node, executor
-        self._where, self._now = where, now
+        self._where, self._now, self._localized = where, now, localized
         self._lease = Lease(node)
         self._goal: ServerGoal | None = None
         self._stopped = -math.inf
@@ -231,7 +256,7 @@ class ServerGoals:
     def begin(self, task: Task, client: Any, server: str, request: Any) -> ServerGoal:
         """Sends a goal; see ServerGoal."""
         goal_id, spin = self._lease.goal_id(), self._executor.post
-        self._goal = ServerGoal(task, client, server, request, goal_id, spin, self._where, self._now)
+        self._goal = ServerGoal(task, client, server, request, goal_id, spin, self._where, self._now, self._localized)
         self._goal.step()
         return self._goal
 

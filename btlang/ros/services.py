@@ -10,6 +10,7 @@ from typing import Any
 
 from rclpy.node import Node
 
+from btlang.engine.leaves.leaf import NotThere
 from btlang.robots.robot import RobotError
 from btlang.ros.awake import AWAKE
 from btlang.ros.executor_thread import ExecutorThread
@@ -85,7 +86,7 @@ class Services:
         """
         shown = self._clients[name].service_name
         if not self._clients[name].service_is_ready():
-            raise RobotError(f"there is no service {shown}")
+            raise RobotError(NotThere(f"there is no service {shown}"))
         call = Call(shown, accomplished)
         self._send(name, fields, call.answered)
         self._calls.append(call)

@@ -26,7 +26,7 @@ from btlang.robots.robot import RobotError
 from btlang.ros.commands import Reach, motion
 from btlang.ros.joint_states import TRAJECTORY, JointStates, on_wire
 from btlang.ros.subscription_cache import SubscriptionCache
-from btlang.ros.times import seconds_of, stamp
+from btlang.ros.times import stamp
 
 _AHEAD = 0.05
 """Seconds to come that are settled: so long has a new trajectory to be made and to arrive before it begins."""
@@ -108,6 +108,10 @@ class RosSmoothJoints:
         self._near = inf  # when all joints were last near to the plan
         self._publisher = node.create_publisher(JointTrajectory, TRAJECTORY, 10)
         node.create_timer(_RENEWED, self._renew, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def awaited(self) -> list[str]:
+        """See JointStates."""
+        return self._states.awaited()
 
     @property
     def moving(self) -> bool:
@@ -251,9 +255,7 @@ class RosSmoothJoints:
         if sent is None or not sent.begins < now < sent.ends + _LOST:
             return
         try:
-            said = seconds_of(self._states.message.header.stamp)
-            planned = sent.at(said if 0.0 <= now - said < _STAMPED else now).position
-            off = {joint: abs(self.angle(self._names[joint]) - planned[joint]) for joint in self._commanded}
+            off = {joint: abs(self._off_plan(joint, sent, now)) for joint in self._commanded}
             far = max(off, key=lambda joint: off[joint] / self._off[joint])
             if off[far] <= self._off[far]:
                 self._near = now
@@ -262,6 +264,10 @@ class RosSmoothJoints:
                 self._stay(f"the {self._names[far]} doesn't follow: it is {away} from where it should be")
         except RobotError as problem:
             self._stay(str(problem))
+
+    def _off_plan(self, joint: int, sent: Sent, now: float) -> float:
+        angle, said = self._states.stamped(self._names[joint])
+        return angle - float(sent.at(said if 0.0 <= now - said < _STAMPED else now).position[joint])
 
     def _stay(self, reason: str) -> None:
         timeline = self._smooth.timeline

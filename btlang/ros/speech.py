@@ -9,6 +9,7 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 from std_msgs.msg import Bool, String
 
+from btlang.engine.leaves.leaf import NotThere
 from btlang.robots.robot import RobotError
 from btlang.robots.voice import Synthesizer
 from btlang.ros.awake import AWAKE
@@ -71,7 +72,7 @@ class RosSpeech:
     def say(self, text: str, after: float = 0.0) -> None:
         """Starts to speak after so many seconds. Raises RobotError where nobody listens."""
         if not self._speech.get_subscription_count():
-            raise RobotError(f"nobody listens to {self._speech.topic_name}")
+            raise RobotError(NotThere(f"nobody listens to {self._speech.topic_name}"))
         self.said = self.utterance(text)
         self._asked, self._heard, self._age, self._began, self._since = True, False, -after, self._usual, AWAKE.now()
         self._waiting = text
@@ -112,7 +113,7 @@ class RosSpeech:
     def print(self, text: str) -> None:
         """Shows text. Raises RobotError where nobody listens."""
         if not self._print.get_subscription_count():
-            raise RobotError(f"nobody listens to {self._print.topic_name}")
+            raise RobotError(NotThere(f"nobody listens to {self._print.topic_name}"))
         self._publish(self._print, text)
 
     def _publish(self, publisher: Any, text: str) -> None:

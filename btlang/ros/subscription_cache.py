@@ -7,18 +7,18 @@ from collections.abc import Callable
 from typing import Any
 
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from btlang.robots.robot import SensorSilent
 from btlang.ros.awake import AWAKE
 from btlang.ros.gate import Gate
-from btlang.ros.latest import Latest
+from btlang.ros.latest import Latest, LatestJoints, latest_of
 
 _KEPT = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _MOST = 1000  # messages of one topic that wait for a tick; older ones are forgotten
 _NONSENSE = 2.0  # seconds in which only what is refused has come, however slow the topic is
-QOS = {"sensor": qos_profile_sensor_data, "events": QoSProfile(depth=100), "state": _KEPT}
-"""How a topic is listened to: a sensor's messages may be lost, each event counts, late listeners get a state too."""
+QOS = {"events": QoSProfile(depth=100), "state": _KEPT}
+"""How a topic is listened to: each event counts, late listeners get a state too. Those of a sensor may be lost."""
 
 
 class SubscriptionCache:
@@ -49,7 +49,8 @@ class SubscriptionCache:
         """
         key = key or topic
         self._what[key] = what
-        latest = Latest(self._node.resolve_topic_name(topic), self._now, refuses=refuses or self._gate(kind).refuses)
+        named, refuses = self._node.resolve_topic_name(topic), refuses or self._gate(kind).refuses
+        latest = latest_of(kind)(named, self._now, refuses=refuses)
         self._latest[key] = latest
         if qos != "sensor":
             self._events[key] = deque(maxlen=_MOST)
@@ -62,7 +63,8 @@ class SubscriptionCache:
             if qos != "sensor":
                 self._events[key].append(message)
 
-        self._node.create_subscription(kind, topic, arrived, QOS[qos])
+        profile = QoSProfile(depth=latest.depth, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self._node.create_subscription(kind, topic, arrived, QOS.get(qos, profile))
 
     def _gate(self, kind: type) -> Gate:
         return Gate(kind, lags=not self._node.get_clock().ros_time_is_active)
@@ -114,6 +116,12 @@ class SubscriptionCache:
         silence = latest.silence()
         reason = latest.refused or f"{latest.named} is silent for {silence:.1f} s"
         return latest.message, latest.arrived, reason if silence > fresh else ""
+
+    def latest_joints(self, topic: str) -> LatestJoints:
+        """The joints that a topic reports."""
+        latest = self._latest[topic]
+        assert isinstance(latest, LatestJoints)
+        return latest
 
     def latest(self, topic: str, limit: float) -> Any:
         """As `get`, but None in place of an error."""

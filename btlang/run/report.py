@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
 
 from btlang.diagnostics.render import underlined
 from btlang.engine.engine import Failure
+from btlang.engine.leaves.leaf import raised_in
 from btlang.engine.nodes.decorators import WAS_TRUE
 from btlang.run.failure_history import Attempt, Attempts, FailureHistory
 from btlang.text.escaping import printable
@@ -42,7 +42,8 @@ class _Report:
         if reason == WAS_TRUE and not denied.children:
             reason = f"'{self._words(named)}' was true"
         yield f"  {denied.id}: {reason}"
-        yield from _raised(failure.exception)
+        if place := raised_in(failure.exception):
+            yield f"  raised in {place}"
         for index, seconds in last.stopped if last is not None else ():
             yield f"  It stopped '{self._words(index)}' after {seconds:.1f} s."
         around = list(self._around())
@@ -106,15 +107,6 @@ class _Report:
         if span is None or (node.span is not None and not node.children and node.id != SUBTREE):
             return self._label(node)
         return span.text.splitlines()[0]
-
-
-def _raised(exception: BaseException | None) -> Iterator[str]:
-    """The line of Python that raised it."""
-    if exception is not None and exception.__traceback__ is not None:
-        from traceback import extract_tb
-
-        *_, frame = extract_tb(exception.__traceback__, limit=-1)
-        yield f"  raised in {frame.name}, {os.path.basename(frame.filename)}:{frame.lineno}"
 
 
 def _one_line(line: str) -> str:

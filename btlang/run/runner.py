@@ -10,7 +10,7 @@ from threading import Event
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.engine import Engine, Failure
-from btlang.engine.leaves.leaf import LeafBinding
+from btlang.engine.leaves.leaf import LeafBinding, raised_in
 from btlang.engine.status import IDLE, NAMES, RUNNING
 from btlang.record import Record
 from btlang.run.bus import Bus
@@ -100,7 +100,7 @@ def traced_engine(
     proxies: Mapping[str, Callable[..., Any]] = {},
     hooks: Hooks | None = None,
 ) -> Engine:
-    """An engine whose status changes go on the bus, and once in a run each condition that is not known.
+    """An engine whose status changes go on the bus, and once a run each condition that isn't known or leaf that raised.
 
     The time of day is that of the robot, where it knows.
     """
@@ -111,8 +111,10 @@ def traced_engine(
     def changed(changes: Changes) -> None:
         bus.emit(StatusesChanged, changes, engine, engine.valued(changes))
 
-    def unknown(failure: Failure) -> None:
-        text = f"'{_words(failure)}' is not known: {failure.reason}"
+    def warned(failure: Failure) -> None:
+        what = "is not known" if engine.is_question(failure.index) else "failed"
+        place = raised_in(failure.exception)
+        text = f"'{_words(failure)}' {what}: {failure.reason}" + (f" (raised in {place})" if place else "")
         bus.emit(Warned, text, failure.path, _place(failure))
 
     engine = Engine(
@@ -123,7 +125,7 @@ def traced_engine(
         blackboard=blackboard,
         listener=changed,
         stopwatch=stopwatch,
-        on_unknown=unknown,
+        on_warning=warned,
         proxies=proxies,
         hooks=hooks,
     )

@@ -79,7 +79,7 @@ class Executor:
         self._watch: RunWatch | None = None
         self._ending: Ending | None = None
         self._paused = self._closing = self._hangs = False
-        self._outbox = Outbox(trouble)
+        self._outbox = Outbox(trouble, lambda: None if recordings is None else recordings.make_room())
         self._next: float | None = None  # when the manager wants to look again
         self._new = True  # somebody has asked for something since the last look
         self._stops = 0  # emergency stops before the turn under way

@@ -249,12 +249,7 @@ class Handler:
         for each in (task, other):
             if each.state in ACTIVE:
                 raise refused(each.id, f"has begun: it's {each.state}")
-        equal = [each.id for each in self._store.tasks(WAITING) if each.priority == other.priority]
-        order = [each for each in equal if each != task.id]
-        order.insert(order.index(other.id) if other.id in order else 0, task.id)
-        for position, number in enumerate(order):
-            self._store.amend(number, position=position - len(order), priority=other.priority)
-        return self._store.task(task.id)
+        return self._store.move_before(task.id, other.id)
 
     def _again(self, command: messages.Again, person: str) -> Answer:
         task = self._known(command.task)
@@ -322,9 +317,10 @@ class Handler:
             "task": None if task is None else self._data(self._known(task.id)),
             "running": [] if snapshot is None else list(snapshot.running),
             "battery": None if state is None else state.battery,
-            "waiting": len(self._store.tasks(WAITING)),
+            "waiting": self._store.count_tasks(WAITING),
         }  # fmt: skip
-        doing = "It has nothing to do" if task is None else f"Task {task.id} is under way: {', '.join(data['running'])}"
+        running = f": {', '.join(data['running'])}" if data["running"] else ""
+        doing = "It has nothing to do" if task is None else f"Task {task.id} is under way{running}"
         lines = [f"{hindrance[0].upper()}{hindrance[1:]}." if hindrance else f"{doing}."]
         lines.append(f"{data['waiting']} waiting." if data["waiting"] else "Nothing waits.")
         return Answer(True, "\n".join(lines), data)

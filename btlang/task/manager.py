@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 _PUNCTUAL = 60.0  # seconds after its time from which one that was missed counts as missed
 DAY = 86_400.0
+_AGE, _MOST_BONUS = 600.0, 10  # seconds of waiting that count as one of priority, and how much they count at most
 _MOST_LATE = 1000  # tasks that a schedule makes at most of the times that were missed
 CUT_OFF = "the robot was cut off"
 ENDED = "ended"
@@ -73,7 +74,8 @@ class Manager:
             self._tidied = now
 
     def claim(self, now: float) -> Task | None:
-        """The next task, which is then the executor's."""
+        """The next task, which is then the executor's. First it counts how long tasks have waited."""
+        self._store.age(now, _AGE, _MOST_BONUS)
         return self._store.claim(now)
 
     def is_more_urgent(self, than: Task, now: float) -> bool:
@@ -117,8 +119,10 @@ class Manager:
             times.append(time)
             if len(times) > _MOST_LATE:
                 break
+        late: set[int] = set()  # tasks for times that were missed, which all are to be made up for
         for time in self._worth_doing(schedule, times, now):
-            yield from self._make(schedule, time, now)
+            is_late = now - time > _PUNCTUAL
+            yield from self._make(schedule, time, now, late if is_late else set())
         self._store.amend_schedule(schedule.id, next=recurrence.next(max(now, times[-1])))
 
     def _worth_doing(self, schedule: Schedule, times: list[float], now: float) -> Iterator[float]:
@@ -134,9 +138,12 @@ class Manager:
             else:
                 yield time
 
-    def _make(self, schedule: Schedule, time: float, now: float) -> Iterator[Task]:
-        earlier = self._store.tasks(WAITING | ACTIVE, schedule=schedule.id)
+    def _make(self, schedule: Schedule, time: float, now: float, late: set[int]) -> Iterator[Task]:
+        """Makes a task, which may overlap those in `late`; it is one of them from then on."""
+        before = self._store.tasks(WAITING | ACTIVE, schedule=schedule.id)
+        earlier = [task for task in before if task.id not in late]
         task = self._store.add(self._task(schedule, time, now), "its time has come")
+        late.add(task.id)
         if not earlier:
             return
         if schedule.overlap is Overlap.SKIP:

@@ -64,6 +64,12 @@ MIGRATIONS: list[Step] = [
         "DROP TABLE revision",
         "ALTER TABLE revision_of_kind RENAME TO revision",
     ),
+    (
+        "ALTER TABLE task ADD COLUMN bonus BIGINT NOT NULL DEFAULT 0",
+        "DROP INDEX task_turn",
+        """CREATE INDEX task_turn ON task ((priority + bonus) DESC, position, id)
+            WHERE state NOT IN ('canceled', 'completed', 'error', 'failed', 'killed', 'skipped')""",
+    ),
 ]
 """What leads from version 0, an empty database, to 1, from there to 2, and so on. A step that was released is never
 changed. The statements are for SQLite and PostgreSQL both; the first three columns of a table have its key.

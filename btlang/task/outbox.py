@@ -8,10 +8,12 @@ from btlang.task.database import StoreError
 
 
 class Outbox:
-    """Keeps the order. Of one thread; `trouble` gets why the store refuses, for people."""
+    """Keeps the order. Of one thread; `trouble` gets why the store refuses, for people. Before each other attempt
+    `make_room` may remove what isn't needed, since a full disk is the usual reason.
+    """
 
-    def __init__(self, trouble: Callable[[str], object]) -> None:
-        self._trouble = trouble
+    def __init__(self, trouble: Callable[[str], object], make_room: Callable[[], object] = lambda: None) -> None:
+        self._trouble, self._make_room = trouble, make_room
         self._waiting: list[Callable[[], object]] = []
 
     def __bool__(self) -> bool:
@@ -29,6 +31,8 @@ class Outbox:
 
     def flush(self) -> None:
         """Makes the changes that wait. Raises StoreError for the first one that is refused again."""
+        if self._waiting:
+            self._make_room()
         while self._waiting:
             self._waiting[0]()
             self._waiting.pop(0)

@@ -8,7 +8,7 @@ from btlang.task.rows import columns_of, in_lines, marks, to_column
 from btlang.task.task import FINAL, State, Task
 
 TASK = columns_of(Task)
-IN_TURN = "priority DESC, position, id"
+IN_TURN = "(priority + bonus) DESC, position, id"
 NOT_OVER = "state NOT IN ({})".format(", ".join(f"'{state}'" for state in sorted(FINAL)))
 """Word by word the condition of the index `task_turn`: only then SQLite uses it. Few tasks of a store are not over."""
 NEXT = (
@@ -17,6 +17,8 @@ NEXT = (
     f" AND (deadline IS NULL OR deadline >= ? OR started IS NOT NULL) ORDER BY {IN_TURN} LIMIT 1"
 )
 _QUEUED = f"{NOT_OVER} AND state = '{State.QUEUED}'"
+SINCE = "CASE WHEN earliest > created THEN earliest ELSE created END"
+"""Since when a task waits."""
 UNBEGUN = f"{_QUEUED} AND started IS NULL"
 """A task that began in time may go on, or begin again, after its deadline."""
 TIMES = (

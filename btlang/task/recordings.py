@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 from collections.abc import Callable
 from contextlib import suppress
 
@@ -12,6 +13,7 @@ from btlang.recording.recorder import Recorder, recorder_in
 
 MOST_BYTES = 1_000_000_000
 """Of all recordings together; the oldest go first."""
+_FREE = 100_000_000  # bytes of the disk that recordings leave to others
 _EACH = 200_000_000  # bytes of one, which then goes on in another file
 
 
@@ -30,7 +32,7 @@ class Recordings:
 
     def recorder(self, mission: Mission, task: int) -> Recorder | None:
         """For a run of a task that begins now, until `end`."""
-        self._make_room()
+        self.make_room()
         try:
             recorder = recorder_in(self._folder, mission, (), {"task": str(task)}, _EACH)
         except MissionError as error:
@@ -47,17 +49,33 @@ class Recordings:
             self._latest.close()
             self._latest = None
 
-    def _make_room(self) -> None:
+    def make_room(self) -> None:
+        """Removes the oldest recordings while all together are too many, or the disk is nearly full; never the one
+        that goes on.
+        """
         found: list[tuple[float, int, str]] = []
         with suppress(OSError):
             for entry in os.scandir(self._folder):
-                if entry.name.endswith(".mcap"):
+                if entry.name.endswith(".mcap") and not self._goes_on(entry.path):
                     status = entry.stat()
                     found.append((status.st_mtime, status.st_size, entry.path))
         total = sum(size for _, size, _ in found)
         for _, size, path in sorted(found):
-            if total <= self._most - _EACH:
+            if total <= self._most - _EACH and _free(self._folder) >= _FREE:
                 break
             with suppress(OSError):
                 os.remove(path)
             total -= size
+
+    def _goes_on(self, path: str) -> bool:
+        latest = self._latest
+        return latest is not None and os.path.abspath(path).startswith(
+            os.path.splitext(os.path.abspath(latest.path))[0]
+        )
+
+
+def _free(folder: str) -> int:
+    try:
+        return shutil.disk_usage(folder).free
+    except OSError:
+        return _FREE

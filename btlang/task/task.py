@@ -91,10 +91,11 @@ class Task(Record):
     """A mission that the robot is to do. Times are in seconds since 1970, None if there is none.
 
     `id` is positive and unique in its store, 0 before it is in one. Higher `priority` comes first, then lower
-    `position`, then the lower id. It isn't begun before `earliest`, and not after `deadline`. `needs` are capabilities
-    of the robot. `schedule` is the id of the schedule that made it (0: none) for the time `due`. `reason` says why it
-    waits, or how it ended. `saved` is the JSON of its run when it was interrupted or saved last, "" for a fresh start;
-    `token` is what the command to resume it must bring, "" where nobody interrupted it. `recording` is a path.
+    `position`, then the lower id; who waits for long gets a `bonus` to its priority. It isn't begun before
+    `earliest`, and not after `deadline`. `needs` are capabilities of the robot. `schedule` is the id of the
+    schedule that made it (0: none) for the time `due`. `reason` says why it waits, or how it ended. `saved` is the
+    JSON of its run when it was interrupted or saved last, "" for a fresh start; `token` is what the command to
+    resume it must bring, "" where nobody interrupted it. `recording` is a path.
     """
 
     id: int
@@ -118,6 +119,7 @@ class Task(Record):
     saved: str = ""
     token: str = ""
     recording: str = ""
+    bonus: int = 0
 
 
 class Ending(Record):

@@ -29,7 +29,7 @@ class VoiceHandler:
             raise refused("The robot", "has a speaker, which plays what it says")
         if said is None or not said.samples:
             raise refused("The robot", "has said nothing that can be heard: its voice has no engine, or was silent")
-        began = max(0.0, robot.time - robot.said_at)
+        began = min(max(0.0, robot.time - robot.said_at), said.seconds)
         data = {"wav": b64encode(as_wav(said, _LONGEST)).decode(), "text": said.text, "seconds": began}
         return Answer(True, f'It says "{said.text}".', data)
 

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 import btlang
+from btlang.components.device_robot import twins
 from btlang.components.parts import DeviceHands
 from btlang.devices.kinds import Command, Grip, GripTarget
 from btlang.devices.simulated import SimulatedDevice
@@ -25,7 +26,7 @@ from btlang.robots.world_file import load_world
 from btlang.run.events import Event, Said
 from btlang.vocabulary.shipped import shipped
 from tests.components.robots import robot_file
-from tests.profiles import cases
+from tests.profiles import cases, only_long
 
 SHIPPED = Path(shipped("examples"))
 
@@ -160,6 +161,30 @@ def test_real_devices_run_in_real_time(tmp_path: Path) -> None:
     assert 0.2 < time.monotonic() - began < 20
     with pytest.raises(ValueError, match="real time"):
         run("move forward", robot, speed="max")
+
+
+def mixed(folder: Path) -> Any:
+    """Real wheels, and for everything else simulated devices."""
+    (folder / "wheels.py").write_text(WHEELS, encoding="utf-8")
+    wheels = '[[device]]\nname = "wheels"\nkind = "drive"\ndriver = "wheels:Driver"'
+    others = [device(each.name, each.kind) for each in twins(standard_body()) if each.kind != "drive"]
+    return connector(robot_file(folder, "\n".join([wheels, *others])), "devices")
+
+
+def test_simulated_joints_move_beside_real_wheels(tmp_path: Path) -> None:
+    text = "raise the left arm then move forward 0.2 m then look left and lower the left arm"
+    outcome, _ = run(text, mixed(tmp_path), speed="real", time_limit=30.0)
+    assert outcome.succeeded, outcome.why()
+
+
+@only_long
+@pytest.mark.parametrize("example", examples(), ids=lambda example: example.name)
+def test_examples_run_on_a_mixed_robot(example: Any, tmp_path: Path) -> None:
+    world = str(SHIPPED / "worlds" / Path(example.world).name) if example.world else None
+    path = SHIPPED / f"{example.name}.txt"
+    usual, _ = run(path, "simulated", world, time_limit=60.0)
+    over, _ = run(path, mixed(tmp_path), world, speed="real", time_limit=60.0 + 0.25 * usual.seconds)
+    assert usual.stopped or (over.status, over.stopped) == (usual.status, usual.stopped)
 
 
 WHEELS = """

@@ -343,3 +343,20 @@ def test_calibration_leaves_what_is_unknown_and_rest() -> None:
     assert _inverse(WheelSpeeds(), Device("base", "drive", "test", scale=-2.0, offset=3.0)) == WheelSpeeds()
     assert _calibrated(Motion(1.0), Device("imu", "imu", "test", scale=2.0)) == Motion(2.0)
     assert _calibrated(Distance(math.inf), Device("front", "range", "test", scale=2.0)) == Distance(math.inf)
+
+
+def test_a_battery_that_jumps_needs_a_second_sample() -> None:
+    """One that holds for a second: drivers may repeat a sample."""
+    loop = DeviceLoop(TestDriver(), (Device("battery", "battery", "test"),))
+    begun = time.monotonic()
+
+    def told(percent: float, after: float) -> float:
+        loop._take_reading("battery", Charge(percent), begun + after)
+        reading = loop.read("battery")
+        assert isinstance(reading, Charge)
+        return reading.percent
+
+    assert [told(80.0, 0.0), told(0.0, 0.1), told(80.0, 0.2), told(78.0, 0.3)] == [80.0, 80.0, 80.0, 78.0]
+    assert [told(0.0, 0.4), told(0.0, 0.8), told(0.5, 1.2), told(0.2, 1.4)] == [78.0, 78.0, 78.0, 0.2]
+    assert told(100.0, 60.0) == 0.2  # it fills up by a percent a second at most
+    assert told(100.0, 61.0) == 100.0

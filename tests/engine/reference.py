@@ -63,6 +63,7 @@ class Reference(MoreNodes):
         letter = script[self.mission.calls[name] % len(script)]
         self.mission.calls[name] += 1
         if letter == "x":
+            self.mission.unknowns += 1
             if name.startswith("C"):
                 self.log.append(f"{name}.halt")
             return FAILURE
@@ -233,10 +234,12 @@ class Reference(MoreNodes):
     def IfThenElse(self) -> int:
         self.status = RUNNING
         if self.at == 0:
+            before = self.mission.unknowns
             result = self.children[0].execute()
             if result == RUNNING:
                 return result
-            if result == SKIPPED or (result == FAILURE and len(self.children) == 2):
+            no_branch = len(self.children) == 2 or self.mission.unknowns > before
+            if result == SKIPPED or (result == FAILURE and no_branch):
                 self.reset_children()
                 return FAILURE
             self.at = 1 if result == SUCCESS else 2
@@ -248,11 +251,12 @@ class Reference(MoreNodes):
 
     def WhileDoElse(self) -> int:
         self.status = RUNNING
+        before = self.mission.unknowns
         condition = self.children[0].execute()
         if condition == RUNNING:
             return RUNNING
         self.children[0].reset()
-        if condition == SKIPPED:
+        if condition == SKIPPED or (condition == FAILURE and self.mission.unknowns > before):
             result = FAILURE
         elif condition == SUCCESS:
             for other in self.children[2:]:
@@ -270,7 +274,9 @@ class Reference(MoreNodes):
     # decorators
 
     def Inverter(self) -> int:
-        return self.turned({SUCCESS: FAILURE, FAILURE: SUCCESS})
+        before = self.mission.unknowns
+        result = self.turned({SUCCESS: FAILURE, FAILURE: SUCCESS})
+        return FAILURE if self.mission.unknowns > before and result != RUNNING and result != SKIPPED else result
 
     def ForceSuccess(self) -> int:
         return self.turned({FAILURE: SUCCESS})

@@ -24,6 +24,7 @@ class Mission:
         self.log: list[str] = []
         self.calls: Counter[str] = Counter()
         self.emergency = False
+        self.unknowns = 0  # how many nodes had no answer
 
 
 class ReferenceNode(ABC):

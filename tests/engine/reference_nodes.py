@@ -47,6 +47,7 @@ class MoreNodes(ReferenceNode):
                     return SKIPPED
             return SKIPPED if self.asked("_while") is False else IDLE
         except ScriptFailed:
+            self.mission.unknowns += 1
             return FAILURE
 
     def afterwards(self, result: int) -> int:
@@ -73,6 +74,7 @@ class MoreNodes(ReferenceNode):
         try:
             return SUCCESS if self.asked("code") else FAILURE
         except ScriptFailed:
+            self.mission.unknowns += 1
             return FAILURE
 
     def SetBlackboard(self) -> int:
@@ -156,11 +158,12 @@ class MoreNodes(ReferenceNode):
     def Whenever(self) -> int:
         condition, reaction, work = self.children
         self.status = RUNNING
+        before = self.mission.unknowns
         asked = condition.execute()
         if asked != RUNNING:
             condition.reset()
         if asked != SUCCESS:
-            self.armed = self.armed or not self.fired
+            self.armed = self.armed or (not self.fired and self.mission.unknowns == before)
         elif self.armed and not self.reacting:
             self.armed, self.reacting = False, True
             self.fired = self.node.port("once") in ("true", "1")
@@ -214,6 +217,7 @@ class MoreNodes(ReferenceNode):
             if not self.working and not self.asked("if"):
                 return STATUSES[self.node.port("else")]
         except ScriptFailed:
+            self.mission.unknowns += 1
             return FAILURE
         return self.once_more()
 

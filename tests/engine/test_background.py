@@ -162,7 +162,7 @@ def test_a_task_that_exits_fails_its_leaf_and_the_loop_goes_on(world: World) -> 
     async def other() -> None:
         await asyncio.sleep(LOOK_AGAIN)
 
-    engine = world.engine(n("Sequence", n("Inverter", world.bind("A", whole)), world.bind("B", other)))
+    engine = world.engine(n("Sequence", n("ForceSuccess", world.bind("A", whole)), world.bind("B", other)))
     assert tick_to_end(engine) == SUCCESS
     engine.close()
 

@@ -29,7 +29,7 @@ class World:
 
     def engine(self, root: Node, *, watched: bool = False) -> Engine:
         listener = (lambda changes: None) if watched else None
-        return Engine(Tree(root), self.bind, clock=Clock(), listener=listener, on_unknown=self.told.append)
+        return Engine(Tree(root), self.bind, clock=Clock(), listener=listener, on_warning=self.told.append)
 
 
 SENSE, ACT, OTHER = Node("Sense"), Node("Act"), Node("Other")
@@ -100,3 +100,30 @@ def test_an_unknown_answer_of_another_tick_does_not_count() -> None:
     assert engine.tick() == FAILURE
     world.knows = False
     assert engine.tick() == SUCCESS
+
+
+@pytest.mark.parametrize("id", ["Inverter", "IfThenElse"])
+def test_a_condition_that_took_time_may_end_unknown(id: str) -> None:
+    """Its next tick doesn't pass the nodes that wait for it."""
+    world = World()
+    condition = Node("ReactiveSequence", (SENSE, SLEEP))
+    branches = () if id == "Inverter" else (ACT, OTHER)
+    engine = world.engine(Node("Sequence", (Node(id, (condition, *branches)), ACT)))
+    world.knows = True
+    assert engine.tick() == RUNNING
+    world.knows = None
+    assert (engine.tick(), world.done) == (FAILURE, [])
+    assert engine.failure is not None
+    assert engine.failure.reason == "the sensor is silent"
+
+
+@pytest.mark.parametrize("root", [
+    Node("ScriptCondition", (), (("code", "gone > 1"),)),
+    Node("Precondition", (TRUE,), (("if", "gone > 1"), ("else", "FAILURE"))),
+    Node("Act", (), (("_skipIf", "gone > 1"),)),
+], ids=str)  # fmt: skip
+def test_a_script_that_cannot_be_worked_out_is_unknown(root: Node) -> None:
+    world = World()
+    engine = world.engine(Node("IfThenElse", (root, ACT, OTHER)))
+    assert (engine.tick(), world.done) == (FAILURE, [])
+    assert [failure.node for failure in world.told] == [root]

@@ -77,7 +77,7 @@ class Base:
 
 
 class Navigation:
-    """What it does with a goal is its manner. "slow" accepts it once the robot has been told to stop."""
+    """What it does with a goal is its manner: "slow" accepts it once the robot was told to stop, "lie" never drives."""
 
     def __init__(self, node: Node, manner: str) -> None:
         from nav2_msgs.action import NavigateToPose
@@ -115,8 +115,10 @@ class Navigation:
         if self._manner == "abort":
             goal.abort()
             return self._result(error_code=9000, error_msg="the door is shut")
-        if self._manner == "arrive":
-            await pause(0.3)
+        if self._manner in ("arrive", "lie"):
+            if self._manner == "arrive":
+                goal.publish_feedback(self._feedback(current_pose=goal.request.pose))
+                await pause(0.3)
             goal.succeed()
             return self._result()
         goal.publish_feedback(self._feedback())

@@ -167,7 +167,7 @@ def test_joints(robot: Robot) -> None:
 def test_a_joint_that_is_not_there(robot: Robot) -> None:
     robot.peer("robot", "arm")
     text = DEEDS.replace("left_arm_lift", "tail")
-    assert robot.run("raise left arm", text) == "/joint_states doesn't report the joint tail"
+    assert robot.run("raise left arm", text) == '/joint_states doesn\'t report the joint "tail"'
 
 
 def test_parameters(robot: Robot) -> None:

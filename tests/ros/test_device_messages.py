@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from math import inf, nan
+from math import degrees, inf, nan
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -16,7 +17,8 @@ from btlang.devices import kinds
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
 from btlang.devices.drivers import driver_class
 from btlang.devices.kinds import KINDS
-from btlang.ros.devices.setting import Setting, topic_name
+from btlang.ros.devices.client import TopicClient
+from btlang.ros.devices.setting import Setting, TopicDevice, topic_name
 from btlang.ros.devices.translations import TRANSLATIONS
 from btlang.ros.gate import Gate
 from btlang.ros.times import stamp
@@ -153,3 +155,17 @@ def test_names_of_topics() -> None:
     assert [topic_name(name) for name in ("left arm lift", "360 view", "Größe")] == [
         "left_arm_lift", "device_360_view", "Gr__e"
     ]  # fmt: skip
+
+
+def test_a_joint_in_one_of_several_messages() -> None:
+    """Messages about other joints, whose stamps may be others, are none about this one."""
+    told: list[Any] = []
+    node: Any = SimpleNamespace(create_subscription=lambda *_: None, create_publisher=lambda *_: None)
+    client = TopicClient(TopicDevice("arm", "joint", "/states", "/go", 0.5, Setting("elbow")), node)
+    for sec, name in ((3, "elbow"), (1, "wrist"), (4, "elbow"), (2, "wrist")):
+        message = JointState(name=[name], position=[float(sec)])
+        message.header.stamp.sec = sec
+        client.arrived(message)
+        told.append(client.reading())
+    assert [type(each) for each in told] == [kinds.JointState] * 4
+    assert told[-1].position == pytest.approx(degrees(4.0))

@@ -153,6 +153,58 @@ def test_joints_without_positions(lab: Lab) -> None:
     assert lab.run("wait 0.3 s then look left then look ahead") == ""
 
 
+ARM = """
+[[action]]
+phrase = "raise left arm"
+id = "RaiseLeftArm"
+ros.joints = "trajectory_msgs/msg/JointTrajectory"
+ros.name = "/joint_trajectory"
+ros.positions.left_arm_lift = 1.2
+ros.positions.head_turn = 0.3
+ros.duration = 0.5
+"""
+
+
+def test_joints_in_several_messages(lab: Lab) -> None:
+    """One publisher for each limb is usual."""
+    lab.misbehave("joint=split")
+    lab.joints.wait(lambda state: len(state.name) == 1)
+    assert lab.run("look left then raise the left arm then look ahead") == ""
+    assert lab.run("raise left arm", ARM) == ""
+    lab.misbehave("joint=half")
+    assert lab.run("wait 3 s then raise the left arm then look left") == (
+        '/joint_states hasn\'t reported the joint "head_turn" for 2 s'
+    )
+
+
+def test_one_sample_empties_no_battery(lab: Lab) -> None:
+    lab.misbehave("battery=blip@moving")
+    assert lab.run("whenever the battery is below 20%, fail. move forward 1 m") == ""
+    lab.misbehave("battery=empty@moving")
+    assert lab.run("move forward 9 m").startswith("the battery is empty")
+    lab.misbehave()
+    assert lab.run("wait 1.5 s") == ""
+
+
+@pytest.mark.parametrize(
+    ("fault", "reason"),
+    [
+        ("volatile", "/docked is published as volatile, but btlang asks for transient local"),
+        ("best", "/docked is published as best effort and volatile, but btlang asks for reliable and transient local"),
+    ],
+)
+def test_quality_of_service_that_does_not_match_is_named(lab: Lab, fault: str, reason: str) -> None:
+    lab.misbehave(f"docked={fault}")
+    with pytest.raises(btlang.MissionError, match=f"{reason}: the quality of service doesn't match\\."):
+        lab.run("check the robot is docked")
+
+
+def test_a_topic_that_is_silent_is_named_in_a_whole_sentence(lab: Lab) -> None:
+    lab.misbehave("docked=silent")
+    with pytest.raises(btlang.MissionError, match=r"nothing has arrived on /docked yet\."):
+        lab.run("check the robot is docked")
+
+
 @pytest.mark.parametrize(
     ("fault", "reason"),
     [("nan", "/scan has no valid beam"), ("flat", "/scan doesn't say where its beams point")],

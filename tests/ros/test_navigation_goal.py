@@ -73,6 +73,16 @@ def test_a_success_with_an_error_code_is_none(trip: Callable[[str], Trip], mode:
     assert journey.failure == reason
 
 
+@pytest.mark.parametrize("x", [3.6, 1.0])
+def test_a_success_counts_near_the_goal(trip: Callable[[str], Trip], x: float) -> None:
+    way = trip("arrive")
+    journey = way.begin()
+    way.pose = Pose(x, -1.0)
+    wait_until(lambda: way.pass_by(0.0) is None and journey.done, "the end")
+    reason = "the navigation server reports success, but the robot is 3.0 m from the goal"
+    assert journey.failure == (None if x == 3.6 else reason)
+
+
 def test_a_server_that_gives_no_word_while_the_robot_stands(trip: Callable[[str], Trip]) -> None:
     way = trip("hang")
     journey = way.begin()

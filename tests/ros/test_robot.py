@@ -183,6 +183,13 @@ def test_a_journey_arrives(robot: Callable[..., Script], run: Run, nav2: object)
     assert "cancel" not in script.lines
 
 
+def test_a_success_far_from_the_goal_is_none(robot: Callable[..., Script], run: Run, nav2: object) -> None:
+    robot("base", "navigation=lie")
+    code, _, err = run("go to the kitchen")
+    assert code == 1
+    assert re.search(r"GoTo: the navigation server reports success, but the robot is \d\.\d m from the goal", err), err
+
+
 def test_a_navigation_server_that_is_killed(
     robot: Callable[..., Script], btc: Callable[..., Command], nav2: object
 ) -> None:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import time
+
 import pytest
 
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
-from btlang.ros import pace as module
 from btlang.ros.pace import RosPace
 from btlang.run.bus import Bus
 from btlang.run.controls import Controls
@@ -20,8 +21,8 @@ class Times:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, factor: float = 1.0) -> None:
         self.real, self.simulated, self.factor = 100.0, 5.0, factor
         self.controls = Controls()
-        monkeypatch.setattr(module, "monotonic", lambda: self.real)
-        monkeypatch.setattr(module, "sleep", self.pass_by)
+        monkeypatch.setattr(time, "monotonic", lambda: self.real)
+        monkeypatch.setattr(time, "sleep", self.pass_by)
         monkeypatch.setattr(self.controls, "wait", lambda seconds: self.pass_by(seconds))
 
     def pass_by(self, seconds: float) -> None:
@@ -62,9 +63,9 @@ def test_a_clock_that_stands_still_is_not_waited_for_without_end(monkeypatch: py
     times = Times(monkeypatch, factor=0.0)
     pace = times.pace()
     assert pace.sleep(0.05) == pytest.approx(0.05, abs=0.01)
-    assert times.real - 100.0 == pytest.approx(2.05, abs=0.01)
+    assert times.real - 100.0 == pytest.approx(1.05, abs=0.01)
     assert pace.sleep(0.05) == pytest.approx(0.05, abs=0.01)
-    assert times.real - 100.0 == pytest.approx(2.1, abs=0.02)
+    assert times.real - 100.0 == pytest.approx(1.1, abs=0.02)
 
 
 def test_time_does_not_go_back_where_a_simulator_begins_anew(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -72,6 +73,44 @@ def test_time_does_not_go_back_where_a_simulator_begins_anew(monkeypatch: pytest
     pace = times.pace()
     times.simulated = 0.0
     assert 0.0 <= pace.sleep(0.05) <= 0.06
+
+
+@pytest.mark.parametrize("factor", [-1.0, -0.001, 0.0, 0.0001])
+def test_a_run_ends_in_time_whatever_the_clock_does(monkeypatch: pytest.MonkeyPatch, factor: float) -> None:
+    """It runs backwards, or as good as not: the limit counts, and so does the time in which the robot gets to rest."""
+    times, clock = Times(monkeypatch, factor), Clock()
+    engine = Engine(Tree(Node("Sleep", (), (("msec", "60000"),))), lambda id: None, clock=clock)
+    warnings: list[str] = []
+    runner = Runner(
+        engine,
+        bus=Bus(clock=clock),
+        robot=Rolling(),
+        time_limit=4.0,
+        controls=times.controls,
+        pace=lambda speed, given: RosPace(times.controls, lambda: times.simulated, warnings.append),
+    )
+    assert runner.run().stopped == "time limit"
+    assert times.real - 100.0 == pytest.approx(1.0 + 4.0 + 2.0, abs=0.2)
+    assert len(warnings) == 1
+
+
+def test_of_two_clocks_in_turn_one_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    times = Times(monkeypatch)
+    looks = iter(range(10**9))
+    pace = RosPace(times.controls, lambda: times.simulated + (1000.0 if next(looks) % 2 else 0.0))
+    pace.begin()
+    passed = sum(pace.sleep(0.05) for _ in range(100))
+    assert passed == pytest.approx(5.0, abs=0.1)
+    assert times.real - 100.0 == pytest.approx(5.0, abs=0.2)
+
+
+def test_a_clock_that_has_leapt_is_followed_from_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    times = Times(monkeypatch)
+    pace = times.pace()
+    times.simulated += 500.0
+    passed = sum(pace.sleep(0.05) for _ in range(40))
+    assert passed == pytest.approx(2.0, abs=0.1)
+    assert times.real - 100.0 == pytest.approx(3.0, abs=0.2)
 
 
 class Rolling:

@@ -15,6 +15,7 @@ from trajectory_msgs.msg import JointTrajectory
 from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.robot import RobotError, SensorSilent
 from btlang.ros.commands import Reach, motion
+from btlang.ros.latest import LatestJoints
 from btlang.ros.simulator import joint_player
 from btlang.ros.simulator.joint_player import JointPlayer
 from btlang.ros.smooth_joints import RosSmoothJoints
@@ -53,6 +54,11 @@ class Wire:
 
     def listen(self, *_: object) -> None:
         """The joint states are there whenever they are asked for."""
+
+    def latest_joints(self, _: str) -> LatestJoints:
+        latest = LatestJoints("/joint_states", lambda: self.now)
+        latest.store(self.get())
+        return latest
 
     def get(self, *_: object) -> JointState:
         if self.silent:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -12,7 +13,6 @@ from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
-from btlang.ros import pace as ros_pace
 from btlang.ros.pace import RosPace
 from btlang.run import pace
 from btlang.run.bus import Bus
@@ -231,8 +231,8 @@ class Times:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, factor: float) -> None:
         self.real, self.factor = 100.0, factor
         self.controls = Driven({})
-        monkeypatch.setattr(ros_pace, "monotonic", lambda: self.real)
-        monkeypatch.setattr(ros_pace, "sleep", self.pass_by)
+        monkeypatch.setattr(time, "monotonic", lambda: self.real)
+        monkeypatch.setattr(time, "sleep", self.pass_by)
         monkeypatch.setattr(self.controls, "wait", self.pass_by)
 
     def pass_by(self, seconds: float) -> None:

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -220,3 +221,25 @@ def test_the_signal_stops_the_robot_of_the_command(tmp_path: Path) -> None:
     assert "returned after ['stopped']" in out
     assert lines[-1].startswith("Emergency stop after 1.")
     assert lines[-1].endswith(" s; the robot stands still.")
+
+
+@pytest.mark.parametrize(("name", "code"), [("SIGTERM", 143), ("SIGQUIT", 131)])
+def test_a_signal_ends_the_command_that_does_not_end_by_itself(name: str, code: int, tmp_path: Path) -> None:
+    """As where the main thread is in code that isn't Python's: only real time counts."""
+    (tmp_path / "hanging.py").write_text(HANGING.replace("4_000_000", "400_000_000"))
+    words = tmp_path / "words.toml"
+    words.write_text('[[action]]\nphrase = "hang"\nid = "Hang"\ncall = "hanging:hang"\n')
+    program = (
+        "import sys; from btlang import cli; from btlang.run import command; command._PATIENCE = 0.5;"
+        f" sys.exit(cli.main(['run', '-c', 'hang', '--keywords', {str(words)!r}]))"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(REPOSITORY)}
+    with subprocess.Popen(
+        [sys.executable, "-c", program], env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        assert process.stdout is not None
+        assert any("hangs" in line for line in process.stdout)
+        time.sleep(0.3)  # until the main thread is in there
+        process.send_signal(getattr(signal, name))
+        _, err = process.communicate(timeout=20)
+    assert (process.returncode, err) == (code, "The mission didn't end when it was asked to: the robot was stopped.\n")

@@ -67,13 +67,13 @@ def count(
             for voice in voices:
                 begin = f"{WAKE} " if way == "wake" and kind != "foreign" else ""
                 sound = recorded(begin + text, voice, decibels, seed=total.all)
-                found, late = _heard(ears, sound, way == "push")
+                found, late = heard(ears, sound, way == "push")
                 meant = attention.meant(found, 0.0) if found is not None else None
                 total += _counted(kind, text, meant, late)
     return total
 
 
-def _heard(ears: PocketSphinx, sound: bytes, pushed: bool) -> tuple[Understood | None, float]:
+def heard(ears: PocketSphinx, sound: bytes, pushed: bool) -> tuple[Understood | None, float]:
     """The first sentence, and seconds from the end of the speech: by the sound, and what the computer took then."""
     ended = len(sound) / 2 / RATE - AFTER
     found: Understood | None = None

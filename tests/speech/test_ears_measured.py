@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from tests.profiles import only_long
-from tests.speech.measuring import Count, count, everything, yes_or_no
-from tests.speech.sounds import LIGHT, VOICES, guide
+from btlang.actions.conversation import MEANINGS, answers, meaning_of
+from btlang.robots.body import Body, Ears
+from btlang.speech.pocketsphinx import PocketSphinx
+from btlang.speech.recogniser import Expected, RecogniserSettings
+from tests.profiles import amount, only_long
+from tests.speech.measuring import Count, count, everything, heard, yes_or_no
+from tests.speech.sounds import LIGHT, VOICES, guide, recorded
 
 pytest.importorskip("pocketsphinx")
 
@@ -69,3 +73,43 @@ def test_in_noise(decibels: float) -> None:
         f"always {own.part:.0f}%, foreign {foreign.taken:.0f}% {foreign.values}"
     )
     assert foreign.taken <= 10.0
+
+
+YES = (
+    "yes", "yeah", "yep", "sure", "yeah sure", "yes sure", "of course", "yes please", "okay", "certainly",
+    "definitely", "absolutely", "please do", "that's right", "exactly", "correct", "yes of course", "I do", "I would",
+    "I'd love to",
+)  # fmt: skip
+NO = (
+    "no", "no no", "nope", "no way", "not really", "not now", "not yet", "not at all", "never", "no thanks",
+    "no thank you", "rather not", "I'd rather not", "of course not", "certainly not", "definitely not",
+    "absolutely not", "please don't", "that's wrong", "I don't want",
+)  # fmt: skip
+
+
+def signs(said: tuple[str, ...], wanted: str, decibels: float, expected: Expected) -> tuple[int, list[str]]:
+    """How many answers were heard rightly, and those that were taken for the contrary."""
+    ears, right, wrong = PocketSphinx(RecogniserSettings(push=True)), 0, list[str]()
+    ears.expect(expected.replace(mode="pushed"))
+    for text in said:
+        for voice in VOICES["test"]:
+            found, _ = heard(ears, recorded(text, voice, decibels, seed=len(text)), True)
+            meaning = "" if found is None else meaning_of(found.text)
+            right += meaning == wanted
+            if found is not None and meaning in MEANINGS and meaning != wanted:
+                wrong.append(f"{text} -> {found.text} ({decibels:g} dB, {voice.language} {voice.variant})")
+    return right, wrong
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("decibels", [30.0, 20.0, 10.0] if amount(0, 1) else [20.0])
+def test_no_answer_is_taken_for_the_contrary(decibels: float) -> None:
+    """200 answers by five voices in a long run; also where a robot waits for a yes alone."""
+    count = amount(3, 20)
+    right, wrong = signs(NO[:count], "no", decibels, yes_or_no())
+    more, others = signs(YES[:count], "yes", decibels, yes_or_no())
+    alone = answers(("yes",), Body("ears", 0.2, ears=Ears(3.0)))
+    _, taken = signs(NO[: count // 2], "no", decibels, alone)
+    print(f"{decibels:g} dB: {right + more} of {10 * count}, wrong: {[*wrong, *others, *taken]}")
+    assert [*wrong, *others, *taken] == []
+    assert right + more >= 0.95 * 10 * count

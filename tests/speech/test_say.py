@@ -219,3 +219,27 @@ def test_what_is_said_is_written_as_sound(tmp_path: Path) -> None:
     assert any(samples[2 * rate : 3 * rate])
     with pytest.raises(MissionError, match="needs a voice with an engine"), voice_track(path, guide("")):
         pass
+
+
+def test_pauses_in_the_sound_are_silent(tmp_path: Path) -> None:
+    """Where speech has ended, and where it was cut short."""
+    import wave
+
+    from btlang.robots.voice_track import voice_track
+
+    path, body = str(tmp_path / "said.wav"), guide()
+    mission = 'say "Hello."\nwait 2 s\n(say "Nobody hears this to its end.") for 0.5 s\nwait 2 s\nsay "Hello."'
+    begun: list[float] = []
+    with (
+        voice_track(path, body) as sinks,
+        Session(robot=Connector(body, "simulated"), world=Source(ROOM, "room.toml")) as session,
+    ):
+        hears = [*sinks, lambda event: begun.append(event.t) if isinstance(event, Said) else None]
+        assert session.prepare(btlang.parse_tree(mission), speed="max", sinks=hears).execute().succeeded
+    with wave.open(path) as sound:
+        samples, rate = sound.readframes(sound.getnframes()), sound.getframerate()
+    assert len(begun) == 3
+    for begin in begun[1:]:
+        last = 2 * round((begin - (1.9 if begin == begun[1] else 1.4)) * rate), 2 * round((begin - 0.05) * rate)
+        assert not any(samples[slice(*last)])
+        assert any(samples[2 * round(begin * rate) : 2 * round((begin + 0.4) * rate)])

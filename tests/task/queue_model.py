@@ -28,12 +28,20 @@ RANKS = ("", "more urgent", "interrupt", "cancel", "kill")
 class Expected:
     """What the model knows of a task."""
 
-    def __init__(self, priority: int, earliest: int | None, deadline: int | None, restart: Restart) -> None:
-        self.priority, self.position, self.restart = priority, 0, restart
+    def __init__(
+        self, priority: int, earliest: int | None, deadline: int | None, restart: Restart, created: int
+    ) -> None:
+        self.priority, self.bonus, self.position, self.restart = priority, 0, 0, restart
         self.earliest, self.deadline = earliest, deadline
         self.state, self.token = State.QUEUED, ""
         self.has_begun = False
         self.prints = 0
+        self.created = created
+
+    def age(self, hour: int) -> None:
+        """1 for each ten minutes that it has waited, at most 10."""
+        since = self.created if self.earliest is None or self.earliest < self.created else self.earliest + 0.5
+        self.bonus = max(self.bonus, min(10, int(6 * (hour - since))))
 
 
 class Model:
@@ -58,7 +66,11 @@ class Model:
         found = [number for number, task in self.tasks.items() if task.state in WAITING]
         if ready:
             found = [number for number in found if self.is_ready(self.tasks[number])]
-        return sorted(found, key=lambda number: (-self.tasks[number].priority, self.tasks[number].position, number))
+        return sorted(found, key=self._turn)
+
+    def _turn(self, number: int) -> tuple[int, int, int]:
+        task = self.tasks[number]
+        return -task.priority - task.bonus, task.position, number
 
     def is_ready(self, task: Expected) -> bool:
         in_time = task.has_begun or task.deadline is None or task.deadline >= self.hour
@@ -84,7 +96,7 @@ class Model:
             return
         number = answer.data["task"]["id"]
         assert number not in self.tasks
-        self.tasks[number] = Expected(priority, first, last, restart)
+        self.tasks[number] = Expected(priority, first, last, restart, self.hour)
 
     def submit_wrongly(self, priority: int) -> None:
         assert not self.ok("submit", text=MISSION, priority=priority)
@@ -113,7 +125,7 @@ class Model:
         assert answer.ok is (number in self.tasks)
         if answer.ok:
             earlier = self.tasks[number]
-            self.tasks[answer.data["task"]["id"]] = Expected(earlier.priority, None, None, earlier.restart)
+            self.tasks[answer.data["task"]["id"]] = Expected(earlier.priority, None, None, earlier.restart, self.hour)
 
     def move(self, number: int, priority: int) -> None:
         number = self.some(number)
@@ -131,9 +143,9 @@ class Model:
         assert self.ok("reorder", task=number, before=other)
         waiting.remove(number)
         waiting.insert(waiting.index(other), number)
-        priority = self.tasks[other].priority
-        self.tasks[number].priority = priority
-        equal = [each for each in waiting if self.tasks[each].priority == priority]
+        task, after = self.tasks[number], self.tasks[other]
+        task.priority, task.bonus = after.priority, after.bonus
+        equal = [each for each in waiting if self._turn(each)[0] == self._turn(other)[0]]
         for position, each in enumerate(equal):
             self.tasks[each].position = position - len(equal)
 
@@ -160,6 +172,9 @@ class Model:
         self.crash_at = "standby" if crashes_first else ""
         if not (self.paused or self.stopped):
             self.skip_the_late()
+            for task in self.tasks.values():
+                if task.state in WAITING:
+                    task.age(self.hour)
             self.running = next(iter(self.order(ready=True)), 0)
         if self.running:
             self.tasks[self.running].state = State.STANDBY
@@ -261,7 +276,7 @@ class Model:
         self.check()
         if not (self.asked or self.was_stopped or self.goes_down):
             self.skip_the_late()
-            if any(self.tasks[other].priority > task.priority for other in self.order(ready=True)):
+            if any(self.tasks[other].priority > task.priority for other in self.order(ready=True)[:1]):
                 self.asked = "more urgent"
 
     def check(self) -> None:

@@ -183,3 +183,56 @@ def test_old_tasks_are_deleted_once_a_day(store: Store) -> None:
     assert (store.task(recent.id), store.task(waiting.id)) == (None, waiting)
     Manager(store).tidy(NINE + 999 * DAY)
     assert store.changes()
+
+
+def test_all_times_that_were_missed_are_made_up_for(store: Store) -> None:
+    """Also where a task of a schedule doesn't wait for the one before: these don't overlap."""
+    manager = Manager(store)
+    add_schedule(store, missed=Missed.ALL, overlap=Overlap.SKIP)
+    manager.refresh(NINE + 3 * DAY + 3600)
+    assert states(store) == [State.QUEUED] * 4
+    manager.refresh(NINE + 4 * DAY)
+    assert states(store) == [*[State.QUEUED] * 4, State.SKIPPED]
+
+
+def test_who_waits_for_long_comes_before_a_stream_of_others(store: Store) -> None:
+    manager = Manager(store)
+    patient = store.add(Task(0, MissionText("wave"), "ann", NINE))
+    never = store.add(Task(0, MissionText("wave"), "ann", NINE, priority=-20))
+    turns = []
+    for minute in range(0, 180, 5):
+        now = NINE + 60.0 * minute
+        store.add(Task(0, MissionText("nod"), "bob", now, priority=5))
+        claimed = manager.claim(now)
+        assert claimed is not None
+        if claimed.id == patient.id:
+            turns.append(minute)
+    assert turns == [50]  # a task of ten minutes counts as one of priority
+    assert (never_now := store.task(never.id)) is not None
+    assert (never_now.state, never_now.priority, never_now.bonus) == (State.QUEUED, -20, 10)
+
+
+def test_who_has_waited_interrupts_nobody(store: Store) -> None:
+    manager = Manager(store)
+    under_way = store.add(Task(0, MissionText("wave"), "ann", NINE, priority=3))
+    assert (claimed := manager.claim(NINE)) is not None
+    store.add(Task(0, MissionText("nod"), "ann", NINE))
+    assert claimed.id == under_way.id
+    store.age(NINE + DAY, 600.0, 10)
+    assert not manager.is_more_urgent(claimed, NINE + DAY)
+
+
+def test_a_task_comes_right_before_another_one(store: Store) -> None:
+    def order() -> list[int]:
+        return [task.id for task in store.tasks()]
+
+    for _ in range(5):
+        store.add(Task(0, MissionText("wave"), "ann", NINE))
+    store.add(Task(0, MissionText("wave"), "ann", NINE, priority=2))
+    assert order() == [6, 1, 2, 3, 4, 5]
+    for moved, before, expected in (
+        (5, 3, [6, 1, 2, 5, 3, 4]), (1, 4, [6, 2, 5, 3, 1, 4]), (4, 6, [4, 6, 2, 5, 3, 1]), (6, 5, [4, 2, 6, 5, 3, 1])
+    ):  # fmt: skip
+        store.move_before(moved, before)
+        assert order() == expected
+    assert store.move_before(1, 99) is None

@@ -1,6 +1,7 @@
 """Leaves that are Python objects: functions, generators and classes, as described in leaf.py.
 
-An exception, any but KeyboardInterrupt, becomes a FAILURE with its reason. A class that raises anything but
+An exception, any but KeyboardInterrupt, becomes a FAILURE with its reason. It isn't an answer: the nodes that turn a
+failure into something else don't take it for a no (`NodeInstance.cannot_know`). A class that raises anything but
 ActionFailed is halted as well: it had no chance to stop what it moves. What `halt` itself raises is kept in the
 engine's `take_halt_failures`.
 """
@@ -11,7 +12,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from btlang.engine.instance import Fault, NodeInstance, halt_nothing
-from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown, described
+from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere, Unknown, described
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -46,7 +47,7 @@ class FunctionLeaf:
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
-            return unanswered(self.instance, problem)
+            return failed(self.instance, problem)
         return SUCCESS if result is True else status_of(self.instance, result)
 
 
@@ -67,7 +68,7 @@ def function_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stor
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
-            return unanswered(instance, problem)
+            return failed(instance, problem)
         return status_of(instance, result)
 
     return tick, halt_nothing
@@ -215,14 +216,23 @@ def _stop(instance: NodeInstance, halt: Callable[[], object]) -> None:
 
 def failed(instance: NodeInstance, problem: BaseException) -> int:
     """FAILURE, for the reason that the leaf gave, or with the exception that it should not have raised."""
-    if isinstance(problem, ActionFailed):
-        return instance.fail(str(problem))
-    return instance.fail(described(problem), problem)
+    if not isinstance(problem, ActionFailed):
+        return instance.cannot_know(described(problem), problem)
+    fail = instance.cannot_know if _is_question(instance, problem) else instance.fail
+    return fail(_reason(problem))
 
 
-def unanswered(instance: NodeInstance, problem: BaseException) -> int:
-    """As `failed`, for a function, which may be a condition that does not know."""
-    return instance.cannot_know(str(problem)) if isinstance(problem, Unknown) else failed(instance, problem)
+def _reason(problem: ActionFailed) -> str:
+    first = problem.args[0] if problem.args else ""
+    if isinstance(first, NotThere):
+        return first
+    return NotThere(problem) if isinstance(problem, Unknown) else str(problem)
+
+
+def _is_question(instance: NodeInstance, problem: ActionFailed) -> bool:
+    """Whether a leaf was asked something: also a function that isn't declared a condition, but raises Unknown."""
+    signature = instance.state.signatures[instance.node.id]
+    return signature.binding.condition or (isinstance(problem, Unknown) and signature.kind == "function")
 
 
 def status_of(instance: NodeInstance, result: object) -> int:
@@ -237,4 +247,4 @@ def status_of(instance: NodeInstance, result: object) -> int:
         return int(result)
     if type(result).__name__ in _TRUTHS or (isinstance(result, int) and result in (FAILURE, SUCCESS)):
         return SUCCESS if result else instance.refuse()
-    return instance.fail(f"it returned {result!r}, which is neither True, False, None nor a status")
+    return instance.cannot_know(f"it returned {result!r}, which is neither True, False, None nor a status")

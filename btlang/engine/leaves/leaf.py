@@ -25,10 +25,11 @@ Background leaves run concurrently with ticks. Safe for them are `wake`, `progre
 reading and setting single blackboard entries. Other services may be proxies (see Engine): they run calls on the thread
 that ticks, and refuse them once the leaf was halted.
 
-A condition that can't know its answer raises Unknown.
-
 A leaf that fails says why: it raises ActionFailed, or returns `Failed(reason)`, which is cheaper and can compute the
 reason later. For False the reason is the `refusal` of its binding.
+
+A condition that can't know its answer raises Unknown. If it raises anything else, or returns neither a truth nor a
+status, its answer isn't known either: only False and `Failed` mean no.
 
 For an output port (its text is a `{key}`), the parameter gets a function: `store(value)` writes the value to that key.
 """
@@ -48,6 +49,12 @@ Reason: TypeAlias = "str | Callable[[], str]"
 
 REFUSED = "it returned False"
 """Stands for the `refusal` of a leaf's binding, which is looked for when somebody asks."""
+
+
+class NotThere(str):
+    """A reason that may pass by itself: a device, a server or a component isn't there now. A retry waits for it."""
+
+    __slots__ = ()
 
 
 def unheard(share: float, state: str = "") -> None:
@@ -77,7 +84,7 @@ class Failed(Record):
 def reason_text(reason: Reason) -> str:
     """The text of a reason. If a function can't compute it, it is the text of the exception."""
     if isinstance(reason, str):
-        return reason
+        return str(reason)
     try:
         return reason()
     except KeyboardInterrupt:
@@ -92,6 +99,17 @@ def described(problem: BaseException) -> str:
     return f"{name}: {text}" if text else name
 
 
+def raised_in(problem: BaseException | None) -> str:
+    """The line of Python that raised an exception, for people; "" where it isn't known."""
+    if problem is None or problem.__traceback__ is None:
+        return ""
+    import os
+    from traceback import extract_tb
+
+    *_, frame = extract_tb(problem.__traceback__, limit=-1)
+    return f"{frame.name}, {os.path.basename(frame.filename)}:{frame.lineno}"
+
+
 def reason_of(problem: BaseException) -> str:
     """Why something failed: what an ActionFailed says, else the exception."""
     return str(problem) if isinstance(problem, ActionFailed) else described(problem)
@@ -101,7 +119,8 @@ class LeafBinding(Record):
     """The Python side of a leaf id: what to call, how to convert the text of each port, and values for missing ports.
 
     `outputs` are the ports that the leaf writes, `refusal` is the reason for a returned False.
-    With `thread` a plain function is called in a separate thread.
+    With `thread` a plain function is called in a separate thread. With `condition` the leaf is a question: whatever it
+    raises means that its answer isn't known.
     """
 
     call: Callable[..., Any]
@@ -110,3 +129,4 @@ class LeafBinding(Record):
     outputs: tuple[str, ...] = ()
     refusal: str = REFUSED
     thread: bool = False
+    condition: bool = False

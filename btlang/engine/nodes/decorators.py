@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from btlang.engine.instance import NodeInstance
+from btlang.engine.nodes.timed import Stopwatch
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     from btlang.engine.instance import Compiled
 
 
+_FIRST_PAUSE, _LONGEST_PAUSE = 500.0, 8000.0  # milliseconds
 WAS_TRUE = "it is true"
 """The reason of an Inverter: what it denies succeeded."""
 
@@ -68,13 +70,23 @@ def _rounds(instance: NodeInstance, children: Sequence[Compiled], limit: Callabl
 
     After a round within one tick it returns RUNNING, so that an endless loop cannot block a tick. After a longer one
     the child starts again in the same tick. A SKIPPED child makes it SKIPPED without a change of the count.
+
+    If what the child needs isn't there now (NotThere), some attempts would be over in a moment: each of them waits for
+    longer than the one before.
     """
     [(child, halt_child)] = children
     count = 0
     waiting = False  # whether the child was RUNNING at the last tick
+    pause = Stopwatch(instance.state.clock)
+    msec = 0.0  # the length of the pause that goes on
 
     def tick() -> int:
-        nonlocal count, waiting
+        nonlocal count, waiting, msec
+        if msec:
+            if not pause.reached(msec):
+                return pause.wait(msec)
+            pause.halt(False)
+            msec = 0.0
         most = limit()
         resumed, waiting = waiting, False
         while count < most or most == -1:
@@ -91,6 +103,10 @@ def _rounds(instance: NodeInstance, children: Sequence[Compiled], limit: Callabl
                 count = 0
                 return status
             count += 1
+            if again is FAILURE and count < most and instance.is_not_there():
+                msec = min(_FIRST_PAUSE * 2.0 ** (count - 1), _LONGEST_PAUSE)
+                pause.reached(msec)
+                return pause.wait(msec)
             if not resumed and (count < most or most == -1):
                 return RUNNING
             resumed = False
@@ -103,10 +119,12 @@ def _rounds(instance: NodeInstance, children: Sequence[Compiled], limit: Callabl
         return again
 
     def halt(keep: bool) -> None:
-        nonlocal count, waiting
+        nonlocal count, waiting, msec
         halt_child(keep)
+        pause.halt(keep)
         if not keep:
             count = 0
             waiting = False
+            msec = 0.0
 
     return tick, halt

@@ -70,7 +70,7 @@ def precondition(instance: NodeInstance, children: Sequence[Compiled]) -> Compil
         try:
             holds = truth(condition(scope))
         except ActionFailed as failed:
-            return instance.fail(str(failed))
+            return instance.cannot_know(str(failed))
         if holds:
             return IDLE
         status = otherwise()

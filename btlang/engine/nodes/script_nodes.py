@@ -43,7 +43,7 @@ def script_condition(instance: NodeInstance, children: Sequence[Compiled]) -> Co
         try:
             return SUCCESS if truth(run(scope)) else instance.fail(refusal)
         except ActionFailed as failed:
-            return instance.fail(str(failed))
+            return instance.cannot_know(str(failed))
 
     return tick, halt_nothing
 

@@ -95,8 +95,12 @@ class JointTranslation(Translation):
         super().__init__(setting)
         self._at = 0.0
 
+    def concerns(self, message: Any) -> bool:
+        """See Translation: a robot may report its limbs in separate messages."""
+        return self._setting.joint in message.name
+
     def _read(self, message: Any) -> Reading:
-        if self._setting.joint not in message.name:
+        if not self.concerns(message):
             raise DeviceSilent(f'it doesn\'t report the joint "{self._setting.joint}"')
         index, si = list(message.name).index(self._setting.joint), self._setting.si
         if index >= len(message.position):

@@ -28,9 +28,13 @@ class Translation:
         self._setting = setting
         self._gate = Gate(self.reads, all_stamps=True)
 
+    def concerns(self, message: Any) -> bool:
+        """Whether a message has anything to do with this device: others may share its topic."""
+        return True
+
     def reading(self, message: Any) -> Reading:
         """What a message says. Raises DeviceSilent where that can't be true."""
-        reason = self._gate.refuses(message)
+        reason = self._gate.refuses(message) if self.concerns(message) else ""
         if reason:
             raise DeviceSilent(f"it {reason}")
         return self._read(message)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Generator
 
 from nav_msgs.msg import Odometry
 
-from btlang.engine.leaves.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed, NotThere
 from btlang.robots.body import PATIENCE
 from btlang.robots.progress import Approach, Progress
 from btlang.ros.clients import Clients
@@ -82,7 +82,7 @@ def _ready(clients: Clients, cls: Any, name: str, publisher: Any, odometry: Late
     until = clients.clock.now() + patience
     while not publisher.get_subscription_count() or not odometry.has_come:
         if clients.clock.now() >= until:
-            raise ActionFailed(odometry.why_not() or no_listener(clients.node, cls, name))
+            raise ActionFailed(NotThere(odometry.why_not() or no_listener(clients.node, cls, name)))
         yield
 
 

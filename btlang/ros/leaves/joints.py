@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Iterable, Mapping
 
 from sensor_msgs.msg import JointState
 
-from btlang.engine.leaves.leaf import ActionFailed, Failed
+from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere
 from btlang.ros.clients import Clients
 from btlang.ros.commands import trajectory
 from btlang.ros.graph import no_listener
-from btlang.ros.joint_states import positions
 from btlang.ros.latest import AGE
 from btlang.ros.word import Word, type_name
 from btlang.vocabulary.ros_table import SLOT
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
 
 _DURATION = 2.0  # seconds for the way
 _CLOSE = 0.05  # radians or metres
+_OTHERS = 0.5  # seconds in which the messages with other joints come
 _PATIENCE = 5.0  # seconds beyond the duration
 
 
@@ -31,7 +31,7 @@ def joints_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
         raise word.misfit(cls, word.ros.interface, "joints takes trajectory_msgs/msg/JointTrajectory")
     targets = {joint: _target(word, joint, given) for joint, given in word.ros.get("positions").given}
     publisher = clients.publisher(cls, name)
-    states = clients.latest(JointState, word.ros.get("states", "joint_states"))
+    states: Any = clients.latest(JointState, word.ros.get("states", "joint_states"))
     seconds, close = word.amount("duration", _DURATION), word.ros.get("tolerance", _CLOSE)
     patience, now = word.ros.get("patience", _PATIENCE), clients.clock.now
 
@@ -43,15 +43,18 @@ def joints_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
         until = now() + patience
         while not publisher.get_subscription_count() or not states.has_come:
             if now() >= until:
-                raise ActionFailed(states.why_not() or no_listener(clients.node, cls, name))
+                raise ActionFailed(NotThere(states.why_not() or no_listener(clients.node, cls, name)))
             yield
-        at = _positions(states.take(AGE), wanted, states.named)
+        until = now() + _OTHERS
+        while states.missing(wanted) and now() < until:
+            yield
+        at = _positions(states, wanted)
         send(wanted, length)
         until, arrived = now() + length + patience, False
         try:
             while not arrived:
                 yield
-                at = _positions(states.take(AGE), wanted, states.named)
+                at = _positions(states, wanted)
                 arrived = all(abs(at[joint] - target) <= close for joint, target in wanted.items())
                 if not arrived and now() >= until:
                     joint = max(wanted, key=lambda joint: abs(at[joint] - wanted[joint]))
@@ -85,10 +88,7 @@ def _target(word: Word, joint: str, given: Any) -> Callable[[Mapping[str, Any]],
     return target
 
 
-def _positions(message: Any, joints: Mapping[str, float], topic: str) -> dict[str, float]:
+def _positions(states: Any, joints: Iterable[str]) -> dict[str, float]:
     """Where some joints are. Raises ActionFailed."""
-    found = positions(message)
-    missing = [joint for joint in joints if joint not in found]
-    if missing:
-        raise ActionFailed(f"{topic} doesn't report the joint {missing[0]}")
-    return {joint: found[joint] for joint in joints}
+    states.take(AGE)
+    return {joint: states.position(joint, AGE)[0] for joint in joints}

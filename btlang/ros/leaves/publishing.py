@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator
 
-from btlang.engine.leaves.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed, NotThere
 from btlang.ros.clients import Clients
 from btlang.ros.filling import filler
 from btlang.ros.graph import no_listener
@@ -40,7 +40,7 @@ def publish_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
         until = time.monotonic() + wait
         while not latched and not publisher.get_subscription_count():
             if time.monotonic() >= until:
-                raise ActionFailed(no_listener(clients.node, cls, name))
+                raise ActionFailed(NotThere(no_listener(clients.node, cls, name)))
             yield
         if not timed and not again:
             publisher.publish(message)

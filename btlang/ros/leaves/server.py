@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator
 
-from btlang.engine.leaves.leaf import ActionFailed, Failed
+from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere
 from btlang.ros.clients import Clients
 from btlang.ros.fields import field_types
 from btlang.ros.graph import is_ready, no_server
@@ -28,7 +28,7 @@ def awaited(clients: Clients, client: Any, cls: Any, name: str, limit: float) ->
     until = time.monotonic() + limit
     while not is_ready(client):
         if time.monotonic() >= until:
-            raise ActionFailed(no_server(clients.node, cls, name))
+            raise ActionFailed(NotThere(no_server(clients.node, cls, name)))
         yield
 
 

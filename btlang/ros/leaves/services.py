@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator
 
-from btlang.engine.leaves.leaf import ActionFailed, Failed, described
+from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere, described
 from btlang.ros.clients import Clients
 from btlang.ros.filling import filler
 from btlang.ros.graph import is_ready
@@ -62,9 +62,9 @@ def answered(
         now = time.monotonic()
         seen = now if is_ready(client) else seen
         if not answers and now - seen > _GONE:
-            raise ActionFailed(f"the server of {name} is gone")
+            raise ActionFailed(NotThere(f"the server of {name} is gone"))
         if not answers and now >= until:
-            raise ActionFailed(f"{name} has not answered within {limit:g} s")
+            raise ActionFailed(NotThere(f"{name} has not answered within {limit:g} s"))
     if isinstance(answers[0], str):
         raise ActionFailed(answers[0])
     return answers[0]

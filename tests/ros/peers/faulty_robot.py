@@ -1,4 +1,4 @@
-"""A plain robot without a watchdog, whose sensors misbehave as they are told. `faulty_robot.py [NAMESPACE]`
+"""A plain robot without a watchdog, whose sensors misbehave as they are told. `faulty_robot.py [FAULT ...]`
 
 It drives at the velocity that it heard last, for ever. A text on /misbehave is a list of faults, which take the place
 of those before and put the robot back to where it began:
@@ -6,8 +6,11 @@ of those before and put the robot back to where it began:
 - `odom=FAULT`: nan, inf, zero (the quaternion), far (1e9 m away), jump (50 m, once), frozen (the pose, not the twist),
   spin (the heading turns 40 degrees with each message), silent; with `@moving` from the first velocity on
 - `scan=FAULT`: nan, negative, zero, empty, flat (no angle between the beams), close (-inf), free (+inf), silent
-- `battery=FAULT`: nan, high (a percentage of 80), silent
-- `joint=FAULT`: nan
+- `battery=FAULT`: nan, high (a percentage of 80), silent, empty (0), blip (0 in one of 25 messages)
+- `joint=FAULT`: nan, split (each in a message of its own), half (so, and those of the head no more)
+- `docked=FAULT`: volatile (no last message for later listeners), best (effort), silent; without one nobody says it
+- `clock=FAULT` of simulated time: backward, standing, slow (a thousandth of real time), twice (one that is 1000 s ahead
+  in turn with the right one); with `@moving` from the first velocity on
 - `late=SECONDS`: a velocity takes effect so much later
 
 It prints `faults ...` when it has heard of them, `drive LINEAR ANGULAR` for each other velocity, and `not finite`.
@@ -16,16 +19,20 @@ It prints `faults ...` when it has heard of them, `drive LINEAR ANGULAR` for eac
 from __future__ import annotations
 
 import math
+import sys
 import time
+from typing import Any
 
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
-from rclpy.qos import qos_profile_sensor_data
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import BatteryState, JointState, LaserScan
-from std_msgs.msg import String
+from std_msgs.msg import Bool, String
 from trajectory_msgs.msg import JointTrajectory
 
+from btlang.ros.times import stamp
 from tests.ros.peers.peer import serve, tell
 
 PERIOD = 0.02
@@ -47,10 +54,13 @@ class FaultyRobot:
         self.node = node
         self.faults: dict[str, str] = {}
         self.joints = dict.fromkeys(JOINTS, 0.0)
-        self.begin("")
+        self.docked: Any = None
+        self.begin(" ".join(sys.argv[1:]))
         node.create_subscription(Twist, "cmd_vel", self.drive, 10)
         node.create_subscription(JointTrajectory, "joint_trajectory", self.move, 10)
         node.create_subscription(String, "misbehave", lambda message: self.begin(message.data), 10)
+        self.clock = node.create_publisher(Clock, "/clock", 10)
+        self.time, self.samples = 1000.0, 0
         self.odometry = node.create_publisher(Odometry, "odom", 10)
         self.scans = node.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
         self.batteries = node.create_publisher(BatteryState, "battery_state", 10)
@@ -65,6 +75,8 @@ class FaultyRobot:
         self.has_moved = False
         self.waiting: list[tuple[float, float, float]] = []
         self.then = time.monotonic()
+        if "docked" in self.faults:
+            self.publish_docked(self.faults["docked"])
         tell("faults", faults)
 
     def drive(self, twist: Twist) -> None:
@@ -95,13 +107,41 @@ class FaultyRobot:
         self.yaw += self.angular * passed
         self.x += self.linear * math.cos(self.yaw) * passed
         self.y += self.linear * math.sin(self.yaw) * passed
+        self.publish_clock(self.has("clock"), passed)
         self.publish_odometry(self.has("odom"))
         self.publish_scan(self.has("scan"))
         if self.has("battery") != "silent":
-            share = {"nan": math.nan, "high": 80.0}.get(self.has("battery"), 0.5)
+            self.samples += 1
+            blip = 0.5 if self.samples % 25 else 0.0
+            shares = {"nan": math.nan, "high": 80.0, "empty": 0.0, "blip": blip}
+            share = shares.get(self.has("battery"), 0.5)
             self.batteries.publish(BatteryState(percentage=share))
-        positions = [math.nan if self.has("joint") else at for at in self.joints.values()]
-        self.states.publish(JointState(name=list(self.joints), position=positions))
+        self.publish_joints(self.has("joint"))
+
+    def publish_clock(self, fault: str, passed: float) -> None:
+        self.time += {"backward": -1.0, "standing": 0.0, "slow": 0.001}.get(fault, 1.0) * passed
+        self.clock.publish(Clock(clock=stamp(self.time)))
+        if fault == "twice":
+            self.clock.publish(Clock(clock=stamp(self.time + 1000.0)))
+
+    def publish_docked(self, fault: str) -> None:
+        if self.docked is not None:
+            self.node.destroy_publisher(self.docked)
+        volatile, best = DurabilityPolicy.VOLATILE, ReliabilityPolicy.BEST_EFFORT
+        profile = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        if fault != "silent":
+            profile = QoSProfile(depth=1, durability=volatile) if fault == "volatile" else qos_profile_sensor_data
+            assert fault == "volatile" or profile.reliability == best
+        self.docked = self.node.create_publisher(Bool, "docked", profile)
+
+    def publish_joints(self, fault: str) -> None:
+        if fault not in ("split", "half"):
+            positions = [math.nan if fault else at for at in self.joints.values()]
+            self.states.publish(JointState(name=list(self.joints), position=positions))
+            return
+        for name, at in self.joints.items():
+            if fault == "split" or not name.startswith("head"):
+                self.states.publish(JointState(name=[name], position=[at]))
 
     def publish_odometry(self, fault: str) -> None:
         if fault == "silent":
