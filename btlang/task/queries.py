@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from btlang.task.rows import columns_of, in_lines, marks, to_column
-from btlang.task.task import FINAL, State, Task
+from btlang.task.task import FINAL, WAITING, State, Task
 
 TASK = columns_of(Task)
 IN_TURN = "(priority + bonus) DESC, position, id"
@@ -16,6 +16,9 @@ NEXT = (
     f" AND token = '') AND (earliest IS NULL OR earliest <= ?)"
     f" AND (deadline IS NULL OR deadline >= ? OR started IS NOT NULL) ORDER BY {IN_TURN} LIMIT 1"
 )
+WAITS = "{} AND state IN ({})".format(NOT_OVER, ", ".join(f"'{state}'" for state in sorted(WAITING)))
+AHEAD = f"(priority + bonus) = ? AND {WAITS} AND id <> ? AND (position < ? OR (position = ? AND id < ?))"
+"""The tasks before another one of the same priority, but for a third."""
 _QUEUED = f"{NOT_OVER} AND state = '{State.QUEUED}'"
 SINCE = "CASE WHEN earliest > created THEN earliest ELSE created END"
 """Since when a task waits."""

@@ -8,9 +8,9 @@ from btlang.record import Record
 from btlang.task.backup import write_backup
 from btlang.task.database import Database, Mode, store_error
 from btlang.task.migrations import open_database
-from btlang.task.queries import IN_TURN, NEXT, NOT_OVER, SINCE, TASK, TIMES, UNBEGUN, chosen
+from btlang.task.queries import AHEAD, IN_TURN, NEXT, NOT_OVER, SINCE, TASK, TIMES, UNBEGUN, WAITS, chosen
 from btlang.task.rows import columns_of, from_row, insert, marks, to_column
-from btlang.task.task import FINAL, WAITING, Act, Change, Kind, Revision, Schedule, State, Task
+from btlang.task.task import FINAL, Act, Change, Kind, Revision, Schedule, State, Task
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -127,26 +127,22 @@ class Store:
 
     def move_before(self, id: int, other: int) -> Task | None:
         """Gives a task that waits its turn right before another one, with its priority. None if one of them is gone."""
-        waits = f"{NOT_OVER} AND state IN ({marks(len(WAITING))})"
-        comes_before = "(position < ? OR (position = ? AND id < ?))"
         with self._database.transaction(Mode.ALONE) as execute:
             found = self._records(Task, execute(f"SELECT {TASK} FROM task WHERE id = ?", (other,)))
             if not found:
                 return None
             [after] = found
-            values = (after.priority + after.bonus, *map(to_column, WAITING), id, after.position, after.position, other)
-            ahead = f"(priority + bonus) = ? AND {waits} AND id <> ? AND {comes_before}"
-            execute(f"UPDATE task SET position = position - 2 WHERE {ahead}", values)
+            values = (after.priority + after.bonus, id, after.position, after.position, other)
+            execute(f"UPDATE task SET position = position - 2 WHERE {AHEAD}", values)
             fields = {"priority": after.priority, "bonus": after.bonus, "position": after.position - 1}
             return self._update(execute, Task, "task", fields, "id = ?", id)
 
     def age(self, now: float, interval: float, most: int) -> None:
         """Gives tasks that wait a bonus: 1 for each `interval` that they have waited, up to the `most`."""
         earned = " + ".join(f"CASE WHEN ({SINCE}) <= ? THEN 1 ELSE 0 END" for _ in range(most))
-        waits = f"{NOT_OVER} AND state IN ({marks(len(WAITING))}) AND bonus < ({earned})"
         since = [now - number * interval for number in range(1, most + 1)]
         with self._database.transaction() as execute:
-            execute(f"UPDATE task SET bonus = {earned} WHERE {waits}", (*since, *map(to_column, WAITING), *since))
+            execute(f"UPDATE task SET bonus = {earned} WHERE {WAITS} AND bonus < ({earned})", (*since, *since))
 
     def claim(self, now: float) -> Task | None:
         """The task whose turn it is, on standby from now on; None if none may begin. No two callers get the same one.

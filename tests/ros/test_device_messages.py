@@ -162,10 +162,10 @@ def test_a_joint_in_one_of_several_messages() -> None:
     told: list[Any] = []
     node: Any = SimpleNamespace(create_subscription=lambda *_: None, create_publisher=lambda *_: None)
     client = TopicClient(TopicDevice("arm", "joint", "/states", "/go", 0.5, Setting("elbow")), node)
-    for sec, name in ((3, "elbow"), (1, "wrist"), (4, "elbow"), (2, "wrist")):
-        message = JointState(name=[name], position=[float(sec)])
-        message.header.stamp.sec = sec
+    for seconds, name in ((3.0, "elbow"), (1.0, "wrist"), (3.1, "elbow"), (2.0, "wrist")):
+        message = JointState(name=[name], position=[seconds])
+        message.header.stamp = stamp(seconds)
         client.arrived(message)
         told.append(client.reading())
     assert [type(each) for each in told] == [kinds.JointState] * 4
-    assert told[-1].position == pytest.approx(degrees(4.0))
+    assert told[-1].position == pytest.approx(degrees(3.1))

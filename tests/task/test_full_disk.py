@@ -1,50 +1,52 @@
-"""A disk that is full while a mission runs: no file of the robot's process may grow, as a limit of its size says."""
+"""A disk that is full: recordings make room for the tasks, and the tasks wait for it."""
 
 from __future__ import annotations
 
-import resource
-import time
+import os
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
-from btlang.task.store import open_store
-from btlang.task.task import FINAL, State
+import pytest
 
-from .layers import LONG, wait_until
-from .test_crashes import Peer
-
-
-def answer(peer: Peer) -> str:
-    """The next one, after what was printed meanwhile."""
-    until = time.monotonic() + LONG
-    while time.monotonic() < until:
-        line = peer.lines.get(timeout=LONG)
-        if line.startswith("answer"):
-            return line
-    raise AssertionError("no answer")
+from btlang.task.database import StoreError, store_error
+from btlang.task.outbox import Outbox
+from btlang.task.recordings import Recordings
 
 
-def test_what_happens_on_a_full_disk_is_written_later(tmp_path: Path) -> None:
-    def states() -> list[State]:
-        return [task.state for task in store.tasks()]
+def test_recordings_make_room_on_a_full_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The oldest first, and only as many as are needed; the disk is one of 250 MB, as far as can be seen."""
+    sizes = {"a.mcap": 40, "b.mcap": 60, "c.mcap": 70, "other.db": 30}
+    for age, (name, size) in enumerate(sizes.items()):
+        with (tmp_path / name).open("wb") as file:
+            file.truncate(size * 1_000_000)
+        os.utime(tmp_path / name, (1000.0 + age, 1000.0 + age))
 
-    peer = Peer(tmp_path)
-    store = open_store(str(tmp_path / "tasks.db"))  # once: whoever opens a store checks it, and holds up who writes
-    peer.send(command="submit", text="wait 60 s then print over")
-    assert answer(peer) == "answer 1"
-    wait_until(lambda: states() == [State.UNDERWAY])
-    resource.prlimit(peer.pid, resource.RLIMIT_FSIZE, (600, resource.RLIM_INFINITY))
-    peer.send(command="submit", text="wave")
-    refused = answer(peer)
-    assert "error BT195" in refused
-    assert "the disk may be full" in refused
-    while peer.lines.get(timeout=LONG) != "printed over":
-        pass
-    peer.send(command="emergency_stop")
-    assert "disk" not in answer(peer)
-    wait_until(lambda: "emergency stop by ann" in (tmp_path / "emergency_stop").read_text())
-    assert states() == [State.UNDERWAY]  # as far as the store knows
-    resource.prlimit(peer.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
-    wait_until(lambda: states()[0] in FINAL)
-    assert states()[0] in (State.COMPLETED, State.KILLED)  # the stop came in the tick in which the mission ended
-    store.close()
-    peer.end()
+    def usage(_: object) -> Any:
+        used = sum(path.stat().st_size for path in tmp_path.iterdir())
+        return SimpleNamespace(free=250_000_000 - used)
+
+    monkeypatch.setattr("shutil.disk_usage", usage)
+    recordings = Recordings(str(tmp_path))
+    recordings.make_room()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["c.mcap", "other.db"]
+    recordings.make_room()
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_store_that_refuses_makes_recordings_go(tmp_path: Path) -> None:
+    done: list[str] = []
+    refuses = [True, True]
+
+    def change() -> None:
+        if refuses:
+            refuses.pop()
+            raise store_error("tasks.db", "the disk is full")
+        done.append("changed")
+
+    outbox = Outbox(done.append, lambda: done.append("room"))
+    outbox.write(change)
+    with pytest.raises(StoreError, match="full"):
+        outbox.flush()
+    outbox.flush()
+    assert done[1:] == ["room", "room", "changed"]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import importlib
-import os
 import threading
 import time
 import weakref
@@ -12,8 +11,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import closing
 from datetime import UTC, datetime
 from pathlib import Path
-from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -21,12 +19,9 @@ from btlang.api import parse_tree
 from btlang.diagnostics.errors import MissionError
 from btlang.run.events import Event, Printed
 from btlang.task import executor
-from btlang.task.database import StoreError, store_error
 from btlang.task.layer import TaskLayer
 from btlang.task.messages import Answer, Submit
 from btlang.task.missions import MissionReader
-from btlang.task.outbox import Outbox
-from btlang.task.recordings import Recordings
 from btlang.task.task import FINAL, MissionText, State, Task
 
 from .layers import ask, layer_in, refusal, submit, task, wait_for, wait_until
@@ -390,44 +385,6 @@ def test_a_task_says_what_it_needs_of_the_robot(tmp_path: Path) -> None:
         layer.manager.refresh(layer.now())
         [made] = layer.store.tasks(schedule=plan)[:1]
         assert made.needs == ("posture wave", "right arm")
-
-
-def test_recordings_make_room_on_a_full_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The oldest first, and only as many as are needed; the disk is one of 250 MB, as far as can be seen."""
-    sizes = {"a.mcap": 40, "b.mcap": 60, "c.mcap": 70, "other.db": 30}
-    for age, (name, size) in enumerate(sizes.items()):
-        with (tmp_path / name).open("wb") as file:
-            file.truncate(size * 1_000_000)
-        os.utime(tmp_path / name, (1000.0 + age, 1000.0 + age))
-
-    def usage(_: object) -> Any:
-        used = sum(path.stat().st_size for path in tmp_path.iterdir())
-        return SimpleNamespace(free=250_000_000 - used)
-
-    monkeypatch.setattr("shutil.disk_usage", usage)
-    recordings = Recordings(str(tmp_path))
-    recordings.make_room()
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["c.mcap", "other.db"]
-    recordings.make_room()
-    assert len(list(tmp_path.iterdir())) == 2
-
-
-def test_a_store_that_refuses_makes_recordings_go(tmp_path: Path) -> None:
-    done: list[str] = []
-    refuses = [True, True]
-
-    def change() -> None:
-        if refuses:
-            refuses.pop()
-            raise store_error("tasks.db", "the disk is full")
-        done.append("changed")
-
-    outbox = Outbox(done.append, lambda: done.append("room"))
-    outbox.write(change)
-    with pytest.raises(StoreError, match="full"):
-        outbox.flush()
-    outbox.flush()
-    assert done[1:] == ["room", "room", "changed"]
 
 
 def test_status_between_two_commands_has_words(tmp_path: Path) -> None:
