@@ -13,7 +13,7 @@ from btlang.robots.body import Body
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.motion.guard.guard import FASTEST
 
-_STUCK_AFTER = 1.0
+_STUCK_AFTER = 2.0  # seconds: a faster base the guard stops before, with what the odometry shows
 _REST = 0.002  # metres a second: less is noise of the encoders
 _FREE_AGAIN = 0.03
 _JUMP = 1.0  # metres

@@ -18,6 +18,7 @@ from tests.lies.scene import Result
 from tests.profiles import amount
 
 FAR, NEAR = 6.0, 1.5  # metres to the wall
+SHORT = 0.3  # metres: a robot that has only gone so far may take longer, as one that sets off
 
 
 def scene(lie: Lie) -> dict[str, Any]:
@@ -74,7 +75,7 @@ def judge(lie: Lie, result: Result, late: float = 0.0) -> None:
     assert not result.moved_on, result
     if lie.outcome == "stop":
         assert result.way <= lie.way + 0.5 * late, result
-        assert result.seconds <= lie.seconds + late, result
+        assert result.seconds <= lie.seconds + late or result.way <= SHORT, result
     elif lie.outcome == "wall":
         assert result.free > 0.0, result
 
