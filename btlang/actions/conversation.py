@@ -125,12 +125,12 @@ def _among(robot: Listening, heard: Iterable[Heard], text: str) -> bool:
 def _forms() -> list[tuple[list[str], str]]:
     """The words of what means yes or no, in all languages."""
     meanings = (each for by_language in _answers().values() for each in by_language.items())
-    return [(phrase.split(), meaning) for meaning, phrases in meanings for phrase in phrases]
+    return [(phrase.split(), key.removeprefix("written_")) for key, phrases in meanings for phrase in phrases]
 
 
 @cache
 def _answers() -> dict[str, dict[str, list[str]]]:
-    """By languages, then by "yes" and "no"."""
+    """By languages, then by "yes", "no", "written_yes" and "written_no"."""
     return tomllib.loads(files("btlang.actions").joinpath("answers.toml").read_text(encoding="utf-8"))
 
 
