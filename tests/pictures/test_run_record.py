@@ -72,7 +72,7 @@ def test_things_lie_where_they_were_put() -> None:
 
 
 def test_bumps_and_speech_are_marked() -> None:
-    record, _ = recorded("say hello then move forward 9 m")
+    record, _ = recorded("say hello then move forward until bumped then fail")
     assert [mark.kind for mark in record.marks] == ["say", "bump"]
     assert record.marks[0].text == "hello"
     assert record.ended is not None

@@ -125,12 +125,12 @@ def test_a_killed_session_is_offered_again(repl: Callable[..., Terminal], tmp_pa
 
 def test_a_choice_between_two_readings(repl: Callable[..., Terminal]) -> None:
     user = repl()
-    user.type("wait 1 s and say there")
+    user.type("nod then wave 3 times within 1 min")
     screen = user.wait_for("Enter runs it as it")
-    assert "Two readings. 1 writes: and meanwhile" in screen
-    assert "2 writes: then" in screen
-    user.press("2")
-    user.wait_for("wait 1 s then say there")
+    assert "Two readings. 1 writes: nod, then wave 3 times within 1 min" in screen
+    assert "2 writes: (nod then wave" in screen
+    user.press("1")
+    user.wait_for("> nod, then wave 3 times within 1 min")
     user.press("Enter")
     user.wait_for("The mission succeeded")
 
