@@ -253,6 +253,8 @@ class Values(Measures):
                 count, start = "2", at + 1
             elif (number := self.number(text, at)) is not None and number[0] >= 1 and number[0] == int(number[0]):
                 count, start = str(int(number[0])), number[1]
+            elif not is_bare and text.words[at] not in self.group_starts:
+                return  # as nearly always
             found = self.phrases.plural(text, start, self.names_tree, self._fitting(kind))
             if found is None or not (count or is_bare or self._is_plural(text, at, found[1], kind)):
                 return

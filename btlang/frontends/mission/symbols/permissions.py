@@ -39,6 +39,8 @@ class Permissions:
         """A whole statement that is not the first, or its last part behind a joining word."""
         words = text.words
         for at in range(first, last):
+            if words[at] not in self._allowing and words[at] not in self._staying:
+                continue  # as nearly always
             allows, stays = find(self._allowing, words, at), find(self._staying, words, at)
             if stays is not None and stays[1] < last and words[stays[1]] != "," and words[stays[1]] not in self._either:
                 stays = None  # `stay with Bob`
