@@ -87,3 +87,25 @@ def test_what_cannot_be_done_says_why(sentence: str, reason: str) -> None:
 def test_zones_open_again_however_their_statement_ends() -> None:
     assert run("try (go to the hall without entering the hall). Go to the hall.").succeeded
     assert run("(go to the lab without entering the hall) within 1 s if possible. Go to the hall.").succeeded
+
+
+@pytest.mark.parametrize(
+    ("text", "tree"),
+    [
+        ("nod; wave until you can see Alice", "SeesPerson"),
+        ("nod then stay with Bob", "Follow"),
+        ("avoid the reading corner; wait 1 s; you may enter the reading corner", "OpenZone"),
+        ("nod then wave or stay with Bob", "Wave"),
+    ],
+)
+def test_what_sounds_like_a_permission_is_kept(text: str, tree: str) -> None:
+    mission = btlang.parse_tree(text)
+    assert tree in plain(mission.tree)
+    assert "BT176" not in {warning.code for warning in mission.warnings}
+
+
+@pytest.mark.parametrize("text", ["nod; if you are in the kitchen you may wave", "nod; if bumped, now you can wave"])
+def test_what_is_permitted_after_a_condition_is_left_out(text: str) -> None:
+    mission = btlang.parse_tree(text)
+    assert plain(mission.tree).strip() == "Nod"
+    assert [warning.code for warning in mission.warnings] == ["BT176"]

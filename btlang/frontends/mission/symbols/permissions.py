@@ -29,6 +29,8 @@ class Permissions:
         self._joining = {word for role in ("then", "and") for word in _firsts(vocabulary, role)}
         self._fronts = self._asking | self._joining
         self._either = frozenset(_firsts(vocabulary, "or"))
+        self._polite = frozenset(_firsts(vocabulary, "politeness"))
+        self._at = frozenset(words[0] for words in vocabulary.values.role_words.introducing["location"])
         if text.distinct.isdisjoint((*self._allowing, *self._staying)):
             return
         for line in text.lines:
@@ -42,13 +44,13 @@ class Permissions:
             if words[at] not in self._allowing and words[at] not in self._staying:
                 continue  # as nearly always
             allows, stays = find(self._allowing, words, at), find(self._staying, words, at)
-            if stays is not None and stays[1] < last and words[stays[1]] != "," and words[stays[1]] not in self._either:
+            if stays is not None and not self._stays(text, at, stays[1], last):
                 stays = None  # `stay with Bob`
             if allows is None and stays is None:
                 continue
-            if at > first and words[at - 1] != "," and words[at - 1] not in self._joining and stays is None:
+            if stays is None and not self._may_begin(text, first, at):
                 continue  # `if you can see somebody`, `until you can`
-            said = longest(self._trie, text, at, self._context)
+            said = longest(self._trie, text, at, self._context) if stays is None else None
             if said is not None and said.meaning.entry is not None:
                 continue  # `you may enter the reading corner`
             begin = first if text.words[first] in self._asking else self._begin(text, first, at)
@@ -59,6 +61,23 @@ class Permissions:
             self.ends[begin] = last
             self.problems.append(diagnostic("BT176", text.span(begin, last), words=text.span(begin, last).text))
             return
+
+    def _stays(self, text: Words, at: int, end: int, last: int) -> bool:
+        """Whether `stay` at a word says where the robot is anyhow: `stay there`, `or stay in the lab`."""
+        if end == last or text.words[end] == "," or text.words[end] in self._either:
+            return True
+        return text.words[at - 1] in self._either and text.words[end] in self._at
+
+    def _may_begin(self, text: Words, first: int, at: int) -> bool:
+        """Whether a command could begin at a word: behind a comma, a joining word, or a condition behind `if`."""
+        words = text.words
+        while at > first and words[at - 1] in self._polite:
+            at -= 1
+        if at == first or words[at - 1] == "," or words[at - 1] in self._joining:
+            return True
+        asking = [place for place in range(first, at - 1) if words[place] in self._asking]
+        read = (longest(self._trie, text, place + 1, self._context) for place in asking)
+        return any(said is not None and said.last == at and said.meaning.role == "condition" for said in read)
 
     def _begin(self, text: Words, first: int, at: int) -> int:
         """Where the part begins that permits: behind the latest comma or `and then` before it, or the statement."""
