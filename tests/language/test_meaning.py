@@ -42,6 +42,7 @@ def test_meaning(sentence: str, tree: str) -> None:
         ("wave through the door", "BT010"),
         ("do you think you can find the book", "BT010"),
         ("pick up the shiny cup", "BT013"),
+        ("move forward for 10 s or 2 m", "BT019"),
     ],
 )
 def test_what_is_refused(sentence: str, code: str) -> None:

@@ -25,14 +25,14 @@ class Permissions:
         self._trie, self._context = vocabulary.trie, vocabulary.context
         self._allowing = _tree(vocabulary.roles["may"])
         self._staying = _tree(vocabulary.roles["or_stay"])
+        if text.distinct.isdisjoint((*self._allowing, *self._staying)):
+            return
         self._asking = frozenset(word for role in ("if", "once") for word in _firsts(vocabulary, role))
         self._joining = {word for role in ("then", "and") for word in _firsts(vocabulary, role)}
         self._fronts = self._asking | self._joining
         self._either = frozenset(_firsts(vocabulary, "or"))
         self._polite = frozenset(_firsts(vocabulary, "politeness"))
-        self._at = frozenset(words[0] for words in vocabulary.values.role_words.introducing["location"])
-        if text.distinct.isdisjoint((*self._allowing, *self._staying)):
-            return
+        self._at = frozenset(words[0] for words in vocabulary.values.role_words.introducing.get("location", ()))
         for line in text.lines:
             for number, (first, last) in enumerate(_statements(text, line.first, line.last)):
                 self._look(text, first, last, is_first=number == 0 and line.first == 0)

@@ -24,6 +24,7 @@ JOINTS = frozenset(("then", "and", "or", "comma", "otherwise"))
 _COMMANDS = frozenset(("command", "name"))
 _DOING = frozenset(("command", "name", "wait", "wait_until", "wait_for", "wait_up_to"))
 _ENDS = frozenset(("newline", "semi", "indent", "dedent", "define"))
+_EITHER_END = (["for", "or"], ["up_to", "or"])  # `for 10 s or 2 m` says two ends of one command, not two commands
 _MOST_WORDS = 60
 
 
@@ -82,7 +83,7 @@ class PartialCommands:
 
     def _left_out(self, at: int) -> tuple[Match, list[int]] | None:
         said = said_before(self._tokens)
-        if said is None:
+        if said is None or [token.kind for token in self._tokens[-2:]] in _EITHER_END:
             return None
         words = self._said.get(said.start) or words_of(self._text, said)
         return left_out(self._text, words, at, self._tries, self._context)
