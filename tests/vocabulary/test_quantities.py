@@ -13,7 +13,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.instance import EngineError
-from btlang.engine.leaves.leaf import Failed, reason_text
+from btlang.engine.leaves.leaf import Failed, Unknown, reason_text
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree
@@ -122,13 +122,17 @@ def test_what_was_read_is_the_reason(condition: str, reason: str) -> None:
         ({"at_least": 20.0, "at_most": 30.0}, 12.3456, "12.3"),
         ({"above": 20.0}, 20.0, "20"),
         ({"below": 1.0}, float("inf"), "inf"),
-        ({"above": 1.0}, float("nan"), "nan"),
     ],
 )
 def test_a_reading_is_rounded_so_that_it_still_fails(ports: dict[str, float], value: float, reason: str) -> None:
     refused = comparing(lambda: value, lambda given, read: read)(**ports)
     assert isinstance(refused, Failed)
     assert reason_text(refused.reason) == reason
+
+
+def test_a_reading_that_is_not_a_number_is_unknown() -> None:
+    with pytest.raises(Unknown, match="it is not a number"):
+        comparing(lambda: float("nan"), lambda given, read: read)(above=1.0)
 
 
 def test_they_stop_a_loop() -> None:
