@@ -117,7 +117,9 @@ def test_goals_of_a_program_that_knows_rclpy_alone(serve, client: Client, tmp_pa
     wrong = phrase(client, "/actions/move_forward", distance="two cats")
     assert end_of(wrong) == (aborted, False, "distance is 'two cats', which isn't a length, such as 5 m")
     wrong = phrase(client, "/actions/go_to", "fly to {place}", place="lab")
-    reason = "'fly to {place}' isn't served here: this is GoTo, with the phrase 'go to {place}'"
+    reason = (
+        "'fly to {place}' isn't served here: this is GoTo, with the phrase 'go to {place} [through {via}] [{manner}]'"
+    )
     assert end_of(wrong) == (aborted, False, reason)
     failed = phrase(client, "/actions/move_forward", distance="50 m")
     status, _, reason = end_of(failed)
