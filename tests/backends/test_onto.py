@@ -90,6 +90,14 @@ def test_a_node_that_went_elsewhere_is_not_taken_twice() -> None:
     assert _in_any_order(read_xml(Source(made))) == _in_any_order(after)
 
 
+def test_a_new_node_with_the_id_of_a_tree() -> None:
+    wave = Node("Wave")
+    before = Tree(wave, (("GraspObject", wave), ("each", wave)))
+    after = Tree(wave, (("GraspObject", wave), ("each", Node("Sequence", (wave, Node("GraspObject"))))))
+    made = written_onto(_written(before), after, WORDS)
+    assert _in_any_order(read_xml(Source(made))) == _in_any_order(after)
+
+
 @searches(10, 3000, deadline=None)
 @given(trees(), trees())
 def test_any_tree_onto_any_other(before: Tree, after: Tree) -> None:

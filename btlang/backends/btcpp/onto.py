@@ -114,8 +114,10 @@ class _Onto:
 
     def _written_ids(self) -> dict[str, str]:
         """The ID of each tree in the file by its name, those of new trees as the file's dialect allows them."""
-        made = tree_ids(self._after, (node.id for node in self._after.walk()), self._dialect)
-        written = {name: head.written for name, head in self._heads.items() if head.written and name in self._new}
+        nodes = {node.id for node in self._after.walk()}
+        made = tree_ids(self._after, nodes, self._dialect)
+        heads = {name: head.written for name, head in self._heads.items() if head.written and name in self._new}
+        written = {name: id for name, id in heads.items() if id not in nodes}  # what is new may have the ID of a tree
         return made | written
 
     def _known(self, node: Node) -> int | None:
@@ -181,7 +183,7 @@ class _Onto:
                 main = self._file.attributes.get(MAIN)
                 if main is not None:
                     self._text.attributes(0, ((MAIN, main),), ((MAIN, self._ids[self._after.name]),))
-            elif new == old:
+            elif new == old and (not head.written or self._ids.get(old, head.written) == head.written):
                 continue
             there = self._file.document.attributes(head.index)
             before = tuple((key, there[key]) for key in ("ID", SPOKEN_NAME) if key in there)
