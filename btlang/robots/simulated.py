@@ -16,7 +16,7 @@ from btlang.robots.geometry import Point, Pose
 from btlang.robots.gesturing import Gestures
 from btlang.robots.idling import Idling
 from btlang.robots.latch import Latch
-from btlang.robots.motion.guard.guard import Guard
+from btlang.robots.motion.guard.guard import Guard, Guarded
 from btlang.robots.motion.guard.readings import ObstacleReading, OdometryReading, ScanReading
 from btlang.robots.navigation import NavigationGoal, Navigator
 from btlang.robots.obstacles import Obstacles
@@ -42,7 +42,7 @@ _CONTROL_PERIOD = 0.05
 _HANDS: tuple[Hand, Hand] = ("left", "right")
 
 
-class SimulatedRobot:
+class SimulatedRobot(Guarded):
     """Implements `btlang.robots.robot.Robot`. The same commands and the same seed give the same run.
 
     `make_parts` makes its parts, which by default act in the world, of this and what stands there: its `obstacles`.
@@ -235,20 +235,6 @@ class SimulatedRobot:
     def stuck(self) -> bool:
         """True when it has been commanded to move for a second and does not."""
         return self._base.stuck or self._guard.stuck
-
-    @property
-    def held_back(self) -> str:
-        """See btlang.robots.capabilities.Base."""
-        return self._guard.held
-
-    @property
-    def limited_by(self) -> str:
-        """See btlang.robots.capabilities.Base."""
-        return self._guard.verdict.reason
-
-    def touch(self) -> None:
-        """See btlang.robots.capabilities.Base."""
-        self._guard.touch()
 
     @property
     def set_out_from(self) -> Pose:

@@ -21,7 +21,7 @@ from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.gesturing import Gestures
 from btlang.robots.latch import Latch
-from btlang.robots.motion.guard.guard import Cause, Guard, Verdict
+from btlang.robots.motion.guard.guard import Cause, Guard, Guarded, Verdict
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError
 from btlang.robots.station import Station
 from btlang.robots.voice import Synthesizer
@@ -70,7 +70,7 @@ _HEARTBEAT = 3.5  # seconds in which DDS learns for sure what has arrived
 _LAST_WORDS = 2.0  # seconds that servers get to answer at the end
 
 
-class RosRobot:
+class RosRobot(Guarded):
     """Implements `btlang.robots.robot.Robot`; the pose is on the map of the world file.
 
     A sensor that is silent is a RobotError for who asks for it, never a wait. The node has to be spun in a thread of
@@ -316,20 +316,6 @@ class RosRobot:
             return None
         self._driven = True
         return self._guard.judge(linear, angular)
-
-    @property
-    def held_back(self) -> str:
-        """See btlang.robots.capabilities.Base."""
-        return self._guard.held
-
-    @property
-    def limited_by(self) -> str:
-        """See btlang.robots.capabilities.Base."""
-        return self._guard.verdict.reason
-
-    def touch(self) -> None:
-        """See btlang.robots.capabilities.Base."""
-        self._guard.touch()
 
     @property
     def bumps(self) -> int:

@@ -253,6 +253,26 @@ class Guard:
         return sqrt(lost * lost + 2 * self._body.driving.brake * gap) - lost
 
 
+class Guarded:
+    """A robot whose base a guard judges; see btlang.robots.capabilities.Base."""
+
+    _guard: Guard
+
+    @property
+    def held_back(self) -> str:
+        """See btlang.robots.capabilities.Base."""
+        return self._guard.held
+
+    @property
+    def limited_by(self) -> str:
+        """See btlang.robots.capabilities.Base."""
+        return self._guard.verdict.reason
+
+    def touch(self) -> None:
+        """See btlang.robots.capabilities.Base."""
+        self._guard.touch()
+
+
 def check_velocity(linear: float, angular: float) -> None:
     """Raises RobotError for metres and degrees a second that aren't finite, or faster than any robot."""
     if not isfinite(linear) or not isfinite(angular):
