@@ -26,7 +26,7 @@ def repeats(node: Node) -> bool:
     What it runs until it succeeds, without a limit, is a condition that is waited for.
     """
     kind = CATALOGUE.get(node.id)
-    return kind is not None and bool(kind.again) and (kind.again == ON_SUCCESS or not kind.is_endless(node))
+    return kind is not None and bool(kind.again) and (kind.again == ON_SUCCESS or not kind.is_endless(node.ports))
 
 
 _SUCCESS = tuple(before << 3 | SUCCESS for before in range(len(NAMES)))  # the code of a success, by the status before

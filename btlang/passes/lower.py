@@ -12,19 +12,18 @@ from btlang.passes.scope import Scope
 from btlang.passes.scripts import assignment, behind, chosen, comparison, prepared
 from btlang.text.source import Span
 from btlang.tree import ast
-from btlang.tree.catalogue import SUBTREE, never_ends
+from btlang.tree.catalogue import CONSTRAINTS, SUBTREE, never_ends
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.entry import MEASURED
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.references import ALL, choice_of
+from btlang.vocabulary.references import ALL, choice_of, names_key
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-CONSTRAINTS = {"keep out": "KeepOut", "keep in": "KeepIn"}
 _CHAINS = {"sequence": "Sequence", "all": "Sequence", "fallback": "Fallback", "any": "Fallback", "parallel": "Parallel"}
 
 
@@ -144,7 +143,7 @@ def _for_each(item: ast.ForEach, done: list[Lowered], scope: Scope) -> Lowered:
     """One instance of the body for each value; of a set the body in a loop over the names that the robot finds."""
     choice = choice_of(item.values[0])
     if choice is not None and choice.how == ALL:
-        names, key = f"{{{item.key}_names}}", f"{{{item.key}}}"
+        names, key = f"{{{names_key(item.key)}}}", f"{{{item.key}}}"
         ports = (("type", choice.type), ("output", names), *choice.parts)
         found = Node("ChooseAll", (), ports)
         loop = new_node("LoopString", [done[0].node], item.span, queue=names, value=key)

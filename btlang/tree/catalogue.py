@@ -14,7 +14,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.tree.node import Node
 
 SEQUENCE, SUBTREE = "Sequence", "SubTree"
 """The ids that others than lowering have to make or know."""
@@ -112,9 +111,9 @@ class NodeKind(Record):
         """Whether it is a leaf that only lets time pass."""
         return self.takes_time and not self.most
 
-    def is_endless(self, node: Node) -> bool:
-        """Whether a node of this kind runs its child again and again without a limit."""
-        return node.port(self.rounds) == "-1" if self.rounds else self.endless
+    def is_endless(self, ports: Sequence[tuple[str, str]]) -> bool:
+        """Whether a node of this kind with these ports runs its child again and again without a limit."""
+        return dict(ports).get(self.rounds) == "-1" if self.rounds else self.endless
 
 
 def _control(id: str, least: int = 1, most: int = MOST_NODES, **traits: Any) -> NodeKind:
@@ -227,6 +226,10 @@ CATALOGUE: dict[str, NodeKind] = {
 """By id."""
 
 
+CONSTRAINTS = {"keep out": "KeepOut", "keep in": "KeepIn"}
+"""The nodes of what a command may ask of others."""
+
+
 def never_ends(node_id: str, ports: Sequence[tuple[str, str]], endless: Sequence[bool]) -> bool:
     """Whether a node with these ports runs until it fails or is stopped; `endless` says which of its children do."""
     kind = CATALOGUE.get(node_id)
@@ -238,7 +241,7 @@ def never_ends(node_id: str, ports: Sequence[tuple[str, str]], endless: Sequence
         return kind.roles[-1] == "work" and endless[-1]
     if kind.goes_on or kind.takes_time:
         return any(endless)
-    return kind.again == ON_SUCCESS and (dict(ports).get(kind.rounds) == "-1" if kind.rounds else kind.endless)
+    return kind.again == ON_SUCCESS and kind.is_endless(ports)
 
 
 def held(node_id: str, port: str) -> str:

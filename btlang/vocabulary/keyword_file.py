@@ -12,7 +12,7 @@ from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.text.toml import parse_toml
 from btlang.text.toml_positions import positions
-from btlang.tree.catalogue import CATALOGUE
+from btlang.tree.catalogue import CATALOGUE, CONSTRAINTS
 from btlang.vocabulary.capabilities import resources_of
 from btlang.vocabulary.entry import COMPARISONS, MEASURED, POINT, VERB_ROLES, Entry, Role, SlotSpec
 from btlang.vocabulary.language_tables import SWITCHES, TABLES, WORD_LISTS, problems
@@ -37,7 +37,6 @@ _ENTRY = {
     "example",
 }  # fmt: skip
 _FLAGS = ("accompaniment", "first", "instant", "uninterruptible", "thread", "touches")
-_CONSTRAINTS = ("", "keep out", "keep in")
 _MORE = {"action": {*_FLAGS, "constrains"}, "condition": {"touches"}, "quantity": {"type"}}
 """The keys that an entry of one sort has beside those of all."""
 _TYPE = {"name", "units", "whole", "least", "open", "values"}
@@ -130,7 +129,7 @@ class _Reader:
             self.wrong(f"{key} of '{near}' must be true or false", near)
         flags: dict[str, Any] = {key: table.get(key) is True for key in _FLAGS}
         constrains = table.get("constrains", "")
-        if constrains not in _CONSTRAINTS:
+        if constrains not in ("", *CONSTRAINTS):
             self.wrong(f'constrains of \'{near}\' is "keep out" or "keep in"', near)
         if flags["instant"] and flags["thread"]:
             self.wrong(f"'{near}' can't be instant: work in a thread ends in a later tick", near)

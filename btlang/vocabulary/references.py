@@ -59,6 +59,11 @@ class Choice(Record):
         return f"{{{self.how} {self.type} {self.key}{''.join(f'|{name}={value}' for name, value in self.parts)}}}"
 
 
+def names_key(key: str) -> str:
+    """The key for the names of a set, one of which is in the other key in each round."""
+    return f"{key}_names"
+
+
 def free_key(kind: str, taken: Container[str]) -> str:
     """The key for what is chosen of a type: its name, or another one where the mission uses that itself."""
     key = kind

@@ -9,8 +9,9 @@ from decimal import Decimal
 from btlang.backends.english.candidate import REFERENCE, Candidate, Checked
 from btlang.text.source import NOWHERE
 from btlang.tree import ast
+from btlang.tree.catalogue import CONSTRAINTS
 from btlang.tree.node import Node
-from btlang.vocabulary.references import ALL, Choice
+from btlang.vocabulary.references import ALL, Choice, names_key
 from btlang.vocabulary.value_type import WORLD
 
 TYPE_CHECKING = False
@@ -43,7 +44,7 @@ def _sequence(node: Node, children: tuple[Candidate, ...], checked: Checked) -> 
     if last is not None and last.node.id == "LoopString" and children[0].node.id == "ChooseAll":
         found, loop = dict(children[0].node.ports), last.node
         key, kind, names = loop.port("value")[1:-1], found.pop("type", ""), found.pop("output", "")
-        if names == loop.port("queue") == f"{{{key}_names}}" and kind in WORLD:
+        if names == loop.port("queue") == f"{{{names_key(key)}}}" and kind in WORLD:
             text = Choice(ALL, kind, key, tuple(sorted(found.items()))).text
             yield ast.ForEach(key, kind, (text,), last.children[0].part, NOWHERE)
     if last is not None and last.node.id == "Repeat" and [part.node.id for part in last.children] == ["Delay"]:
@@ -284,8 +285,7 @@ INVERSE_RULES: dict[str, Form] = {
     "Repeat": _repeat,
     "RetryUntilSuccessful": _retry,
     "ForceSuccess": _ignoring_failure,
-    "KeepOut": _constrained("keep out"),
-    "KeepIn": _constrained("keep in"),
+    **{node_id: _constrained(kind) for kind, node_id in CONSTRAINTS.items()},
     "Timeout": _within,
     "Delay": _delay,
     "Sleep": _wait,

@@ -36,7 +36,7 @@ def busy_loops(compilation: Compilation) -> list[Diagnostic]:
             while busy and busy[-1] is node.children[2]:
                 busy.pop()
         most = max(children)
-        if kind is None or most == TAKES_TIME or not kind.again or not kind.is_endless(node):
+        if kind is None or most == TAKES_TIME or not kind.again or not kind.is_endless(node.ports):
             return TAKES_TIME if kind is None or kind.takes_time else most
         if most == ASKS and (kind.again == ON_FAILURE or not kind.rounds):
             return TAKES_TIME  # it waits for a condition to become true, or false

@@ -84,7 +84,7 @@ def _decorated(kind: NodeKind, node: Node, child: Ends) -> Ends:
         turns = {_NAMED[before]: _NAMED[after] for before, after in kind.turns}
         return sum({turns.get(end, end) for end in (SUCCESS, FAILURE, SKIPPED, NEVER) if child & end})
     if kind.again:
-        if not kind.is_endless(node):
+        if not kind.is_endless(node.ports):
             return child if kind.rounds else ANY
         kept = child & ~_NAMED[kind.again]
         return (kept & ~SKIPPED if kind.skipped == "never" else kept) | NEVER
