@@ -10,7 +10,7 @@ text also `it is {level} percent` (see btlang/vocabulary/references.py).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from btlang.record import Record
 from btlang.text.source import Span
@@ -404,6 +404,27 @@ def parts(node: Ast) -> list[Ast]:
         elif part is not None:
             found.append(part)
     return found
+
+
+def with_parts(node: Ast, made: Sequence[Ast]) -> Ast:
+    """The node with other subtrees, in the order of `parts`; the node itself where none is another."""
+    if all(new is old for new, old in zip(made, parts(node), strict=True)):
+        return node
+    rest, changed = iter(made), dict[str, object]()
+    for field in node.parts:
+        old = getattr(node, field)
+        if old is not None:
+            changed[field] = tuple(next(rest) for _ in old) if type(old) is tuple else next(rest)
+    return node.replace(**changed)  # type: ignore[no-any-return]
+
+
+def with_bodies(mission: Program, body: Callable[[Ast], Ast], included: Callable[[Program], Program]) -> Program:
+    """The mission with another body and other bodies of its definitions, and with other missions that it includes."""
+    return mission.replace(  # type: ignore[no-any-return]
+        body=None if mission.body is None else body(mission.body),
+        definitions=tuple(each.replace(body=body(each.body)) for each in mission.definitions),
+        includes=tuple(each.replace(mission=included(each.mission)) for each in mission.includes),
+    )
 
 
 def parents_first(root: Ast) -> list[Ast]:

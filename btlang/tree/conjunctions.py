@@ -44,8 +44,7 @@ def resolve(mission: ast.Program, vocabulary: Lexicon) -> tuple[ast.Program, lis
 
 
 def _has_conjunction(mission: ast.Program) -> bool:
-    roots = (*ast.bodies(mission),)
-    return any(_is_conjunction(node) for root in roots for node in ast.parents_first(root))
+    return any(_is_conjunction(node) for body in ast.bodies(mission) for node in ast.parents_first(body))
 
 
 def _is_conjunction(node: ast.Ast) -> bool:
@@ -64,12 +63,7 @@ class Conjunctions:
 
     def program(self, mission: ast.Program) -> ast.Program:
         """A text with those that it includes."""
-        made: ast.Program = mission.replace(
-            body=None if mission.body is None else self._body(mission.body),
-            definitions=tuple(each.replace(body=self._body(each.body)) for each in mission.definitions),
-            includes=tuple(each.replace(mission=self.program(each.mission)) for each in mission.includes),
-        )
-        return made
+        return ast.with_bodies(mission, self._body, self.program)
 
     def _body(self, body: ast.Ast) -> ast.Ast:
         """Statements without `and` stay as they are and aren't looked into."""
@@ -89,19 +83,10 @@ class Conjunctions:
             return node, self._leaf(node)
         if type(node) is ast.Chain:
             return self._chain(node, [each for each, _ in done], [traits for _, traits in done])
-        parts = iter(done)
-        changed: dict[str, object] = {}
-        of_commands: list[Traits] = []
-        for field in node.parts:
-            old = getattr(node, field)
-            if old is None:
-                continue
-            of_field = [next(parts) for _ in old] if type(old) is tuple else [next(parts)]
-            changed[field] = tuple(each for each, _ in of_field) if type(old) is tuple else of_field[0][0]
-            if field != "condition":
-                of_commands += (traits for _, traits in of_field)
-        if any(new is not old for (new, _), old in zip(done, ast.parts(node), strict=True)):
-            node = node.replace(**changed)
+        condition = getattr(node, "condition", None)
+        pairs = zip(ast.parts(node), done, strict=True)
+        of_commands = [traits for part, (_, traits) in pairs if part is not condition]
+        node = ast.with_parts(node, [each for each, _ in done])
         return node, self._form(node, of_commands)
 
     def _chain(self, chain: ast.Chain, items: Sequence[ast.Ast], traits: Sequence[Traits]) -> tuple[ast.Ast, Traits]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from btlang.record import Record
 from btlang.tree import ast
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
@@ -24,12 +25,9 @@ def with_rounds(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
         return mission
     if mission.facts:
         vocabulary = vocabulary.with_places(tuple(fact.name for fact in ast.all_facts(mission)))
-    made: ast.Program = mission.replace(
-        body=None if mission.body is None else _looped(mission.body, vocabulary),
-        definitions=tuple(each.replace(body=_looped(each.body, vocabulary)) for each in mission.definitions),
-        includes=tuple(each.replace(mission=with_rounds(each.mission, vocabulary)) for each in mission.includes),
+    return ast.with_bodies(
+        mission, lambda body: _looped(body, vocabulary), lambda included: with_rounds(included, vocabulary)
     )
-    return made
 
 
 def _own_bodies(mission: ast.Program) -> list[ast.Ast]:
@@ -48,11 +46,13 @@ def _set_of(node: ast.Ast) -> Choice | None:
     return None
 
 
-class _Round:
-    """A set, the command that speaks of it, and the parts of which chain are in its round; none for itself alone."""
+class _Round(Record):
+    """A set, and the parts `first` to `last` of a chain that are in its round; no chain where one command is all."""
 
-    def __init__(self, choice: Choice, chain: ast.Chain | None, first: int, last: int) -> None:
-        self.choice, self.chain, self.first, self.last = choice, chain, first, last
+    choice: Choice
+    chain: ast.Chain | None = None
+    first: int = 0
+    last: int = 0
 
 
 def _looped(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
@@ -73,12 +73,9 @@ def _looped(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     def combine(node: ast.Ast, done: list[ast.Ast]) -> ast.Ast:
         choice = _set_of(node)
         if choice is not None and isinstance(node, ast.Phrase | ast.Name):
-            key = f"{{{choice.key}}}"
-            one = node.replace(
-                arguments=tuple((name, key if choice_of(text) == choice else text) for name, text in node.arguments)
-            )
+            one = _with(node, choice.text, f"{{{choice.key}}}")
             return _loop(choice, one, vocabulary) if id(node) in alone else one
-        made = _rebuilt(node, done)
+        made = ast.with_parts(node, done)
         for each in sorted(of_chain.get(id(node), ()), key=lambda found: -found.first):
             made = _wrapped(made, each, vocabulary)
         return made
@@ -109,7 +106,7 @@ def _round(nodes: Sequence[ast.Ast], at: int, choice: Choice, parents: dict[int,
         end = _goes_along(chain, first, first, choice)
         if end > first:
             return _Round(choice, chain, first, end)
-    return _Round(choice, None, 0, 0)
+    return _Round(choice)
 
 
 def _path(node: ast.Ast, parents: dict[int, ast.Ast]) -> list[ast.Ast]:
@@ -150,18 +147,6 @@ def _travels(node: ast.Ast) -> bool:
     return False
 
 
-def _rebuilt(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
-    """The node with other parts, where one is another."""
-    if all(new is old for new, old in zip(done, ast.parts(node), strict=True)):
-        return node
-    rest, changed = iter(done), dict[str, object]()
-    for field in node.parts:
-        old = getattr(node, field)
-        if old is not None:
-            changed[field] = tuple(next(rest) for _ in old) if type(old) is tuple else next(rest)
-    return node.replace(**changed)  # type: ignore[no-any-return]
-
-
 def _wrapped(chain: ast.Ast, found: _Round, vocabulary: Lexicon) -> ast.Ast:
     assert isinstance(chain, ast.Chain)
     items = chain.items[found.first : found.last + 1]
@@ -175,11 +160,12 @@ def _loop(choice: Choice, body: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     """One round for each name; where the names are known, of a single command the list of all."""
     names = vocabulary.values.members(choice)
     if names and isinstance(body, ast.Phrase | ast.Name):
-        each = tuple(_with(body, choice.key, name) for name in names)
+        each = tuple(_with(body, f"{{{choice.key}}}", name) for name in names)
         return each[0] if len(each) == 1 else ast.Chain("sequence", each, True, body.span)
     return ast.ForEach(choice.key, choice.type, names or (choice.text,), body, body.span)
 
 
-def _with(body: ast.Phrase | ast.Name, key: str, name: str) -> ast.Ast:
-    arguments = tuple((slot, name if text == f"{{{key}}}" else text) for slot, text in body.arguments)
+def _with(body: ast.Phrase | ast.Name, old: str, new: str) -> ast.Ast:
+    """The command with another text in its arguments."""
+    arguments = tuple((slot, new if text == old else text) for slot, text in body.arguments)
     return body.replace(arguments=arguments)  # type: ignore[no-any-return]

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 
 from btlang.text.words import Words
 from btlang.vocabulary.references import DENIED, RELATIONS, Parts
-from btlang.vocabulary.word_tree import WordTree, find, insert
+from btlang.vocabulary.word_tree import WordTree, find, tree_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -34,16 +34,11 @@ class Modifiers:
 
     def __init__(self, language: Mapping[str, Any]) -> None:
         self._words: Mapping[str, list[str]] = language["relations"]
-        self._relations: WordTree = {}
-        for relation, phrases in self._words.items():
-            for phrase in phrases:
-                insert(self._relations, phrase.split(), relation)
+        self._relations = tree_of((phrase, name) for name, phrases in self._words.items() for phrase in phrases)
         self._relatives: list[str] = language["relatives"]
         self._denials: list[str] = language["relative_denials"]
-        self._clauses: WordTree = {}
-        for phrases, is_so in ((self._relatives, True), (self._denials, False)):
-            for phrase in phrases:
-                insert(self._clauses, phrase.split(), is_so)
+        clauses = (*((phrase, True) for phrase in self._relatives), *((phrase, False) for phrase in self._denials))
+        self._clauses = tree_of(clauses)
         self._either = frozenset(language["roles"].get("or", ()))
         self.starts = frozenset((*self._relations, *self._clauses))
         """The words with which something behind a head may begin."""
@@ -89,27 +84,25 @@ class Modifiers:
         return next(iter(sorted(self._either, key=len)), "or")
 
     def _said_thing(self, value: str, spoken: Callable[[str, str], str]) -> str:
-        head, *filters = value.split("; ")
-        adjectives, behind = [], ""
-        for each in filters:
-            name, _, of = each.partition(" ")
-            if name == "color":
-                adjectives.append(spoken("color", of))
-            else:
-                rest = "; ".join(filters[filters.index(each) :])
-                behind = f" {self._words[name][0]} {self._said_thing(rest.partition(' ')[2], spoken)}"
-                break
-        noun = spoken("kind", head[5:]) if head.startswith("kind ") else head
-        return " ".join((*adjectives, noun)) + behind
+        """A thing with its colors before it and what it is near behind it, which may have the same."""
+        head, _, rest = value.partition("; ")
+        words = [spoken("kind", head.removeprefix("kind ")) if head.startswith("kind ") else head]
+        while rest.startswith("color "):
+            color, _, rest = rest.removeprefix("color ").partition("; ")
+            words.insert(-1, spoken("color", color))
+        if rest:
+            relation, _, other = rest.partition(" ")
+            words += (self._words[relation][0], self._said_thing(other, spoken))
+        return " ".join(words)
 
     def _adjective(self, text: Words, at: int, names: Names) -> tuple[str, int] | None:
         return find(names("color"), text.words, at)
 
     def _related(self, kind: str, text: Words, at: int, names: Names, depth: int) -> Iterator[tuple[Parts, int]]:
-        for relation, last in _prefixes(self._relations, text, at):
-            if kind in RELATIONS[relation]:
-                for value, end in self._thing(text, last, names, depth):
-                    yield ((relation, value),), end
+        found = find(self._relations, text.words, at)
+        if found is not None and kind in RELATIONS[found[0]]:
+            for value, end in self._thing(text, found[1], names, depth):
+                yield ((found[0], value),), end
 
     def _thing(self, text: Words, at: int, names: Names, depth: int) -> Iterator[tuple[str, int]]:
         """What a relation leads to: a name, or a kind with its adjectives; the shortest first."""
@@ -159,10 +152,3 @@ class Modifiers:
                 if text.words[end] not in self._either:
                     break
                 end += 1
-
-
-def _prefixes(tree: WordTree, text: Words, at: int) -> Iterator[tuple[str, int]]:
-    """The phrases of a tree that begin at a word, the longest first: `in front of`, not `in`."""
-    found = find(tree, text.words, at)
-    if found is not None:
-        yield found

@@ -67,20 +67,18 @@ class Entry(Record, uncompared=("span",)):
     `span` is the place of its first phrase in its keyword file. Where `measures` names a type, the `call` gives a
     quantity of it; the vocabulary makes the phrases that compare it of the `quantity` ones and the words for comparing.
     An `accompaniment` can go along with other commands: speech, gestures, lights, driving and turning by a measure;
-    every other action is a task, whose result counts.
-    An action that `constrains` others ("keep out", "keep in" of a zone) holds over the statement that it is said in; it
-    is a command of its own only where it stands alone. Of a list of places an action with `first` tries one after the
-    other until it succeeds. `instant` and `uninterruptible` are what an action says of
-    itself: that it ends in the tick in which it starts, and
-    that it should not be halted half-way. Warnings are made of them; they change nothing in a run. With `thread` the
-    `call`, a plain function, works in a thread of its own, beside the tick. An action that `touches` drives to contact
-    on purpose, and so does a mission that waits for a condition that does, such as a bump. `ros` stands in place of
-    `call` on a robot that speaks ROS 2. With `replaces` its `call` is what runs, whatever other entries of its id say,
-    on any robot. `verbs` are verbs with their roles, from which the vocabulary makes the first of the `phrases`.
-    `needs` names capabilities and parts of the robot (btlang.vocabulary.capabilities); what an action takes of them for
-    itself is among its `resources`. `outputs` are the slots whose ports it writes. An entry that `yields` leaves its
-    words to a mission, or another entry, that gives them a meaning. An entry without a `sort` has only phrases: those
-    of a known id.
+    every other action is a task, whose result counts. An action that `constrains` others ("keep out", "keep in" of a
+    zone) holds over the statement that it is said in; it is a command of its own only where it stands alone. Of a list
+    of places an action with `first` tries one after the other until it succeeds. `instant` and `uninterruptible` are
+    what an action says of itself: that it ends in the tick in which it starts, and that it should not be halted
+    half-way. Warnings are made of them; they change nothing in a run. With `thread` the `call`, a plain function, works
+    in a thread of its own, beside the tick. An action that `touches` drives to contact on purpose, and so does a
+    mission that waits for a condition that does, such as a bump. `ros` stands in place of `call` on a robot that speaks
+    ROS 2. With `replaces` its `call` is what runs, whatever other entries of its id say, on any robot. `verbs` are
+    verbs with their roles, from which the vocabulary makes the first of the `phrases`. `needs` names capabilities and
+    parts of the robot (btlang.vocabulary.capabilities); what an action takes of them for itself is among its
+    `resources`. `outputs` are the slots whose ports it writes. An entry that `yields` leaves its words to a mission, or
+    another entry, that gives them a meaning. An entry without a `sort` has only phrases: those of a known id.
     """
 
     sort: str  # "action", "condition" or ""

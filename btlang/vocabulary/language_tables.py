@@ -69,24 +69,10 @@ EXPLAINED = (*(role for role in ROLES if role not in _UNEXPLAINED), "compare", "
 
 SWITCHES = frozenset(("decimal_comma",))
 
-WORD_LISTS = frozenset(
-    (
-        "articles",
-        "politeness",
-        "unit_joiner",
-        "one_each",
-        "quantifiers",
-        "halting",
-        "asked_once",
-        "relatives",
-        "relative_denials",
-        "particles",
-        "fillers",
-        "speaker",
-        "subjects",
-        "purpose",
-    )
-)
+WORD_LISTS = frozenset((
+    "articles", "politeness", "unit_joiner", "one_each", "quantifiers", "halting", "asked_once", "relatives",
+    "relative_denials", "particles", "fillers", "speaker", "subjects", "purpose",
+))  # fmt: skip
 
 
 def _words(value: object) -> bool:

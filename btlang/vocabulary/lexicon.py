@@ -21,7 +21,7 @@ from btlang.vocabulary.trie import TrieNode, add, collisions
 from btlang.vocabulary.value_type import ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import Frame, parts_of, phrases_of
-from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS, WordTree, insert
+from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS, tree_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -82,10 +82,8 @@ class Lexicon:
         self.asked_once = frozenset(language["asked_once"])
         self.subjects = frozenset(language["subjects"])
         """Words that say nothing behind `until` and `before`: `until you go to the lab`."""
-        self.purpose: WordTree = {}
+        self.purpose = tree_of((phrase, True) for phrase in language["purpose"])
         """Words between a command and what it is for: `go through the hall to get to the lab`."""
-        for phrase in language["purpose"]:
-            insert(self.purpose, phrase.split(), True)
         self.continuing = frozenset(
             str(form[0]) for role in GOES_ON for phrase in self.roles.get(role, ()) for form in self._forms(phrase)
         )
@@ -200,7 +198,7 @@ class Lexicon:
                     pending.append(child)
         said = self.values.role_words
         words.update(said.particles, said.fillers, said.speaker, *chain(*said.introducing.values()))
-        words.update(word for word in self.values.modifiers.words())
+        words.update(self.values.modifiers.words())
         for role in NO_PHRASES:
             words.update(word for phrase in self.roles.get(role, ()) for word in phrase.split())
         return frozenset(word for word in words if word.isalpha())

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from btlang.text.source import Source
 from btlang.text.words import Orthography, Words, split
 from btlang.vocabulary.value_type import ValueType, format_number, with_unit
-from btlang.vocabulary.word_tree import END, WordTree, find, insert
+from btlang.vocabulary.word_tree import END, find, tree_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -27,18 +27,11 @@ class Measures:
         self._multipliers: Mapping[str, float] = language["multipliers"]
         self._joiner = frozenset(language["unit_joiner"])
         self._one_each = frozenset(language["one_each"])
-        self._fractions: WordTree = {}
-        for phrase, value in language["fractions"].items():
-            insert(self._fractions, phrase.split(), value)
-        self._times: WordTree = {}
-        for phrase, value in language["times"].items():
-            insert(self._times, phrase.split(), value)
+        self._fractions = tree_of(language["fractions"].items())
+        self._times = tree_of(language["times"].items())
         self._number_starts = frozenset((*self._numbers, *self._multipliers, *self._fractions))
-        self._units: WordTree = {}
-        for kind in types.values():
-            for unit in kind.units:
-                for word in unit.words:
-                    insert(self._units, word.split(), (kind.name, unit))
+        units = ((kind.name, unit) for kind in types.values() for unit in kind.units)
+        self._units = tree_of((words, (name, unit)) for name, unit in units for words in unit.words)
         self._facing = [phrase.split() for phrase in language["roles"].get("facing", ())]
 
     def is_number(self, words: Sequence[str]) -> bool:

@@ -87,20 +87,25 @@ class ReadingContext:
         value = self.read(kind, text, at)
         if value is not None:
             yield value
-        if kind in WORLD and (value is None or text.words[value[1]] in self.modifiers):
-            yield from self.wider(kind, text, at, value)
+        yield from self.wider(kind, text, at, value)
 
-    def sets(self, kind: str, text: Words, at: int) -> Iterator[tuple[str, int]]:
-        """The sets of names of a type that begin at a word, each as a choice of all, and where it ends."""
+    def sets(self, kind: str, text: Words, at: int) -> Iterator[tuple[str, Description, int]]:
+        """The sets of names of a type that begin at a word: the choice of all, what is meant, and where it ends.
+
+        Without a choice where what is known of the world leaves none.
+        """
         for meant, end in self.values.groups(text, at, kind) if kind in WORLD else ():
             if meant.type == kind:
-                yield Choice(ALL, kind, self.keys.get(kind, kind), meant.parts).text, end
+                choice = Choice(ALL, kind, self.keys.get(kind, kind), meant.parts)
+                yield "" if self.values.members(choice) == () else choice.text, meant, end
 
     def wider(self, kind: str, text: Words, at: int, value: tuple[str, int] | None) -> Iterator[tuple[str, int]]:
         """What a value is with what describes it (`the cup` as `the cup on the table`), the shortest first.
 
         Without a value: a name with adjectives before it.
         """
+        if kind not in WORLD or (value is not None and text.words[value[1]] not in self.modifiers):
+            return  # as nearly always
         modifiers, names = self.values.modifiers, self.values.names_tree
         how = "nearest"
         parts: Parts = ()

@@ -14,7 +14,6 @@ from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.pattern import Form, Slot
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.references import ALL, Choice
 from btlang.vocabulary.value_type import TEXT, WORLD, ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import fill
@@ -110,11 +109,8 @@ def longest(
                     if plain and kind in openers and word not in openers[kind]:
                         continue  # as nearly always, without reading
                     value = context.read(kind, text, i)
-                    if kind in WORLD and (value is None or words[value[1]] in context.modifiers):
-                        wider = [
-                            SlotValue(name, kind, each[0], i, each[1]) for each in context.wider(kind, text, i, value)
-                        ]
-                        paths += [(child, each.last, (*found, each)) for each in wider]
+                    wider = context.wider(kind, text, i, value)
+                    paths += [(child, end, (*found, SlotValue(name, kind, said, i, end))) for said, end in wider]
                     if value is None:
                         if kind in WORLD or word in context.starts:
                             sets = _sets(root, text, i, context, name, kind)
@@ -181,18 +177,15 @@ def _after_manner(
 
 def _sets(root: TrieNode, text: Words, at: int, context: ReadingContext, name: str, kind: str) -> list[SlotValue]:
     """The sets of names of a type that begin at a word; the shortest first."""
-    ways = [(meant, end) for meant, end in context.values.groups(text, at, kind) if meant.type == kind]
-    found: list[SlotValue] = []
-    for meant, end in ways:
-        choice = Choice(ALL, kind, context.keys.get(kind, kind), meant.parts)
-        group = "" if context.values.members(choice) == () else choice.text  # nothing is left of it
-        found.append(SlotValue(name, kind, group, at, end, group=group))
+    ways = list(context.sets(kind, text, at))
+    found = [SlotValue(name, kind, group, at, end, group=group) for group, _, end in ways]
     if ways and context.choice(text, at, kind) is not None:
-        listed = all_names(root, ways[0][0], text, at, ways[0][1], context, name)
+        _, meant, end = ways[0]
+        listed = all_names(root, meant, text, at, end, context, name)
         same = [at for at, value in enumerate(found) if value.last == listed.last]
         if same:
             found[same[0]] = listed.replace(group=found[same[0]].group)
-        elif listed.last > ways[0][1]:
+        elif listed.last > end:
             found.append(listed)  # with something unknown behind `except`
     return found
 

@@ -17,7 +17,7 @@ from btlang.vocabulary.nouns import Description, Features, Noun, noun_phrases
 from btlang.vocabulary.references import ALL, COUNT, DENIED, RELATIONS, Choice, Parts, choice_of
 from btlang.vocabulary.role_words import role_words
 from btlang.vocabulary.value_type import PLACE, ValueType, format_number
-from btlang.vocabulary.word_tree import END, WordTree, find, insert
+from btlang.vocabulary.word_tree import END, WordTree, find, insert, tree_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -55,9 +55,7 @@ class Values(Measures):
         """Words at which no phrase goes on beyond its own pattern."""
         self._features: Features = {}
         self._spoken: dict[tuple[str, str], str] = {}
-        self._exceptions: WordTree = {}
-        for phrase in language["roles"].get("except", ()):
-            insert(self._exceptions, phrase.split(), True)
+        self._exceptions = tree_of((phrase, True) for phrase in language["roles"].get("except", ()))
         self._openers: dict[str, frozenset[str]] | None = None
         self._choice_starts: frozenset[str] | None = None
         self._group_starts: frozenset[str] | None = None

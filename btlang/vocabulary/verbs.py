@@ -140,7 +140,7 @@ class _Filling:
         if role.for_speaker and text.words[at] in self._words.speaker:
             self._go_on(at + 1, {**filled, role.name: None}, has_particle)
             return
-        for group, last in context.sets(role.type, text, at):
+        for group, _, last in context.sets(role.type, text, at):
             one = SlotValue(role.slot, role.type, group, at, last, group=group)
             self._go_on(last, {**filled, role.name: one}, has_particle)
         for value in context.ways(role.type, text, at):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -23,6 +23,14 @@ def insert(tree: WordTree, words: Sequence[str], value: object) -> None:
     for word in words:
         tree = tree.setdefault(word, {})
     tree[END] = value
+
+
+def tree_of(phrases: Iterable[tuple[str, object]]) -> WordTree:
+    """The tree of phrases, each with what it stands for."""
+    tree: WordTree = {}
+    for phrase, value in phrases:
+        insert(tree, phrase.split(), value)
+    return tree
 
 
 def find(tree: WordTree, words: Sequence[str], at: int) -> tuple[Any, int] | None:

@@ -8,12 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.text.words import END_OF_STATEMENT, Words
+from btlang.text.words import Words, statements
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.word_tree import WordTree, find, insert
-
-_STOPS = frozenset((END_OF_STATEMENT, ";"))
+from btlang.vocabulary.word_tree import find, tree_of
 
 
 class Permissions:
@@ -23,8 +21,8 @@ class Permissions:
         self.ends: dict[int, int] = {}
         self.problems: list[Diagnostic] = []
         self._trie, self._context = vocabulary.trie, vocabulary.context
-        self._allowing = _tree(vocabulary.roles["may"])
-        self._staying = _tree(vocabulary.roles["or_stay"])
+        self._allowing = tree_of((phrase, True) for phrase in vocabulary.roles["may"])
+        self._staying = tree_of((phrase, True) for phrase in vocabulary.roles["or_stay"])
         if text.distinct.isdisjoint((*self._allowing, *self._staying)):
             return
         self._asking = frozenset(word for role in ("if", "once") for word in _firsts(vocabulary, role))
@@ -33,11 +31,10 @@ class Permissions:
         self._either = frozenset(_firsts(vocabulary, "or"))
         self._polite = frozenset(_firsts(vocabulary, "politeness"))
         self._at = frozenset(words[0] for words in vocabulary.values.role_words.introducing.get("location", ()))
-        for line in text.lines:
-            for number, (first, last) in enumerate(_statements(text, line.first, line.last)):
-                self._look(text, first, last, is_first=number == 0 and line.first == 0)
+        for _, first, last in statements(text, {*self._allowing, *self._staying}):
+            self._look(text, first, last)
 
-    def _look(self, text: Words, first: int, last: int, *, is_first: bool) -> None:
+    def _look(self, text: Words, first: int, last: int) -> None:
         """A whole statement that is not the first, or its last part behind a joining word."""
         words = text.words
         for at in range(first, last):
@@ -54,7 +51,7 @@ class Permissions:
             if said is not None and said.meaning.entry is not None:
                 continue  # `you may enter the reading corner`
             begin = first if text.words[first] in self._asking else self._begin(text, first, at)
-            if begin == first and is_first:
+            if begin == 0:
                 continue  # `you may go to the lab` asks for it
             if stays is not None and allows is None and not self._offers(text, begin, last):
                 continue
@@ -93,22 +90,6 @@ class Permissions:
     def _offers(self, text: Words, first: int, last: int) -> bool:
         """Whether `stay there` is one of two things that may be done."""
         return not self._either.isdisjoint(text.words[first:last])
-
-
-def _statements(text: Words, first: int, last: int) -> Iterator[tuple[int, int]]:
-    begin = first
-    for at in range(first, last + 1):
-        if at == last or text.words[at] in _STOPS:
-            if at > begin:
-                yield begin, at
-            begin = at + 1
-
-
-def _tree(phrases: list[str]) -> WordTree:
-    tree: WordTree = {}
-    for phrase in phrases:
-        insert(tree, phrase.split(), True)
-    return tree
 
 
 def _firsts(vocabulary: Lexicon, role: str) -> Iterator[str]:

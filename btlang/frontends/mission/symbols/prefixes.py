@@ -17,7 +17,8 @@ from btlang.vocabulary.values import key_of
 SEPARATORS = {"set": "set_to", "increase": "by", "decrease": "by", "remember": "remember_as", "each": "each_in"}
 """The roles that begin a statement about a value, each with the role of the words between the name and the value."""
 _MOST_WORDS = 4
-_BEFORE_BODY = (":", ",")
+BEFORE_BODY = (":", ",")
+"""The marks between `for each ...` and what is done."""
 _MOST_MEASURED = 40  # words of what is remembered
 
 
@@ -70,7 +71,7 @@ def _prefix(text: Words, role: str, at: int, vocabulary: Lexicon) -> Prefix | No
         words = tuple(text.words[at : noun[1]]) if noun is not None else ()
         if noun is None:
             return None
-        wider = [way for way in vocabulary.values.groups(text, at, is_bare=True) if text.words[way[1]] in _BEFORE_BODY]
+        wider = [way for way in vocabulary.values.groups(text, at, is_bare=True) if text.words[way[1]] in BEFORE_BODY]
         meant, last = wider[-1] if wider else noun
         return Prefix(role, key_of(words), words, at, last, noun=meant)
     if separator is None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.symbols.prefixes import Prefix
+from btlang.frontends.mission.symbols.prefixes import BEFORE_BODY, Prefix
 from btlang.frontends.mission.token import Assigned, Each, Remembered, Token
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.text.words import Words
@@ -99,7 +99,7 @@ def _each(
     )
     chosen = (prefix.noun, prefix.last) if prefix.noun is not None else inner.choice(text, prefix.value)
     sets = [chosen] if prefix.noun is not None else [*context.values.groups(text, prefix.value)]
-    wide = [way for way in sets if way is not None and text.words[way[1]] in (":", ",")]
+    wide = [way for way in sets if way is not None and text.words[way[1]] in BEFORE_BODY]
     if wide and wide[-1][0].how == ALL and not context.values.is_listed(wide[-1][0]):
         meant, last = wide[-1]
         kind = meant.type
