@@ -180,7 +180,11 @@ def _says_more(text: str, vocabulary: Lexicon) -> bool:
 def holds_definer(words: str, vocabulary: Lexicon) -> bool:
     """Whether a phrase or name holds a word that would define at the start of a line, and is no condition."""
     text = split(Source(words), vocabulary.orthography)
-    if not any(word in vocabulary.roles[role] for role in DEFINING for word in text.words):
+    choices = {word for role in DEFINING for word in vocabulary.roles[role]}
+    definers = {at for at, word in enumerate(text.words) if word in choices}
+    if not definers:
         return False
     match = longest(vocabulary.trie, text, 0, vocabulary.context)
+    if match is not None and definers <= match.nouns:
+        return False
     return match is None or match.meaning.role != "condition" or match.last < len(text.words) - 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from btlang.record import Record
 from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.references import choice_of
 
 
 class SlotValue(Record):
@@ -30,3 +31,9 @@ class Match(Record):
     meaning: Meaning
     last: int
     values: tuple[SlotValue, ...] = ()
+
+    @property
+    def nouns(self) -> frozenset[int]:
+        """The words of what is described, in which no word defines: `the person who is waving`."""
+        described = (value for value in self.values if choice_of(value.text) is not None)
+        return frozenset(word for value in described for word in range(value.first, value.last))

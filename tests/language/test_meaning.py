@@ -110,3 +110,8 @@ def test_what_is_permitted_after_a_condition_is_left_out(text: str) -> None:
     mission = btlang.parse_tree(text)
     assert plain(mission.tree).strip() == "Nod"
     assert [warning.code for warning in mission.warnings] == ["BT176"]
+
+
+def test_what_describes_a_thing_is_no_definition() -> None:
+    english = str(btlang.parse_tree("bring me a cup that isn't red; nod").to("english"))
+    assert english.splitlines()[0] == "bring me cup that is not red"

@@ -42,7 +42,7 @@ ROWS = {
     "Every name": "every_name", "Points": "points",
     "The nearest and a random one": "chosen", "Descriptions": "nouns", "Constraints": "constraints",
     "Verbs with roles": "verbs_with_roles", "Things by description": "verbs_with_roles",
-    "Sets and rounds": "verbs_with_roles", "Pronouns": "pronouns",
+    "Sets and rounds": "rounds", "Pronouns": "pronouns",
     "Quantities": "lists_and_quantities",
     # conditions.md
     "check": "conditions", "Joined conditions": "conditions", "not": "conditions",

@@ -18,7 +18,6 @@ from btlang.vocabulary.language_tables import CONNECTIVES
 from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.pattern import Part, Slot, name_form
-from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.trie import TrieNode, add, longest
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import END, SLOTS
@@ -258,7 +257,7 @@ def _is_compared(text: Words, first: int, at: int, vocabulary: Lexicon) -> bool:
 
 def _stop(text: Words, at: int, match: Match, choices: list[str]) -> int:
     """The first of some words in a command, but not in a noun: `the person who is waving`."""
-    nouns = {i for value in match.values if choice_of(value.text) for i in range(value.first, value.last)}
+    nouns = match.nouns
     return next((i for i in range(at, match.last) if text.words[i] in choices and i not in nouns), match.last)
 
 
