@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from _thread import get_ident  # `threading` takes longer to import
 from collections.abc import Callable, Mapping, Sequence
 
@@ -11,6 +10,7 @@ from btlang.engine.clock import Clock
 from btlang.engine.compile import compile_instances, expand
 from btlang.engine.instance import EngineError, EngineState, Fault, NodeInstance, blackboard_key
 from btlang.engine.leaves.leaf import REFUSED, LeafBinding, reason_text, unheard
+from btlang.engine.recursion import allowing_depth
 from btlang.engine.saving import restore_nodes, save_nodes
 from btlang.engine.script.values import as_text
 from btlang.engine.status import FAILURE, IDLE
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 # end of one branch may halt another one.
 _FRAMES_PER_LEVEL = 8
 _FRAMES_FOR_LEAVES = 1000
-_FRAMES_ASSUMED = 2000  # which Python is taken to allow, or nearly, without being asked at each tick
+_FRAMES_ASSUMED = 2000  # which Python is taken to allow, or nearly
 
 
 class Failure(Record):
@@ -94,8 +94,9 @@ class Engine:
             self._instances = expand(tree, self.blackboard, self._state)
             self._trace = None if listener is None else StatusTrace(self._state, listener)
             self._tick, self._halt = compile_instances(self._instances, self._trace, hooks)
-        self._frames = _depth(self._instances) * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
-        self._deep = self._frames > _FRAMES_ASSUMED
+        frames = _depth(self._instances) * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
+        if frames > _FRAMES_ASSUMED:
+            self._tick, self._halt = allowing_depth(frames, self._tick), allowing_depth(frames, self._halt)
         listened = self._instances if listener is not None else ()
         self._keyed = frozenset([s.index for s in listened if any("{" in text for _, text in s.node.ports)])
         self._busy = False
@@ -108,8 +109,6 @@ class Engine:
         KeyboardInterrupt halts the tree and comes through; any other exception of a leaf is its failure.
         Raises RuntimeError where a leaf or another thread ticks, halts or suspends the tree during a tick.
         """
-        if self._deep:
-            self._allow_depth()
         if self._busy:  # nothing that could let another thread run stands between this and the next statement
             self._refuse()
         self._busy = True
@@ -283,8 +282,6 @@ class Engine:
             self.on_wake()
 
     def _stop(self, keep: bool) -> None:
-        if self._deep:
-            self._allow_depth()
         if self._busy:
             self._refuse()
         self._busy = True
@@ -295,11 +292,6 @@ class Engine:
 
     def _refuse(self) -> None:
         raise RuntimeError("the tree is being ticked: neither a leaf nor another thread may tick or halt it now")
-
-    def _allow_depth(self) -> None:
-        """Others may have set a lower limit since."""
-        if sys.getrecursionlimit() < self._frames:
-            sys.setrecursionlimit(self._frames)
 
     def _halt_all(self, keep: bool, cut_short: bool = False) -> None:
         """Also when a leaf is interrupted while it halts: it counts as halted then, and another attempt goes on.

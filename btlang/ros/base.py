@@ -175,7 +175,8 @@ class RosBase:
         if found is None:
             return None
         message, arrived, fault = found
-        return OdometryReading(self._subscriptions.shown(ODOMETRY), arrived, fault, pose_of(message.pose.pose))
+        pose, measured = pose_of(message.pose.pose), seconds_of(message.header.stamp) or None
+        return OdometryReading(self._subscriptions.shown(ODOMETRY), arrived, fault, pose, measured)
 
     @property
     def is_localized(self) -> bool:

@@ -42,6 +42,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+MOST_HEAD = 16 * 1024  # bytes
 _MOST_FETCHING = 2  # recordings of robots elsewhere that are shown at a time: each is copied
 _HEADERS = {
     b"content-security-policy": b"default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
@@ -333,7 +334,7 @@ class Api:
 
 
 class _Headers:
-    """What every answer says to browsers, also one that went wrong."""
+    """What every answer says to browsers, also one that went wrong; and how long the head of a request may be."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
@@ -347,7 +348,9 @@ class _Headers:
                 message = {**message, "headers": [*given, *own]}
             await send(message)
 
-        await self._app(scope, receive, said)
+        head = [text for header in scope.get("headers", ()) for text in header]
+        too_long = sum(map(len, head)) > MOST_HEAD  # the limit of h11 is for what comes in parts
+        await (_too_long if too_long else self._app)(scope, receive, said)
 
 
 def _answer(answer: Answer) -> Response:
@@ -356,6 +359,14 @@ def _answer(answer: Answer) -> Response:
 
 def _word(word: str) -> Callable[[Request], Response]:
     return lambda request: PlainTextResponse(word)
+
+
+async def _too_long(scope: Scope, receive: Receive, send: Send) -> None:
+    if scope["type"] == "websocket":
+        await send({"type": "websocket.close"})
+    else:
+        text = "The head of this request is too long."
+        await JsonResponse({"ok": False, "text": text, "code": ""}, 431)(scope, receive, send)
 
 
 async def _no_socket(socket: WebSocket) -> None:

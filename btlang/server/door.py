@@ -17,7 +17,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import reason_of
-from btlang.server.app import Api
+from btlang.server.app import MOST_HEAD, Api
 from btlang.server.certificate import Certificate, write_private
 from btlang.text.source import NOWHERE
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 _HEAD = 10.0  # seconds for the head of the first request
 _MOST_CONNECTIONS = 4000
-_MOST_HEAD, _MOST_FRAME = 16 * 1024, 256 * 1024  # bytes
+_MOST_FRAME = 256 * 1024  # bytes
 
 
 class _Protocol(H11Protocol):
@@ -71,7 +71,7 @@ def serve(
     config = uvicorn.Config(
         api.app(), http=_Protocol, ws="websockets-sansio", lifespan="on", access_log=False, log_level="error",
         server_header=False, proxy_headers=False, limit_concurrency=_MOST_CONNECTIONS, timeout_keep_alive=10,
-        h11_max_incomplete_event_size=_MOST_HEAD, ws_max_size=_MOST_FRAME, ws_per_message_deflate=False,
+        h11_max_incomplete_event_size=MOST_HEAD, ws_max_size=_MOST_FRAME, ws_per_message_deflate=False,
         ws_ping_interval=20, ws_ping_timeout=20, timeout_graceful_shutdown=3,
         ssl_context_factory=None if certificate is None else lambda config, usual: tls(certificate),
     )  # fmt: skip

@@ -94,6 +94,24 @@ def test_a_deep_branch_halts_another_one_that_is_as_deep() -> None:
     assert world.log == ["C", "B.start", "C", "B.halt", "A.start"]
 
 
+def test_python_recurses_no_deeper_than_before_when_a_deep_tree_is_not_ticked() -> None:
+    """Where it may, JSON that is nested too deep crashes the process instead of raising an error."""
+    usual, seen = sys.getrecursionlimit(), []
+
+    def leaf() -> None:
+        seen.append(sys.getrecursionlimit())
+        if len(seen) == 1:
+            assert other.tick() == SUCCESS
+            seen.append(sys.getrecursionlimit())
+
+    other = Engine(Tree(chain(n("B"), "Inverter", 4000)), lambda id: LeafBinding(lambda: None), clock=Clock())
+    engine = Engine(Tree(chain(n("A"), "Inverter", 3000)), lambda id: LeafBinding(leaf), clock=Clock())
+    assert engine.tick() == SUCCESS
+    engine.halt()
+    assert min(seen) > 3000
+    assert sys.getrecursionlimit() == usual
+
+
 # However many ticks there are, they leak no memory
 
 

@@ -15,9 +15,12 @@ from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given
+from starlette.testclient import TestClient
+from starlette.websockets import WebSocketDisconnect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from btlang.server.accounts import Accounts
+from btlang.server.app import Api
 from btlang.server.door import listening
 from btlang.server.passwords import LONGEST, Verifier, fits, hashed, problem
 from btlang.server.roles import Role
@@ -387,3 +390,12 @@ sec-websocket-key: AAAAAAAAAAAAAAAAAAAAAA==
         assert sent < 1000
     assert door.memory - before < 100
     assert door.ask("GET", "/live").status == 200
+
+
+def test_a_head_that_comes_in_one_piece_is_no_longer_than_others_may_be(tmp_path: Path) -> None:
+    with closing(Accounts(str(tmp_path / "accounts"))) as accounts:
+        client: Any = TestClient(Api(accounts, "key").app())
+        for letters, status in ((15_000, 200), (20_000, 431)):
+            assert client.get("/live", headers={"a": "b" * letters}).status_code == status
+        with pytest.raises(WebSocketDisconnect), client.websocket_connect("/api/ws", headers={"a": "b" * 20_000}):
+            pass

@@ -42,12 +42,13 @@ class Bench:
     def judge(self, linear: float = 0.5, angular: float = 0.0) -> Verdict:
         return self.guard.judge(linear, angular)
 
-    def drive(self, seconds: float, linear: float, moves: Any) -> str:
-        """Drives while the odometry moves so; why it was stopped."""
+    def drive(self, seconds: float, linear: float, moves: Any, age: Any = lambda t: 0.0) -> str:
+        """Drives while the odometry moves so and comes so late; why it was stopped."""
         for _ in range(round(seconds / 0.05)):
             self.now += 0.05
-            self.pose = Pose(*moves(self.now))
-            self.odometry = OdometryReading("odometry", self.now, "", self.pose)
+            measured = self.now - age(self.now)
+            self.pose = Pose(*moves(measured))
+            self.odometry = OdometryReading("odometry", self.now, "", self.pose, 70.0 + measured)
             self.judge(linear)
             if self.guard.held:
                 return self.guard.held
@@ -184,6 +185,12 @@ def test_odometry(moves: Any, reason: str) -> None:
     found = Bench().drive(3.0, 0.5, moves)
     assert found.startswith(reason)
     assert bool(found) is bool(reason)
+
+
+def test_odometry_that_came_late_is_not_too_fast() -> None:
+    """After a pause of the process it catches up: more way in less time, by the clock of who reads it."""
+    assert Bench().drive(3.0, 0.5, lambda t: (0.5 * t, 0.0, 0.0), lambda t: 0.4 if t < 2.0 else 0.0) == ""
+    assert "odometry shows" in Bench().drive(3.0, 0.5, lambda t: (0.5 * t if t < 2.0 else 3.0 * t - 5.0, 0.0, 0.0))
 
 
 def test_a_disagreement_ends_one_drive_and_not_the_next() -> None:

@@ -149,7 +149,7 @@ class Guard:
         reading = self._odometry()
         if reading is not None and not reading.fault and reading.stamp != self._checked:
             self._checked = reading.stamp
-            fault = self._check.fault(reading.pose, reading.stamp)
+            fault = self._check.fault(reading.pose, reading.stamp, reading.measured)
             self._disagrees = self._disagrees or fault
         direction = copysign(1.0, linear) if linear else 0.0, copysign(1.0, angular) if not linear else 0.0
         if direction != self._direction or linear == 0.0 == angular:

@@ -34,7 +34,8 @@ class OdometryCheck:
         self._times: list[float] = []
         self._ways: list[tuple[float, float]] = []  # metres and degrees that the commands come to, by the times
         self._speeds = self._way = 0.0, 0.0
-        self._samples: deque[tuple[float, float, float]] = deque()  # a time, metres and degrees measured until then
+        # a time, metres and degrees measured until then, and the time by the clock of the odometry
+        self._samples: deque[tuple[float, float, float, float]] = deque()
         self._measured = self._turned = 0.0
         self._pose: Pose | None = None
         self._compared = self._moved_at = 0.0
@@ -71,9 +72,12 @@ class OdometryCheck:
         self._ways.clear()
         self._pose, self._speeds = None, (0.0, 0.0)
 
-    def fault(self, pose: Pose, stamp: float) -> str:
-        """Why a new pose can't be true, to be read after the name of the odometry; "" if it can."""
-        self._add(pose, stamp)
+    def fault(self, pose: Pose, stamp: float, measured: float | None = None) -> str:
+        """Why a new pose can't be true, to be read after the name of the odometry; "" if it can.
+
+        `measured` is when it was measured, by another clock than that of `stamp`.
+        """
+        self._add(pose, stamp, stamp if measured is None else measured)
         if len(self._samples) == 1:
             self._moved_at = self._drives_since = stamp
             self._under_way = False
@@ -106,10 +110,11 @@ class OdometryCheck:
         before = next((each for each in reversed(self._samples) if each[0] <= stamp - _SHORT), None)
         if before is None:
             return ""
-        way, most = abs(self._measured - before[1]), max(top for _, top in self._tops) * (stamp - before[0])
+        passed = max(stamp - before[0], self._samples[-1][3] - before[3])  # what arrived late, or of what came so
+        way, most = abs(self._measured - before[1]), max(top for _, top in self._tops) * passed
         return _DROVE.format(way, most) if way > (1.0 + _SHARE) * most + _SHORT_SLACK else ""
 
-    def _add(self, pose: Pose, stamp: float) -> None:
+    def _add(self, pose: Pose, stamp: float, measured: float) -> None:
         before, self._pose = self._pose, pose
         if before is not None:
             turned = wrap(pose.heading - before.heading)
@@ -122,7 +127,7 @@ class OdometryCheck:
             passed = stamp - self._samples[-1][0] if self._samples else 0.0
             if way > _NOTHING * abs(self._speeds[0]) * passed or abs(turned) > _NOTHING * abs(self._speeds[1]) * passed:
                 self._moved_at, self._under_way = stamp, True
-        self._samples.append((stamp, self._measured, self._turned))
+        self._samples.append((stamp, self._measured, self._turned, measured))
         while len(self._samples) > 1 and self._samples[1][0] <= stamp - _WINDOW:
             self._samples.popleft()
 

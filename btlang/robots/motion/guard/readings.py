@@ -61,6 +61,8 @@ class OdometryReading(SensorReading):
     """Where the robot is by its odometry, which may have begun anywhere."""
 
     pose: Pose = Pose(0.0, 0.0)
+    measured: float | None = None
+    """Seconds by the clock of its source, where it has one: `stamp` may be that of an arrival, which may be late."""
 
 
 class JointReading(SensorReading):
