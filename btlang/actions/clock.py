@@ -25,3 +25,8 @@ def time_of_day(
     is_between = begun or lasts if past_midnight else begun and lasts
     holds = is_between and (above is None or now > seconds_of(above)) and (below is None or now < seconds_of(below))
     return holds or Failed(lambda: f"it is {shown(now)}")
+
+
+def time_now(clock: Clock) -> str:
+    """The time of this day, as 18:05."""
+    return shown(clock.time_of_day)

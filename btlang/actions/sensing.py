@@ -6,6 +6,7 @@ from math import inf, radians
 
 from btlang.actions.points import where
 from btlang.robots.capabilities import Base, Docking, Hands, Power, Sensors
+from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError, SensorSilent
 
 TYPE_CHECKING = False
@@ -148,6 +149,21 @@ def distance_to_person(robot: Base, person: str) -> float:
 def distance_to_object(robot: Base, object: str) -> float:
     """Metres to an object, as the crow flies."""
     return robot.pose.distance_to(robot.locate(object))
+
+
+def place_of_person(robot: Base, person: str) -> str:
+    """The name of the place nearest to a person."""
+    return _place_of(robot, person)
+
+
+def place_of_object(robot: Base, object: str) -> str:
+    """The name of the place nearest to an object."""
+    return _place_of(robot, object)
+
+
+def _place_of(robot: Base, name: str) -> str:
+    point = robot.locate(name)
+    return min(robot.place_names, key=lambda place: Pose(*robot.locate(place)).distance_to(point))
 
 
 def people_near(robot: Base) -> int:

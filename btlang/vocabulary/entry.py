@@ -60,12 +60,17 @@ class Role(Record):
         return self.name in UNMARKED or self.name == RECIPIENT
 
 
+SAY, COUNT = "Say", "Count"
+"""The ids of the entries with which questions are answered: speech, and how many were counted."""
+
+
 class Entry(Record, uncompared=("span",)):
     """One action or condition.
 
     `call` is "module:name" or the Python object itself; `phrases` are patterns, the first is the one printed back;
     `span` is the place of its first phrase in its keyword file. Where `measures` names a type, the `call` gives a
     quantity of it; the vocabulary makes the phrases that compare it of the `quantity` ones and the words for comparing.
+    With the words that it is `named` by its value is said, and nothing compared: `say the answer`.
     An `accompaniment` can go along with other commands: speech, gestures, lights, driving and turning by a measure;
     every other action is a task, whose result counts. An action that `constrains` others ("keep out", "keep in" of a
     zone) holds over the statement that it is said in; it is a command of its own only where it stands alone. Of a list
@@ -91,6 +96,7 @@ class Entry(Record, uncompared=("span",)):
     help: str = ""
     example: str = ""
     quantity: tuple[str, ...] = ()
+    named: tuple[str, ...] = ()
     measures: str = ""
     accompaniment: bool = False
     constrains: str = ""

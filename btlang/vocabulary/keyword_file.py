@@ -37,7 +37,7 @@ _ENTRY = {
     "example",
 }  # fmt: skip
 _FLAGS = ("accompaniment", "first", "instant", "uninterruptible", "thread", "touches")
-_MORE = {"action": {*_FLAGS, "constrains"}, "condition": {"touches"}, "quantity": {"type"}}
+_MORE = {"action": {*_FLAGS, "constrains"}, "condition": {"touches"}, "quantity": {"type", "named"}}
 """The keys that an entry of one sort has beside those of all."""
 _TYPE = {"name", "units", "whole", "least", "open", "values"}
 _NOUN = {"type", "phrase", "slots", "how"}
@@ -233,8 +233,12 @@ class _Reader:
         for slot in entry.slots:
             if slot.name in COMPARISONS or slot.name == MEASURED:
                 self.wrong(f"every quantity has a port {slot.name}; the slot of '{near}' needs another name", near)
+        named = table.get("named", [])
+        if not _strings(named):
+            self.wrong(f"named of '{near}' must be a list of words for its value", near)
+            named = []
         made: Entry = entry.replace(
-            sort="condition", phrases=(), quantity=entry.phrases, measures=str(measures), resources=()
+            sort="condition", phrases=(), quantity=entry.phrases, named=tuple(named), measures=str(measures), resources=()
         )
         return made
 

@@ -19,7 +19,7 @@ CONNECTIVES = {
 """The roles that join commands, each with the operator of the chain that it makes; see `conjunctions.py` for "and"."""
 
 GOES_ON = frozenset((
-    "otherwise", "or", "meanwhile", "in_parallel", "if_works", "if_it_works", "in_any_case",
+    "otherwise", "or", "if_fails", "meanwhile", "in_parallel", "if_works", "if_it_works", "in_any_case",
     "do_that", "repeat_that", "again",
 ))  # fmt: skip
 """The roles that don't begin a new statement: what they begin continues the statement before it."""
@@ -35,15 +35,27 @@ NO_PHRASES = frozenset((
 CHANGING = ("increase", "decrease")
 """Roles whose words change the value that is named behind them, wherever they are found."""
 
-NOT_ALONE = frozenset(("ordinal", "keep", "fails"))
+ASKING = (
+    "journey", "search", "whereabouts", "counting", "asking_be", "asking_do", "answers", "feeling", "there", "very", "states",
+)  # fmt: skip
+"""What the table `asking` of a language may have; without it there are no questions, and no remarks."""
+
+QUESTIONS = ("ask_value", "ask_where", "ask_how_many")
+"""The roles of words that begin questions; "there_are" are words that may end one."""
+
+ORDER = ("arrival", "arrival_at", "on_way", "on_way_to", "start_at")
+"""The roles of words about the order of commands."""
+
+NOT_ALONE = frozenset(("ordinal", "keep", "fails", "there_are", "mind", *ORDER, *QUESTIONS))
 """The roles whose words are ordinary words everywhere but in one place."""
 
 _NO_SLOT = (
-    *CONNECTIVES, "otherwise", "if_works", "if_it_works", "in_any_case",
+    *CONNECTIVES, "if_fails", "otherwise", "if_works", "if_it_works", "in_any_case",
     "if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "once", "provided", "stop_when", "not",
     "but", "may", "or_stay",
     "either", "both", "neither", "nor", "not_both", "any_of", "all_of", "none_of", "one_of",
     "do_that", "repeat_that", "again", "start_over", "everything", "here", "ordinal", "following", "keep", "fails",
+    "followed_by", "arrival", "on_way", "on_way_to", "start_at", "there_are", "mind", *QUESTIONS,
     "repeat", "try", "retry", "if_possible", "wait_until", "wait_for", "check", "nothing", "never", "fail",
     "in_parallel", "in_order",
     "define_strong", "define", "fact", "facing",
@@ -56,6 +68,7 @@ ROLES = {
     **dict.fromkeys(("every", "delay", "for", "up_to", "apart", "within", "wait", "wait_up_to"), "duration"),
     **dict.fromkeys(("without_entering", "without_leaving"), "zone"),
     **dict.fromkeys(("count", "more", "at_least_of"), "count"),
+    "arrival_at": "place",
     **dict.fromkeys(("at", "every_day", "until_time", "wait_time"), "time_of_day"),
 }
 """The roles that words can have, each with the slot that its phrases hold."""
@@ -63,7 +76,7 @@ ROLES = {
 COMPARING = {**dict.fromkeys(COMPARISONS, "value"), "between": "low high"}
 """The ways to compare a quantity, each with the slots that its phrases hold."""
 
-_UNEXPLAINED = ("never", "may", "or_stay", "without_entering", "without_leaving")
+_UNEXPLAINED = ("never", "there_are", "may", "or_stay", "without_entering", "without_leaving")
 EXPLAINED = (*(role for role in ROLES if role not in _UNEXPLAINED), "compare", "politeness")
 """The roles that the table `about` describes: all that can be said."""
 
@@ -124,6 +137,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "doing": (_endings, "a list of endings"),
     "negative_subjects": (_words, "a list of words"),
     "plurals": (_words, "a list of words"),
+    "asking": (_words, "a list of words"),
     "nouns": (_words, "a list of words"),
     "plural_endings": (_is_text, "an ending"),
     "relations": (_words, "a list of phrases"),
@@ -196,7 +210,7 @@ _LANGUAGE: dict[str, Any] = {
     "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},
     "prepositions": {}, "synonyms": {}, "particles": [], "fillers": [], "speaker": [], "subjects": [], "purpose": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {}, "doing": {},
-    "negative_subjects": {}, "plurals": {}, "plural_endings": {}, "nouns": {}, "everyone": {},
+    "negative_subjects": {}, "plurals": {}, "asking": {}, "plural_endings": {}, "nouns": {}, "everyone": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {}, "times": {},
 }  # fmt: skip
 

@@ -13,7 +13,7 @@ from btlang.text.spelling import nearest
 from btlang.text.words import Orthography, split
 from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, Role, SlotSpec
-from btlang.vocabulary.language_tables import GOES_ON, NO_PHRASES, ROLES, about_roles, comparing_phrases, merged
+from btlang.vocabulary.language_tables import ASKING, GOES_ON, NO_PHRASES, ROLES, about_roles, comparing_phrases, merged
 from btlang.vocabulary.nouns import Features, with_plurals
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants
 from btlang.vocabulary.reading_context import Known, ReadingContext
@@ -82,6 +82,8 @@ class Lexicon:
         self.asked_once = frozenset(language["asked_once"])
         self.subjects = frozenset(language["subjects"])
         """Words that say nothing behind `until` and `before`: `until you go to the lab`."""
+        self.asking: Mapping[str, Sequence[str]] = {**dict.fromkeys(ASKING, ()), **language["asking"]}
+        """Words that questions and shortened journeys leave out, and those that begin questions, by what they are."""
         self.purpose = tree_of((phrase, True) for phrase in language["purpose"])
         """Words between a command and what it is for: `go through the hall to get to the lab`."""
         self.continuing = frozenset(
@@ -98,6 +100,8 @@ class Lexicon:
         self.about: dict[str, About] = about_roles(tables, english.about if english is not None else {})
         self.quantities: TrieNode = {}
         """The phrases of quantities alone: before `is` they compare and define nothing."""
+        self.measured: tuple[TrieNode, TrieNode] = (self.quantities, {})
+        """The phrases of quantities, and the further words for their values alone."""
         self.comparisons: dict[str, list[str]] = language["comparisons"]
         self.negations: dict[str, list[str]] = language["negations"]
         self.negative_subjects: dict[str, list[str]] = language["negative_subjects"]
@@ -186,7 +190,7 @@ class Lexicon:
     def words(self) -> frozenset[str]:
         """Every word that can be read, also those in names and values."""
         words: set[str] = set(self.articles)
-        pending: list[TrieNode] = [self.trie, self.quantities, *self.values.word_trees()]
+        pending: list[TrieNode] = [self.trie, *self.measured, *self.values.word_trees()]
         pending.append(self.values.phrases.tree)
         pending += [self.values.names_tree(name) for name, kind in self.types.items() if kind.kind == "names"]
         while pending:
@@ -341,6 +345,9 @@ class Lexicon:
             try:
                 for form in self._forms(pattern):
                     add(self.quantities, form, {s.name: s.type for s in entry.slots}, Meaning("quantity", entry))
+                for name in entry.named:
+                    for form in self._forms(name):
+                        add(self.measured[1], form, {}, Meaning("quantity", entry))
             except PatternError:
                 return entry  # reading the keyword file has reported it
         ways = [way for name, patterns in self.comparisons.items() for way in comparing_phrases(name, patterns)]

@@ -34,6 +34,9 @@ QUANTIFIERS = frozenset(("neither", "not_both", "any_of", "all_of", "none_of", "
 CORRELATIVES = frozenset(("either", "both"))
 """Raw kinds that say nothing before `A or B`, `A and B`."""
 
+RULES = ("whenever", "first_time")
+"""Raw kinds that begin standing rules."""
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeAlias

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 MIXED, POSTFIX, LIST, OTHERWISE, NEGATED = "mixed", "postfix", "list", "otherwise", "negated"
-AFTER, PACED = "after", "paced"
+AFTER, PACED, FORMS = "after", "paced", "forms"
 _WORD = re.compile(r"\w+")
 
 
@@ -110,10 +110,18 @@ def _repeated(node: ast.Every, behind: Span, at: int) -> Readings:
     return Readings(node, other, node.span, (behind, f" {pace} {rounds}"))
 
 
-def in_form(node: ast.If | ast.Try) -> Iterator[Attachment]:
-    """An `otherwise` that both this form and one at the end of its body could have."""
+def in_form(node: ast.If | ast.Try, vocabulary: Lexicon) -> Iterator[Attachment]:
+    """An `otherwise` that both this form and one at the end of its body could have, and another `if` there."""
     if node.otherwise is not None or node.body.span.start <= node.span.start:
         return
+    body = node.body
+    if isinstance(node, ast.If) and isinstance(body, ast.Chain) and body.operator == "sequence" and not body.bracketed:
+        before, last = body.items[-2:]
+        gap = Span(last.span.source, before.span.end, last.span.start)
+        is_open = gap.text.strip() in (",", *vocabulary.roles["and"]) or gap.text.strip(" ,") in vocabulary.roles["and"]
+        if isinstance(last, ast.If) and last.otherwise is None and last.body.span.start > last.span.start and is_open:
+            yield Attachment(FORMS, node.span.start, partial(_side_by_side, node, gap, vocabulary.word("then")))
+            return
     path: list[ast.Ast] = [node]
     part: Any = node.body
     while not _has_otherwise(part):
@@ -144,6 +152,16 @@ def _negated(chain: ast.Chain) -> Readings:
     first: Any = chain.items[0]
     inner = ast.Chain("any", (first.condition, *chain.items[1:]), True, chain.span)
     return Readings(chain, ast.Not(inner, chain.span), chain.span, _bracketed(first.span))
+
+
+def _side_by_side(node: ast.If, gap: Span, then: str) -> Readings:
+    """`if C, A, if D, B`: if C, A; then, whatever came of that, if D, B."""
+    body: Any = node.body
+    *before, last = body.items
+    first = before[0] if len(before) == 1 else body.replace(items=tuple(before))
+    taken = node.replace(body=body.replace(bracketed=True))
+    other = ast.Chain("sequence", (node.replace(body=first), last), False, node.span)
+    return Readings(taken, other, node.span, (gap, f" {then} "))
 
 
 def _moved(node: Any, path: Sequence[ast.Ast], part: Any) -> Readings:

@@ -3,6 +3,7 @@
 - `then`, `and` and `or` mixed: `A then B and C`;
 - a form behind a chain: `A then B 3 times`;
 - an `otherwise` that two forms could have: `if C, if D, A otherwise B`;
+- an `if` behind the command of another one: `if C, A, if D, B`;
 - `not` before one of two conditions: `not C or D`;
 - a list beside `and`: `go to the lobby and the lab and wave`;
 - `after` behind two commands: `A then B after C`;
@@ -62,7 +63,7 @@ def _attachments(root: ast.Ast, compilation: Compilation) -> Iterator[Attachment
                 stack += reversed(_parts(items, compilation))
             continue
         if isinstance(node, ast.If | ast.Try):
-            yield from in_form(node)
+            yield from in_form(node, compilation.vocabulary)
         elif isinstance(node, ast.Every):
             yield from in_pace(node, compilation.vocabulary)
         stack += [(part, False) for part in reversed(ast.parts(node)) if part.parts]

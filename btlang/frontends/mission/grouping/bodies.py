@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.grouping.scan import RULES, Scan
+from btlang.frontends.mission.grouping.scan import Scan
 from btlang.frontends.mission.grouping.stack import StackEntry
-from btlang.frontends.mission.token import Paced, Token
+from btlang.frontends.mission.token import RULES, Paced, Token
 
 
 def separator(scan: Scan) -> None:
@@ -32,6 +32,32 @@ def begin_otherwise(scan: Scan) -> None:
     scan.stack.append(StackEntry("body", opener, scan.stack[-1]))
     scan.next(token, True)
     separator(scan)
+
+
+def chain_alternatives(scan: Scan) -> None:
+    """`if A, X, if B, Y, otherwise Z`: the word behind a chain of commas makes each condition the `else` before it."""
+    commas: list[Token] = []
+    for outer, inner in zip(scan.stack[-2::-1], scan.stack[:0:-1], strict=True):
+        comma = _comma_before(scan, inner) if _is_if(inner) and _is_if(outer) else None
+        if comma is None:
+            break
+        outer.commas.remove(comma)
+        outer.close_chain()
+        comma.kind = "ELSE"
+        commas.insert(0, comma)
+    first = len(scan.stack) - 1 - len(commas)
+    for at, comma in enumerate(commas, first):
+        scan.stack[at] = StackEntry("body", comma, scan.stack[at - 1])
+
+
+def _comma_before(scan: Scan, entry: StackEntry) -> Token | None:
+    """The comma right before a form."""
+    before = scan.out[next(at for at, token in enumerate(scan.out) if token is entry.opener) - 1]
+    return before if before.kind == "COMMA" else None
+
+
+def _is_if(entry: StackEntry) -> bool:
+    return entry.kind == "body" and entry.opener is not None and entry.opener.kind == "FORM" and entry.opener.role == "if"
 
 
 def end_block(scan: Scan) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang.frontends.mission.grouping.bodies import begin_otherwise, end_block, paced, separator, set_amount, set_pace
+from btlang.frontends.mission.grouping.bodies import begin_otherwise, chain_alternatives, end_block, paced, separator, set_amount, set_pace
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, STARTS_OPERAND, closes_statement
 from btlang.frontends.mission.grouping.problems import both_readings, found_words, is_alone, side_by_side
 from btlang.frontends.mission.grouping.readings import otherwise_of_another, repeated, twice_more, waits_first
@@ -17,6 +17,9 @@ _JOINTS = {"in_parallel": "MEANWHILE", "while_doing": "MEANWHILE", "before": "TH
 
 
 def connective(scan: Scan, token: Token) -> None:
+    if _answers_try(scan, token):
+        otherwise(scan, token)
+        return
     following = scan.raw[scan.at + 1]
     if following.kind == "comma" and token.kind == "and" and scan.raw[scan.at + 2].kind == "then":
         scan.at += 2  # `A and, once there, B`
@@ -28,6 +31,15 @@ def connective(scan: Scan, token: Token) -> None:
     if token.kind == "or" and scan.raw[scan.at].kind == "or":  # `A or, if that fails, B`
         scan.next(scan.raw[scan.at], True)
         _skip_comma(scan)
+
+
+def _answers_try(scan: Scan, token: Token) -> bool:
+    """`try to A; if that fails, B`: makes these words the `otherwise` of the nearest `try`."""
+    owner = scan.stack[-1].else_owner
+    if token.value != "if_fails" or owner is None or owner.opener is None or owner.opener.role != "try":
+        return False
+    token.kind = "otherwise"
+    return True
 
 
 def _skip_comma(scan: Scan) -> None:
@@ -61,6 +73,7 @@ def _widening(scan: Scan, token: Token) -> None:
 def comma(scan: Scan, token: Token) -> None:
     following = scan.raw[scan.at + 1]
     entry = scan.stack[-1]
+    _answers_try(scan, following)
     is_end = following.kind in ("for", "until_time")
     owner = entry.count_owner if following.kind == "count" else entry.stop_owner if is_end else None
     if following.kind == "otherwise" or owner is not None:
@@ -112,6 +125,7 @@ def stop(scan: Scan, token: Token) -> None:
             break
     scan.at += 1
     following = scan.raw[scan.at]
+    _answers_try(scan, following)
     if following.kind == "otherwise" and scan.stack[-1].else_owner is None:
         otherwise_of_another(scan, following)
     if following.kind in _GOING_ON:
@@ -172,6 +186,7 @@ def says_nothing(scan: Scan, token: Token) -> None:
 def otherwise(scan: Scan, token: Token) -> None:
     if scan.stack[-1].else_owner is not None:
         scan.close_forms(scan.stack[-1].else_owner)
+        chain_alternatives(scan)
         scan.stack.pop().close_chain()
         begin_otherwise(scan)
         return

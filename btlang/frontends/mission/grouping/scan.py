@@ -6,13 +6,12 @@ from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.grouping.stack import StackEntry
-from btlang.frontends.mission.token import Header, Token, begins_condition
+from btlang.frontends.mission.token import RULES, Header, Token, begins_condition
 from btlang.record import Record
 from btlang.text.source import Source, Span
 
 ENDS = frozenset(("newline", "semi", "close", "dedent", "end", "stop"))
 STARTS_STATEMENT = frozenset(("newline", "semi", "indent", "dedent", "open", "define"))
-RULES = ("whenever", "first_time")
 _CLOSES_LINE = frozenset(("newline", "indent", "dedent", "end"))
 
 

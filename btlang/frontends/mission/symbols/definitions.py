@@ -15,12 +15,13 @@ from btlang.text.words import END_OF_STATEMENT, Words, statements
 from btlang.tree.ast import Definition
 from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
 from btlang.vocabulary.language_tables import CONNECTIVES
+from btlang.vocabulary.language_tables import QUESTIONS
 from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.pattern import Part, Slot, name_form
 from btlang.vocabulary.trie import TrieNode, add, longest
 from btlang.vocabulary.values import key_of
-from btlang.vocabulary.word_tree import END, SLOTS
+from btlang.vocabulary.word_tree import END, SLOTS, find
 
 # A line that starts with one of these compares; it defines nothing.
 _STARTS_NO_NAME = frozenset((
@@ -136,6 +137,11 @@ def reach(text: Words, at: int) -> int:
         at = text.lines[number].first
 
 
+def _begins_question(phrases: Phrases, at: int) -> bool:
+    match = phrases.at(at)
+    return match is not None and match.meaning.role in QUESTIONS
+
+
 def _header(
     phrases: Phrases,
     first: int,
@@ -155,6 +161,17 @@ def _header(
         start = polite.last
     if start + 1 == at and text.words[start][0] == '"':
         return Header(text.words[start][1:], text.span(start, at), at + 1, reach(text, at), is_quoted=True)
+    asking = phrases.vocabulary.asking
+    if _begins_question(phrases, start) or (start == at and text.words[at] in asking["asking_be"]):
+        return None
+    if " ".join(text.words[start : at + 1]) in (*asking["there"], *asking["feeling"]):
+        return None  # a remark
+    values = phrases.vocabulary.values
+    if text.words[at + 1] in values.modifiers.starts:
+        for kind in ("object", "person"):
+            named = find(values.names_tree(kind), text.words, start)
+            if named is not None and named[1] == at:
+                return None  # `the cup is near the lab`
     if start == at:
         problems.append(diagnostic("BT016", text.span(at, at + 1), word=text.words[at]))
         return Header("", text.span(at, at + 1), at + 1, at + 1)

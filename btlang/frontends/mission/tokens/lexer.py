@@ -11,15 +11,18 @@ from btlang.frontends.mission.symbols.includes import misplaced
 from btlang.frontends.mission.symbols.names import Load, Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_details, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
-from btlang.frontends.mission.token import Called, Token, begins_condition, constraint_of, go_on
+from btlang.frontends.mission.token import RULES, Called, Token, begins_condition, constraint_of, go_on
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_names import called, condition_names
+from btlang.frontends.mission.tokens.order_words import OrderWords
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing, with_verb
+from btlang.frontends.mission.tokens.remarks import Remarks
+from btlang.frontends.mission.tokens.requests import Requests
 from btlang.frontends.mission.tokens.silent_words import BEGINS, without_meaning
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.entry import Meaning
-from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE
+from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE, ORDER, QUESTIONS
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import Known, ReadingContext
@@ -76,10 +79,16 @@ class Lexer:
         self._partial = PartialCommands(
             self.text, self.vocabulary, self.names.definitions.trie, self.context, self._calls, self.tokens
         )
+        self._order = OrderWords(self.text, self.vocabulary, self.context, self._calls, self._partial, self.tokens)
+        self._requests = Requests(
+            self.text, self.vocabulary, self.context, self._calls, self._partial, self.tokens, self.problems
+        )
+        self._remarks = Remarks(self.text, self.vocabulary, self.context)
         endings = tuple(self.vocabulary.doing)
         behind = ("called", "with", "giving")
         self._details = {phrase.split()[0] for role in behind for phrase in self.vocabulary.roles[role]}
         self._verb_forms = {word for word in self.text.distinct if word.endswith(endings)}
+        self._is_apart = False  # the statement that is read runs at another time than the next one
         self._lines()
         self.conditions = condition_names(self.tokens, self.names.included_conditions())
         """The defined names that stand for conditions."""
@@ -87,6 +96,8 @@ class Lexer:
             token = self.tokens[at]
             if token.kind == "name":
                 token.kind = "condition" if called(token).id in self.conditions else "command"
+            elif token.kind == "followed_by":
+                token.kind = "then"
             elif token.kind == "once":
                 if not begins_condition(self.tokens, at + 1):
                     token.value = "1"
@@ -120,7 +131,7 @@ class Lexer:
             if number and not opens_block:
                 self._mark("newline", line.first)
             if line.indent <= indents[0] and line.first not in self.text.going_on:
-                self.context.latest.clear()  # pronouns do not reach beyond a statement
+                self._end_statement()
             self._line(line.first, line.last)
             opens_block = bool(self.tokens) and self.tokens[-1].kind == "colon"  # politeness may stand behind it
         if opens_block:
@@ -134,6 +145,8 @@ class Lexer:
         found, verb_forms, calls = self._found, self._verb_forms, self._calls
         headers, prefixes, others = self.names.definitions.headers, self.names.prefixes, self.names.others
         going_on, articles, meanings_of = text.going_on, text.articles, self._meanings_of
+        remarks = self._remarks if self._remarks.is_possible else None
+        asking = {*self.vocabulary.asking["asking_be"], *self.vocabulary.asking["asking_do"]}
         origin: Origin | None = None
         while at < last:
             word = words[at]
@@ -147,13 +160,15 @@ class Lexer:
                     at = self.names.ends[at]
                 else:
                     header = headers[at]
+                    context.latest.clear()
+                    self._is_apart = True
                     tokens.append(Token("define", starts[at], ends[header.body - 1], header))
                     at = header.body
                 continue
             if word in _MARKS:
                 tokens.append(Token(_MARKS[word], starts[at], ends[at]))
                 if word == END_OF_STATEMENT and at + 1 < last and at + 1 not in going_on:
-                    context.latest.clear()
+                    self._end_statement()
                 at += 1
                 continue
             if at in found:
@@ -178,15 +193,29 @@ class Lexer:
                 shared = self._with_words_before(origin, match, at)
                 match = shared or match
             role = match.meaning.role if match is not None else ""
+            if (role in QUESTIONS or word in asking) and self._begins():
+                end = self._requests.question(match, role, at)
+                if end:
+                    at = end
+                    continue
+            if remarks is not None and self._begins() and (match is None or role in ("condition", "there_are")):
+                end = remarks.end(at)
+                if end:
+                    span = text.span(at, end)
+                    self.problems.append(diagnostic("BT179", span, words=span.text))
+                    at = end + (words[end] == ",")
+                    continue
             if role in NOT_ALONE or word in verb_forms:
                 end = self._in_its_place(match, role, at)
                 if end:
                     at = end
                     continue
             if match is None or role in _NOT_READ:
-                end = without_meaning(
-                    tokens, text, match, role, at, self.vocabulary, self.context
-                ) or self._partial.add_left_out(at)
+                end = (
+                    without_meaning(tokens, text, match, role, at, self.vocabulary, self.context)
+                    or self._order.start_of_leg(at)
+                    or self._partial.add_left_out(at)
+                )
                 if end:
                     at = end
                     continue
@@ -194,7 +223,7 @@ class Lexer:
                 if role == INCLUDE:
                     end += words[end][0] == '"'
                 if self._explain and not self._is_reported(starts[at], ends[end - 1]):
-                    self.problems.append(self._why(at, end, match if role not in NOT_ALONE else None))
+                    self.problems.append(self._why(at, end, match if role not in NOT_ALONE or role in ORDER else None))
                 tokens.append(Token("unknown", starts[at], ends[end - 1]))
                 at = end
             else:
@@ -221,7 +250,12 @@ class Lexer:
                     if role != "negated_twice":
                         origin = (token, *origin[1:]) if shared and origin else (token, at, match, root)
                 else:
-                    tokens.append(calls.token(match, at))
+                    said = calls.token(match, at)
+                    end = self._requests.value_in(match, at, said) if match.values else 0
+                    if end:
+                        at = end
+                        continue
+                    tokens.append(said)
                     if len(tokens) > 1 and tokens[-2].kind == "while" and constraint_of(tokens[-1]) is not None:
                         tokens[-2].kind = "while_doing"  # `while avoiding the kitchen`
                 if words[match.last] in self._details and match.meaning.entry is not None:
@@ -230,11 +264,25 @@ class Lexer:
                     continue
                 if role in meanings_of:
                     tokens[-1].role = self.names.meanings.get(" ".join(words[at : match.last]), tokens[-1].role)
+                if role in RULES:
+                    self._is_apart = True
+                if role == "if_fails":
+                    tokens[-1].kind, tokens[-1].value = "or", role
                 if role in _ROLES:
                     tokens[-1].kind = _ROLES[role][len(tokens) > 1 and tokens[-2].kind == "stop"]
                 if match.values:
                     calls.note(match)
                 at = match.last
+
+    def _begins(self) -> bool:
+        """Whether a statement begins at the next word."""
+        return not self.tokens or self.tokens[-1].kind in BEGINS
+
+    def _end_statement(self) -> None:
+        """Pronouns reach back to earlier statements, but not out of a definition or a standing rule."""
+        if self._is_apart:
+            self.context.latest.clear()
+            self._is_apart = False
 
     def _with_details(self, at: int) -> int:
         """Adds what `called` and `with` say of the phrase before a word to its token. Returns where to go on."""
@@ -253,8 +301,12 @@ class Lexer:
     def _in_its_place(self, match: Match | None, role: str, at: int) -> int:
         """Words that say something in one place only, and forms of verbs. Returns where to go on, 0 for any other."""
         text, tokens = self.text, self.tokens
+        if match is not None and role in ORDER:
+            return self._order.read(match, at)
         if match is not None and role == "ordinal" and (not tokens or tokens[-1].kind in BEGINS):
             return match.last + (text.words[match.last] == ",")
+        if match is not None and role == "mind":
+            return self._partial.add(match.last)
         if match is not None and role == "keep" and self._partial.doing(match.last) is not None:
             tokens.append(Token("repeat", text.starts[at], text.ends[match.last - 1], role="doing"))
             return match.last
@@ -271,6 +323,8 @@ class Lexer:
 
         if match is None:
             text = self.text
+            if text.words[at] in self.vocabulary.roles["define"] and self._begins():
+                return diagnostic("BT016", text.span(at, at + 1), word=text.words[at])
             doing = self._partial.doing(at) if text.words[at - 1] in self.vocabulary.halting else None
             if doing is not None:
                 return fragments.stopped(text.span(at - 1, doing.last), self.vocabulary)
@@ -279,6 +333,9 @@ class Lexer:
             return unknown.explain_unknown(
                 text, at, end, self.vocabulary, self.context, self.names.definitions, self.tokens
             )
+        if match.meaning.role in ORDER:
+            drives = f"goes to {match.values[0].text}" if match.values else "drives"
+            return diagnostic("BT177", self.text.span(at, match.last), words=self.text.span(at, match.last).text, drives=drives)
         if match.meaning.role == INCLUDE:
             return misplaced(self.text.span(at, end), self.vocabulary)
         return unknown.misread_head(self.text, at, match.meaning.role, self.vocabulary)

@@ -17,7 +17,7 @@ from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
 
-BEFORE_DOING = frozenset(("before", "after", "while", "until", "never"))
+BEFORE_DOING = frozenset(("before", "after", "while", "until", "never", "followed_by"))
 """The kinds of tokens behind which a command may have the form of its verb: `after waving`."""
 JOINTS = frozenset(("then", "and", "or", "comma", "otherwise"))
 """Behind these a command may leave out words of the one before it."""
@@ -49,6 +49,20 @@ class PartialCommands:
         """The command whose verb has the form that stands there: `going to the lab`."""
         return doing(self._text, at, self._vocabulary.doing, self._tries, self._context)
 
+    def with_front(self, at: int, end: int, words: Sequence[str], trie: TrieNode | None = None) -> Match | None:
+        """The phrase that `words` (`go to`) make of the name behind the words from one on: `on the way to the lab`."""
+        if not words:
+            return None
+        places = [*[at] * len(words), *_rest(self._text, end)]
+        tries = self._tries[:1] if trie is None else (trie,)
+        match = _match(self._text, places, dict(enumerate(words)), tries, self._context)
+        return _relocated(match, places) if match is not None and match.last > len(words) else None
+
+    def in_order(self, places: Sequence[int]) -> Match | None:
+        """The phrase that words of the text make in another order; `last` is the place behind its latest word."""
+        match = _match(self._text, places, {}, self._tries, self._context)
+        return _relocated(match, places) if match is not None else None
+
     def add_doing(self, at: int, other: Match | None) -> int:
         """Such a command, unless another phrase is as long."""
         match, before = self.doing(at), self._tokens[-1]
@@ -60,11 +74,19 @@ class PartialCommands:
             if failing is None or failing.meaning.role != "fails":
                 return 0
             end = failing.last
-        before.kind = {"if": "if_doing", "while": "while_doing"}.get(before.kind, before.kind)
+        before.kind = {"if": "if_doing", "while": "while_doing", "followed_by": "then"}.get(before.kind, before.kind)
         token = self._token_of(match, at)
         token.role = "doing"
         self._tokens.append(token)
         return end
+
+    def add(self, at: int) -> int:
+        """The same where nothing before it is changed: `would you mind waving`."""
+        match = self.doing(at)
+        if match is None:
+            return 0
+        self._tokens.append(self._token_of(match, at))
+        return match.last
 
     def add_left_out(self, at: int, least: int = 0) -> int:
         """A command whose first words are those of the one before it, and which ends at a word `least` or behind it."""
@@ -241,7 +263,7 @@ def _match(
         read.words.append(END_OF_TEXT)
         read.starts.append(text.ends[end - 1])
         read.ends.append(text.ends[end - 1])
-    found = [longest(trie, read, 0, context, names) for trie, names in zip(tries, reversed(tries), strict=True)]
+    found = [longest(trie, read, 0, context, names) for trie, names in zip(tries, (*tries[1:], *tries[:1]), strict=True)]
     return max((match for match in found if match is not None), key=lambda match: match.last, default=None)
 
 

@@ -1,0 +1,157 @@
+"""Words about the order of commands: `once you get to the lab, A`, `A when you arrive`, `on the way to the lab, A`.
+
+An arrival goes on as `then` would. A journey in the words behind `on the way to` or `from` becomes a command of its own.
+"""
+
+from __future__ import annotations
+
+from btlang.frontends.mission.token import Called, Listed, Token, constraint_of
+from btlang.frontends.mission.tokens.calls import Calls
+from btlang.frontends.mission.tokens.partial_commands import PartialCommands
+from btlang.frontends.mission.tokens.silent_words import BEGINS
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.match import Match
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.trie import longest
+
+_JOINTS = frozenset(("and", "comma", "then"))
+_ENDS = (END_OF_STATEMENT, END_OF_TEXT, ")")
+
+
+class OrderWords:
+    """Those of one text, while its `tokens` are read; `read` returns the word at which to go on, 0 where it is none."""
+
+    def __init__(
+        self,
+        text: Words,
+        vocabulary: Lexicon,
+        context: ReadingContext,
+        calls: Calls,
+        partial: PartialCommands,
+        tokens: list[Token],
+    ) -> None:
+        self._text, self._vocabulary, self._context, self._calls = text, vocabulary, context, calls
+        self._partial, self._tokens = partial, tokens
+        verb = "".join(vocabulary.asking["journey"][:1])
+        self._verbs = frozenset((verb, *vocabulary.values.role_words.synonyms.get(verb, ())))
+
+    def read(self, match: Match, at: int) -> int:
+        """Reads the words of one of these roles, where they say something."""
+        role = match.meaning.role
+        if role == "start_at":
+            return self._start(at, match.last)
+        if role == "on_way_to":
+            return self._on_way_to(at, match.last)
+        if role == "on_way":
+            return self._on_way(at, match.last)
+        return self._arrival(match, at)
+
+    def _is_end(self, at: int) -> bool:
+        return self._text.words[at] in _ENDS
+
+    def _journey(self) -> Token | None:
+        """The latest command that drives."""
+        for token in reversed(self._tokens):
+            if token.kind == "define":
+                return None
+            value = token.value
+            if token.kind == "command" and isinstance(value, Called | Listed) and constraint_of(token) is None:
+                if MOVES in value.entry.resources:
+                    return token
+        return None
+
+    def _arrival(self, match: Match, at: int) -> int:
+        """`when you arrive`: at the end of a statement it says nothing, before a command it says `then`."""
+        tokens, end = self._tokens, match.last
+        journey = self._journey()
+        if journey is None or (match.values and not _leads_to(journey, match.values[0].text)):
+            return 0
+        if self._is_end(end):
+            return end if tokens[-1].kind == "command" else 0
+        while tokens[-1].kind in _JOINTS:
+            tokens.pop()
+        if tokens[-1].kind not in ("command", "name", "close", *BEGINS):
+            return 0
+        tokens.append(Token("then", self._text.starts[at], self._text.ends[end - 1]))
+        return end + (self._text.words[end] == ",")
+
+    def _start(self, at: int, end: int) -> int:
+        """`from the lab, go to the hall`, `go from the lab to the hall`: to the first place, then on."""
+        tokens, words = self._tokens, self._text.words
+        if tokens and tokens[-1].kind not in (*BEGINS, *_JOINTS):
+            return 0
+        journey = self._partial.with_front(at, end, self._vocabulary.asking["journey"])
+        if journey is None or self._is_end(journey.last):
+            return 0
+        behind = journey.last + (words[journey.last] == ",")
+        self._add(journey, at)
+        tokens.append(Token("then", self._text.ends[journey.last - 1], self._text.ends[journey.last - 1]))
+        return behind
+
+    def start_of_leg(self, at: int) -> int:
+        """`go from the lab to the hall`, by the verb at a word."""
+        if self._text.words[at] not in self._verbs:
+            return 0
+        match = longest(self._vocabulary.trie, self._text, at + 1, self._context)
+        return self._start(at, match.last) if match is not None and match.meaning.role == "start_at" else 0
+
+    def _on_way(self, at: int, end: int) -> int:
+        """`A, and on the way B`: with the journey, before it if it is a task; at the end of a statement nothing."""
+        tokens, text = self._tokens, self._text
+        if self._journey() is None:
+            return 0
+        if self._is_end(end):
+            return end
+        behind = end + (text.words[end] == ",")
+        match = longest(self._vocabulary.trie, text, behind, self._context)
+        if match is None or match.meaning.entry is None:
+            return 0
+        while tokens[-1].kind in _JOINTS:
+            tokens.pop()
+        joint = self._joint(self._calls.token(match, behind))
+        tokens.append(Token("after" if joint == "then" else joint, text.starts[at], text.ends[end - 1]))
+        return behind
+
+    def _on_way_to(self, at: int, end: int) -> int:
+        """What is done on the way to a place: a journey with it, behind it for a task, constrained by it."""
+        tokens, text = self._tokens, self._text
+        journey = self._partial.with_front(at, end, self._vocabulary.asking["journey"])
+        if journey is None:
+            return 0
+        if tokens and tokens[-1].kind in ("command", "name"):
+            joint = "and" if constraint_of(tokens[-1]) is not None else self._joint(tokens[-1])
+            tokens.append(Token(joint, text.starts[at], text.ends[end - 1]))
+            self._add(journey, at)
+            return journey.last
+        behind = journey.last + (text.words[journey.last] == ",")
+        match = longest(self._vocabulary.trie, text, behind, self._context)
+        if tokens and tokens[-1].kind not in BEGINS or match is None or match.meaning.entry is None:
+            return 0
+        following = self._calls.token(match, behind)
+        joint = "and" if constraint_of(following) is not None else self._joint(following)
+        if joint == "then":  # a task is done first
+            tokens.append(Token("before", text.starts[at], text.ends[end - 1]))
+            self._add(journey, at)
+            tokens.append(Token("comma", text.starts[journey.last], text.starts[journey.last]))
+        else:
+            self._add(journey, at)
+            tokens.append(Token(joint, text.ends[journey.last - 1], text.ends[journey.last - 1]))
+        return behind
+
+    def _joint(self, token: Token) -> str:
+        """What joins a command to the journey on which it is done."""
+        value = token.value
+        goes_along = isinstance(value, Called | Listed) and value.entry.accompaniment
+        return "meanwhile" if goes_along else "then"
+
+    def _add(self, journey: Match, at: int) -> None:
+        self._tokens.append(self._calls.token(journey, at))
+        self._calls.note(journey)
+
+
+def _leads_to(journey: Token, place: str) -> bool:
+    """Whether a command drives to a place."""
+    value = journey.value
+    return isinstance(value, Called) and place in [text for _, text in value.arguments]

@@ -1,0 +1,82 @@
+"""Remarks, about which nothing is done: `I am hungry`, `there are some cups on the table`, `the cup is on the table`.
+
+A remark is only what has no verb of a command, no number, no negation and no word that is unknown.
+"""
+
+from __future__ import annotations
+
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.references import choice_of
+from btlang.vocabulary.word_tree import find, tree_of
+
+_ENDS = (END_OF_STATEMENT, END_OF_TEXT, ",")
+_KINDS = ("object", "person")
+
+
+class Remarks:
+    """Those of one text."""
+
+    def __init__(self, text: Words, vocabulary: Lexicon, context: ReadingContext) -> None:
+        self._text, self._vocabulary, self._context = text, vocabulary, context
+        asking = vocabulary.asking
+        self._feeling, self._there, self._states = (
+            tree_of((phrase, True) for phrase in asking[name]) for name in ("feeling", "there", "states")
+        )
+        self._very = frozenset(asking["very"])
+        self._be = frozenset(asking["asking_be"])
+        starts = {*self._feeling, *self._there}
+        self.is_possible = not text.distinct.isdisjoint({*starts, *self._be})
+        """Whether there may be any."""
+
+    def end(self, at: int) -> int:
+        """Where a remark that begins a statement at a word ends, 0 if there is none.
+
+        Pronouns behind it stand for what it is about.
+        """
+        words = self._text.words
+        feeling, there = find(self._feeling, words, at), find(self._there, words, at)
+        if feeling is not None:
+            return self._state(feeling[1])
+        if there is not None:
+            return self._thing(there[1], False)
+        return self._thing(at, True)
+
+    def _state(self, at: int) -> int:
+        """`hungry and very tired`"""
+        words = self._text.words
+        while True:
+            while words[at] in self._very:
+                at += 1
+            state = find(self._states, words, at)
+            if state is None:
+                return 0
+            at = state[1]
+            if words[at] in _ENDS:
+                return at
+            if words[at] not in self._vocabulary.roles["and"]:
+                return 0
+            at += 1
+
+    def _thing(self, at: int, stands: bool) -> int:
+        """`some cups on the table`; where it `stands` somewhere, `the cup is on the table`."""
+        text, context = self._text, self._context
+        at += text.words[at] in self._very
+        for kind in _KINDS:
+            ways = [(group, last) for group, _, last in context.sets(kind, text, at) if group]
+            ways += context.ways(kind, text, at)
+            for value, last in reversed(ways):
+                end = self._place(kind, last) if stands else last
+                if value and end and text.words[end] in _ENDS and (stands or choice_of(value) is not None):
+                    context.latest[kind] = value
+                    return end
+        return 0
+
+    def _place(self, kind: str, at: int) -> int:
+        """Where the words about a thing end that say where it is; 0 if there are none."""
+        context, text = self._context, self._text
+        if text.words[at] not in self._be or text.words[at + 1] not in context.modifiers:
+            return 0
+        behind = context.values.modifiers.behind(kind, text, at + 1, context.values.names_tree)
+        return max((last for _, last in behind), default=0)

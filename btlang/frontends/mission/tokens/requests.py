@@ -1,0 +1,212 @@
+"""Questions and values in speech: `is the battery low?`, `where is the cup?`, `say the battery`, `tell me the answer`.
+
+Each becomes the commands that answer it: what is asked is measured, and said.
+"""
+
+from __future__ import annotations
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.token import Called, Remembered, Token
+from btlang.frontends.mission.tokens.calls import Calls
+from btlang.frontends.mission.tokens.partial_commands import PartialCommands
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.vocabulary.entry import COUNT, SAY, Entry
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.match import Match
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.references import free_key
+from btlang.vocabulary.trie import longest
+from btlang.vocabulary.value_type import TEXT
+from btlang.vocabulary.values import key_of
+
+_MOST_WORDS = 8  # of the subject of a question
+_ENDS = (END_OF_STATEMENT, END_OF_TEXT, ",", ")")
+
+
+class Requests:
+    """Those of one text, while its `tokens` are read; the functions return the word at which to go on, 0 for none."""
+
+    def __init__(
+        self,
+        text: Words,
+        vocabulary: Lexicon,
+        context: ReadingContext,
+        calls: Calls,
+        partial: PartialCommands,
+        tokens: list[Token],
+        problems: list[Diagnostic],
+    ) -> None:
+        self._text, self._vocabulary, self._context, self._calls = text, vocabulary, context, calls
+        self._partial, self._tokens, self._problems = partial, tokens, problems
+        self._taken: set[str] = set()
+        self._saying = vocabulary.entry(SAY)
+
+    def question(self, match: Match | None, role: str, at: int) -> int:
+        """A question at the start of a statement."""
+        if self._saying is None:
+            return 0
+        read = {"ask_value": self._asked, "ask_where": self._where, "ask_how_many": self._how_many}.get(role)
+        return read(at, match.last) if match is not None and read is not None else self._whether(at)
+
+    def value_in(self, match: Match, at: int, command: Token) -> int:
+        """`say the battery`, `say how many people there are`: an article or a question word asks for a value."""
+        entry = match.meaning.entry
+        value = match.values[-1] if match.values else None
+        if value is None or value.type != TEXT or entry is None or not entry.accompaniment or entry.sort != "action":
+            return 0
+        text, first = self._text, value.first
+        asked = longest(self._vocabulary.trie, text, first, self._context)
+        if asked is not None and asked.meaning.role == "ask_how_many":
+            counted = self._counted(asked.last)
+            return self._say_count(at, counted, command, value.name) if counted is not None else 0
+        if first not in text.articles or first == match.last or text.words[first][0] == '"':
+            return 0
+        known = self._context.named(text, first)
+        measured = self._measured(first)
+        if known is not None and known[0] is not None and (measured is None or known[1] >= measured.last):
+            self._set_text(command, value.name, f"{{{known[0].key}}}")
+            self._tokens.append(command)
+            return known[1]
+        if measured is None:
+            words, known_values = text.span(first, match.last).text, self._values()
+            advice = f"Values are: {known_values}\nTo say the words, put them in quotes: {text.span(at, first).text} "
+            advice += f'"{words}"'
+            self._problems.append(diagnostic("BT178", text.span(first, match.last), words=words, advice=advice))
+            return 0
+        self._say(at, measured, command, value.name)
+        return measured.last
+
+    def _values(self) -> str:
+        """What can be said so, for a message."""
+        known = sorted(" ".join(value.words) for value in (self._context.known or {}).values() if not value.is_chosen)
+        quantities = [entries[0] for entries in self._vocabulary.entries.values() if entries[0].measures]
+        return ", ".join([*known, *(each.quantity[0] for each in quantities if "{" not in each.quantity[0])])
+
+    def _measured(self, at: int) -> Match | None:
+        """The quantity that words name."""
+        found = [longest(trie, self._text, at, self._context) for trie in self._vocabulary.measured]
+        return max((match for match in found if match is not None), key=lambda match: match.last, default=None)
+
+    def _asked(self, at: int, end: int) -> int:
+        """`what is the battery?`"""
+        measured = self._measured(end)
+        if measured is None or not self._ends(measured.last):
+            return 0
+        self._say(at, measured)
+        return measured.last
+
+    def _where(self, at: int, end: int) -> int:
+        """`where is the cup?`: looks for it and says where it is."""
+        search = self._partial.with_front(at, end, self._vocabulary.asking["search"])
+        if search is None or not self._ends(search.last):
+            return 0
+        measured = self._partial.with_front(at, end, self._vocabulary.asking["whereabouts"], self._vocabulary.quantities)
+        if measured is None or measured.last != search.last:
+            return 0
+        self._tokens.append(self._calls.token(search, at))
+        self._calls.note(search)
+        self._then(at)
+        self._say(at, measured)
+        return search.last
+
+    def _how_many(self, at: int, end: int) -> int:
+        """`how many people are there?`"""
+        counted = self._counted(end)
+        return self._say_count(at, counted) if counted is not None and self._ends(counted.last) else 0
+
+    def _counted(self, at: int) -> Match | None:
+        """The command that counts what words name, with the words that may stand behind that."""
+        counted = self._partial.with_front(at - 1, at, self._vocabulary.asking["counting"])
+        if counted is None:
+            return None
+        behind = longest(self._vocabulary.trie, self._text, counted.last, self._context)
+        return counted.replace(last=behind.last) if behind is not None and behind.meaning.role == "there_are" else counted  # type: ignore[no-any-return]
+
+    def _say_count(self, at: int, counted: Match, command: Token | None = None, slot: str = "") -> int:
+        count = self._vocabulary.entry(COUNT)
+        if count is None:
+            return 0
+        self._tokens.append(self._calls.token(counted, at))
+        self._then(at)
+        self._say(at, counted.replace(meaning=counted.meaning.replace(entry=count), values=()), command, slot)
+        return counted.last
+
+    def _whether(self, at: int) -> int:
+        """`is the battery low?`, `do you see Alice?`: says yes or no."""
+        text, word = self._text, self._text.words[at]
+        condition: Match | None = None
+        if word in self._vocabulary.asking["asking_do"]:
+            condition = self._condition([*range(at + 1, at + 2 + self._length(at))])
+        elif word in self._vocabulary.asking["asking_be"]:
+            length = self._length(at)
+            for count in range(1, min(_MOST_WORDS, length)):
+                subject = range(at + 1, at + 1 + count)
+                condition = self._condition([*subject, at, *range(at + 1 + count, at + 2 + length)])
+                if condition is not None:
+                    break
+        if condition is None or self._saying is None or condition.last + 1 in text.going_on:
+            return 0  # `is the battery low? If so, A` would go on with what says so
+        start, end = text.starts[at], text.ends[condition.last - 1]
+        asked = self._calls.token(condition, at)
+        yes, no = (self._saying_of(answer) for answer in self._vocabulary.asking["answers"])
+        self._tokens += [Token("if", start, start)]
+        if condition.meaning.role != "condition":
+            self._tokens.append(Token("not", start, start))
+        self._tokens += [
+            asked, Token("comma", end, end), Token("command", end, end, yes), Token("comma", end, end),
+            Token("otherwise", end, end), Token("command", end, end, no),
+        ]  # fmt: skip
+        return condition.last
+
+    def _length(self, at: int) -> int:
+        """How many words of the statement stand behind one."""
+        last = at
+        while self._text.words[last + 1] not in (END_OF_STATEMENT, END_OF_TEXT):
+            last += 1
+        return last - at
+
+    def _condition(self, places: list[int]) -> Match | None:
+        """The condition that words make in this order, if it takes all of them."""
+        match = self._partial.in_order(places)
+        if match is None or match.last != places[-1] or match.meaning.role not in ("condition", "negated"):
+            return None
+        return match
+
+    def _saying_of(self, words: str) -> Called:
+        assert self._saying is not None
+        return Called(self._saying, ((self._saying.slots[0].name, words),))
+
+    def _ends(self, at: int) -> bool:
+        return self._text.words[at] in _ENDS
+
+    def _then(self, at: int) -> None:
+        self._tokens.append(Token("then", self._text.starts[at], self._text.starts[at]))
+
+    def _say(self, at: int, measured: Match, command: Token | None = None, slot: str = "") -> None:
+        """Remembers what is measured and says it, with a command or the one that says."""
+        entry, text = measured.meaning.entry, self._text
+        assert entry is not None
+        key = self._key(entry)
+        start, end = text.starts[at], text.ends[measured.last - 1]
+        remembered = Remembered(key, entry, self._calls.arguments(entry, measured.values))
+        self._tokens.append(Token("command", start, end, remembered))
+        self._then(at)
+        if command is None:
+            command = Token("command", start, end, self._saying_of(f"{{{key}}}"))
+        else:
+            self._set_text(command, slot, f"{{{key}}}")
+        self._tokens.append(command)
+
+    def _set_text(self, command: Token, slot: str, text: str) -> None:
+        value = command.value
+        assert isinstance(value, Called)
+        arguments = tuple((name, text if name == slot else given) for name, given in value.arguments)
+        command.value = value.replace(arguments=arguments)
+
+    def _key(self, entry: Entry) -> str:
+        """A free key for what a quantity measures, by its words."""
+        words = entry.quantity[0].split()
+        slot = next((at for at, word in enumerate(words) if "{" in word), len(words) + 1)
+        key = free_key(key_of(words[: slot - 1]), {*(self._context.known or ()), *self._taken})
+        self._taken.add(key)
+        return key
