@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from math import inf, radians
+from math import dist, inf, radians
 
 from btlang.actions.points import where
-from btlang.robots.capabilities import Base, Docking, Hands, Power, Sensors
-from btlang.robots.geometry import Pose
+from btlang.robots.capabilities import Base, Docking, Hands, Navigation, Power, Sensors
 from btlang.robots.robot import RobotError, SensorSilent
 
 TYPE_CHECKING = False
@@ -151,19 +150,19 @@ def distance_to_object(robot: Base, object: str) -> float:
     return robot.pose.distance_to(robot.locate(object))
 
 
-def place_of_person(robot: Base, person: str) -> str:
+def place_of_person(robot: Navigation, person: str) -> str:
     """The name of the place nearest to a person."""
     return _place_of(robot, person)
 
 
-def place_of_object(robot: Base, object: str) -> str:
+def place_of_object(robot: Navigation, object: str) -> str:
     """The name of the place nearest to an object."""
     return _place_of(robot, object)
 
 
-def _place_of(robot: Base, name: str) -> str:
+def _place_of(robot: Navigation, name: str) -> str:
     point = robot.locate(name)
-    return min(robot.place_names, key=lambda place: Pose(*robot.locate(place)).distance_to(point))
+    return min(robot.place_names(), key=lambda place: dist(robot.locate(place), point))
 
 
 def people_near(robot: Base) -> int:

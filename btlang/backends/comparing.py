@@ -22,7 +22,7 @@ _HOLDS: dict[str, Callable[[float, float], bool]] = {
     "above": operator.gt,
     "at_least": operator.ge,
     "at_most": operator.le,
-    "equal": lambda value, wanted: abs(value - wanted) <= _AS_GOOD_AS_EQUAL * max(1.0, abs(wanted)),
+    "equal": lambda value, wanted: _is_equal(value, wanted),
 }
 _MOST_DIGITS = 17  # all that a double has
 
@@ -56,11 +56,20 @@ def comparing(
     return compare
 
 
+def _is_equal(value: Any, wanted: Any) -> bool:
+    """Numbers up to rounding, texts in any case."""
+    if isinstance(value, str) or isinstance(wanted, str):
+        return str(value).casefold() == str(wanted).casefold()
+    return bool(abs(value - wanted) <= _AS_GOOD_AS_EQUAL * max(1.0, abs(wanted)))
+
+
 def _hold(limits: Mapping[str, Any], value: Any) -> bool:
     return all(_HOLDS[name](value, limit) for name, limit in limits.items() if limit is not None)
 
 
 def _rounded(value: Any, limits: Mapping[str, Any]) -> str:
     """The value in three digits, or in more where so few would hold: 19.96 is not at least 20."""
+    if isinstance(value, str):
+        return value
     texts = (f"{value:.{digits}g}" for digits in range(3, _MOST_DIGITS + 1))
     return next((text for text in texts if not _hold(limits, float(text))), str(value))

@@ -238,7 +238,12 @@ class _Reader:
             self.wrong(f"named of '{near}' must be a list of words for its value", near)
             named = []
         made: Entry = entry.replace(
-            sort="condition", phrases=(), quantity=entry.phrases, named=tuple(named), measures=str(measures), resources=()
+            sort="condition",
+            phrases=(),
+            quantity=entry.phrases,
+            named=tuple(named),
+            measures=str(measures),
+            resources=(),
         )
         return made
 

@@ -36,7 +36,8 @@ CHANGING = ("increase", "decrease")
 """Roles whose words change the value that is named behind them, wherever they are found."""
 
 ASKING = (
-    "journey", "search", "whereabouts", "counting", "asking_be", "asking_do", "answers", "feeling", "there", "very", "states",
+    "journey", "search", "whereabouts", "counting", "asking_be", "asking_do", "answers", "feeling", "there",
+    "very", "states", "subject",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 
@@ -135,6 +136,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "comparisons": (_words, "a list of phrases"),
     "negations": (_words, "a list of words"),
     "doing": (_endings, "a list of endings"),
+    "third_person": (_endings, "a list of endings"),
     "negative_subjects": (_words, "a list of words"),
     "plurals": (_words, "a list of words"),
     "asking": (_words, "a list of words"),
@@ -210,6 +212,7 @@ _LANGUAGE: dict[str, Any] = {
     "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},
     "prepositions": {}, "synonyms": {}, "particles": [], "fillers": [], "speaker": [], "subjects": [], "purpose": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {}, "doing": {},
+    "third_person": {},
     "negative_subjects": {}, "plurals": {}, "asking": {}, "plural_endings": {}, "nouns": {}, "everyone": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {}, "times": {},
 }  # fmt: skip

@@ -93,6 +93,8 @@ class Lexicon:
         self.counts: dict[str, int] = language["counts"]
         self.doing: dict[str, list[str]] = language["doing"]
         """The endings of the form that a verb has behind `while` or `before`, each with those of the verb itself."""
+        self.third_person: dict[str, list[str]] = language["third_person"]
+        """The same for the form behind a subject: `the robot waves`."""
         self.nodes: dict[str, str] = language["nodes"]
         """The words of nodes that have some, by their ids."""
         self.meanings: dict[str, str] = language["meanings"]

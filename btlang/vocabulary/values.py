@@ -12,6 +12,7 @@ from marshal import dumps, loads  # a copy of a trie, at a tenth of the time tha
 from btlang.text.source import Source
 from btlang.text.words import Orthography, Words, split
 from btlang.vocabulary.descriptions import NAME, Modifiers
+from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.measures import Measures, too_small
 from btlang.vocabulary.nouns import Description, Features, Noun, noun_phrases
 from btlang.vocabulary.references import ALL, COUNT, DENIED, RELATIONS, Choice, Parts, choice_of
@@ -192,10 +193,10 @@ class Values(Measures):
 
     def choices(self, kind: str) -> list[list[str]]:
         """The words that stand for all names of a type, and for those that are chosen, in the first way to say them."""
+        if kind == MANNER or not self._listed.get(kind):
+            return []
         likes = [parts for _, parts in self._features.get(kind, ())]
-        return (
-            [words.split() for words in self.phrases.said(kind, likes, self._spoken)] if self._listed.get(kind) else []
-        )
+        return [words.split() for words in self.phrases.said(kind, likes, self._spoken)]
 
     def spoken(self, kind: str, name: str) -> str:
         """The first words for a name of a type: `boxes` for the kinds "box"."""

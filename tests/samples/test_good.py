@@ -49,6 +49,8 @@ ROWS = {
     "Nobody and nothing": "lists_of_conditions", "Lists as subjects": "lists_of_conditions",
     "neither, both, any of": "lists_of_conditions", "Shared words": "shared_words",
     "Where a condition ends": "conditions", "Names of conditions": "definitions",
+    # requests.md
+    **dict.fromkeys(("Requests", "Questions", "Values in speech", "Remarks"), "requests"),
     # joining.md
     "After a command": "postfix", "and": "connectives", "At the same time": "connectives",
     "One if the other fails": "connectives",

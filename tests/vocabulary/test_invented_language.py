@@ -46,9 +46,10 @@ def _pattern(text: str) -> str:
 
 def _entry(entry: Entry) -> Entry:
     slots = tuple(SlotSpec(s.name, s.type, s.default and invented(s.default)) for s in entry.slots)
-    phrases, quantity = (tuple(map(_pattern, patterns)) for patterns in (entry.phrases, entry.quantity))
+    said = entry.phrases, entry.quantity, entry.named
+    phrases, quantity, named = (tuple(map(_pattern, patterns)) for patterns in said)
     verbs = tuple((tuple(map(invented, own)), tuple(map(_role, roles))) for own, roles in entry.verbs)
-    return entry.replace(phrases=phrases, quantity=quantity, slots=slots, verbs=verbs)  # type: ignore[no-any-return]
+    return entry.replace(phrases=phrases, quantity=quantity, named=named, slots=slots, verbs=verbs)  # type: ignore[no-any-return]
 
 
 def _role(role: Role) -> Role:
@@ -68,13 +69,13 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
             made[key] = list(map(invented, value))
         elif key in ("roles", "comparisons"):
             made[key] = {name: list(map(_pattern, patterns)) for name, patterns in value.items()}
-        elif key in ("nouns", "everyone", "relations", "prepositions"):
+        elif key in ("nouns", "everyone", "relations", "prepositions", "asking"):
             made[key] = {kind: list(map(invented, words)) for kind, words in value.items()}
         elif key == "plural_endings":
             made[key] = {invented(ending): invented(other) for ending, other in value.items()}
         elif key == "nodes":
             made[key] = {node_id: _pattern(words) for node_id, words in value.items()}
-        elif key in ("negations", "negative_subjects", "plurals", "doing", "synonyms"):
+        elif key in ("negations", "negative_subjects", "plurals", "doing", "third_person", "synonyms"):
             made[key] = {invented(word): list(map(invented, words)) for word, words in value.items()}
         elif key in ("counts", "numbers", "multipliers", "fractions", "times", "pronouns", "meanings"):
             made[key] = {invented(word): meaning for word, meaning in value.items()}

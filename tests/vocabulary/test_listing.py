@@ -39,7 +39,7 @@ UNKNOWN_AT_THE_START = {"Answer", "Count"}
 """Nobody has been asked, and nothing counted."""
 HOLDS_AT_THE_START = {
     "HandEmpty", "PathClear", "BatteryFull", "DistanceAhead", "DistanceToPlace", "DistanceToPerson", "DistanceToObject",
-    "PeopleNear", "BatterySufficient", "DoorOpen", "SwitchedOn",
+    "PeopleNear", "BatterySufficient", "DoorOpen", "PlaceOfPerson", "PlaceOfObject", "SwitchedOn",
 }  # fmt: skip
 
 
@@ -219,7 +219,7 @@ def test_the_overview_counts_what_each_topic_lists() -> None:
     for line in lines:
         topic, count = line[2:16].strip(), int(line[16:18])
         assert count == sum(item.topic == topic for item in ITEMS)
-    assert "  joining       15  then, and, but, or, one of, at the same time, after, ..." in lines
+    assert "  joining       23  then, and, but, or, one of, at the same time, after, ..." in lines
     assert f"{more} {last}" == (
         "btc words motion lists a topic, btc words battery finds a word, btc words --all lists everything."
     )

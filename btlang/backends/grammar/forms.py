@@ -19,7 +19,8 @@ from __future__ import annotations
 MISSION = {
     "mission": r'beginning | (beginning "\n")? (line "\n")* (line | last) | (rule "\n")+ (form "\n")* form',
     "beginning": "valued | defined",
-    "line": "form | going-on | if-doing-fails",
+    "line": "form | going-on | if-doing-fails | question",
+    "question": '<ask_value> " " quantity | <mind> " " <doing>',
     "form": "leaf | bracketed | joined | before | behind",
     "leaf": "plain | waiting | checking",
     "plain": "action | named | further | <wait> | <wait_time> | <nothing>",
@@ -51,10 +52,10 @@ JOINING = {
     "joined": "listed | then | after | before-command | or | otherwise | and | meanwhile | either | both | one-of"
     " | while-doing",
     "listed": 'action (", " action)+',
-    "then": 'unit (", " <then> " " unit)+',
+    "then": 'unit (", " (<then> | <followed_by>) " " unit)+',
     "after": 'unit ", " <after> " " unit',
     "before-command": 'unit ", " <before> " " unit',
-    "or": 'able ", " <or> " " unit',
+    "or": 'able ", " (<or> | <if_fails>) " " unit',
     "otherwise": 'able ", " <otherwise> " " unit',
     "and": "<together and>",
     "meanwhile": "<together meanwhile>",
@@ -112,7 +113,7 @@ BEHIND = {
 STATEMENTS = {
     "rule": '(<whenever> | <first_time>) " " condition ", " unit',
     "going-on": "if-that-fails | if-that-works | in-any-case | do-that | meanwhile-next | finally",
-    "if-that-fails": 'able ". " (<or> | <otherwise>) ", " unit',
+    "if-that-fails": 'able ". " (<if_fails> | <otherwise>) ", " unit',
     "if-that-works": 'unit ". " (<if_works> | <if_it_works>) ", " unit (". " <otherwise> ", " unit)?',
     "in-any-case": 'unit ". " <in_any_case> ", " unit',
     "do-that": 'lasting ". " (<do_that> " " (<count> | <again> | <more>) | <repeat_that> " " <count> | <again>)',

@@ -52,12 +52,15 @@ def chain_alternatives(scan: Scan) -> None:
 
 def _comma_before(scan: Scan, entry: StackEntry) -> Token | None:
     """The comma right before a form."""
-    before = scan.out[next(at for at, token in enumerate(scan.out) if token is entry.opener) - 1]
+    at = next(at for at in range(len(scan.out) - 1, -1, -1) if scan.out[at] is entry.opener)
+    before = scan.out[at - 1]
     return before if before.kind == "COMMA" else None
 
 
 def _is_if(entry: StackEntry) -> bool:
-    return entry.kind == "body" and entry.opener is not None and entry.opener.kind == "FORM" and entry.opener.role == "if"
+    return (
+        entry.kind == "body" and entry.opener is not None and entry.opener.kind == "FORM" and entry.opener.role == "if"
+    )
 
 
 def end_block(scan: Scan) -> None:

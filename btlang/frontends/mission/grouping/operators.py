@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang.frontends.mission.grouping.bodies import begin_otherwise, chain_alternatives, end_block, paced, separator, set_amount, set_pace
+from btlang.frontends.mission.grouping.bodies import (
+    begin_otherwise,
+    chain_alternatives,
+    end_block,
+    paced,
+    separator,
+    set_amount,
+    set_pace,
+)
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, STARTS_OPERAND, closes_statement
 from btlang.frontends.mission.grouping.problems import both_readings, found_words, is_alone, side_by_side
 from btlang.frontends.mission.grouping.readings import otherwise_of_another, repeated, twice_more, waits_first

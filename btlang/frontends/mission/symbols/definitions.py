@@ -14,8 +14,7 @@ from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, Words, statements
 from btlang.tree.ast import Definition
 from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
-from btlang.vocabulary.language_tables import CONNECTIVES
-from btlang.vocabulary.language_tables import QUESTIONS
+from btlang.vocabulary.language_tables import CONNECTIVES, QUESTIONS
 from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.pattern import Part, Slot, name_form
@@ -137,9 +136,13 @@ def reach(text: Words, at: int) -> int:
         at = text.lines[number].first
 
 
-def _begins_question(phrases: Phrases, at: int) -> bool:
+def _begins_question(phrases: Phrases, at: int, defining: int) -> bool:
+    """Whether the words at a place ask; `tell me is ...` defines "tell me".
+
+    `defining` is the place of the word that would define.
+    """
     match = phrases.at(at)
-    return match is not None and match.meaning.role in QUESTIONS
+    return match is not None and match.meaning.role in QUESTIONS and match.last != defining
 
 
 def _header(
@@ -162,7 +165,8 @@ def _header(
     if start + 1 == at and text.words[start][0] == '"':
         return Header(text.words[start][1:], text.span(start, at), at + 1, reach(text, at), is_quoted=True)
     asking = phrases.vocabulary.asking
-    if _begins_question(phrases, start) or (start == at and text.words[at] in asking["asking_be"]):
+    is_weak = text.words[at] not in phrases.vocabulary.roles["define_strong"]
+    if (is_weak and _begins_question(phrases, start, at)) or (start == at and text.words[at] in asking["asking_be"]):
         return None
     if " ".join(text.words[start : at + 1]) in (*asking["there"], *asking["feeling"]):
         return None  # a remark

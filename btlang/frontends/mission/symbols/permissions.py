@@ -20,7 +20,7 @@ class Permissions:
     def __init__(self, text: Words, vocabulary: Lexicon) -> None:
         self.ends: dict[int, int] = {}
         self.problems: list[Diagnostic] = []
-        self._trie, self._context = vocabulary.trie, vocabulary.context
+        self._trie, self._context = vocabulary.trie, vocabulary.context.with_references()
         self._allowing = tree_of((phrase, True) for phrase in vocabulary.roles["may"])
         self._staying = tree_of((phrase, True) for phrase in vocabulary.roles["or_stay"])
         if text.distinct.isdisjoint((*self._allowing, *self._staying)):

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
-from btlang.frontends.mission.symbols.includes import misplaced
 from btlang.frontends.mission.symbols.names import Load, Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_details, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
@@ -15,10 +14,11 @@ from btlang.frontends.mission.token import RULES, Called, Token, begins_conditio
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_names import called, condition_names
 from btlang.frontends.mission.tokens.order_words import OrderWords
-from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing, with_verb
+from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
 from btlang.frontends.mission.tokens.remarks import Remarks
 from btlang.frontends.mission.tokens.requests import Requests
-from btlang.frontends.mission.tokens.silent_words import BEGINS, without_meaning
+from btlang.frontends.mission.tokens.silent_words import BEGINS, MARKS, begins, without_meaning
+from btlang.frontends.mission.tokens.unknown_words import UnknownWords
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.entry import Meaning
@@ -34,7 +34,6 @@ _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parall
 _NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
 _CONDITIONS = frozenset(("condition", *NEGATED))
 _JOINING = ("and", "or")
-_MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -88,7 +87,14 @@ class Lexer:
         behind = ("called", "with", "giving")
         self._details = {phrase.split()[0] for role in behind for phrase in self.vocabulary.roles[role]}
         self._verb_forms = {word for word in self.text.distinct if word.endswith(endings)}
+        if not self.text.distinct.isdisjoint(self.vocabulary.asking["subject"]):
+            endings = tuple(self.vocabulary.third_person)
+            self._verb_forms |= {word for word in self.text.distinct if word.endswith(endings)}
         self._is_apart = False  # the statement that is read runs at another time than the next one
+        self._unknown = UnknownWords(
+            self.text, self.vocabulary, self.context, self.names.definitions, self._partial, self.tokens, self.problems,
+            self._verb_forms,
+        )  # fmt: skip
         self._lines()
         self.conditions = condition_names(self.tokens, self.names.included_conditions())
         """The defined names that stand for conditions."""
@@ -165,8 +171,8 @@ class Lexer:
                     tokens.append(Token("define", starts[at], ends[header.body - 1], header))
                     at = header.body
                 continue
-            if word in _MARKS:
-                tokens.append(Token(_MARKS[word], starts[at], ends[at]))
+            if word in MARKS:
+                tokens.append(Token(MARKS[word], starts[at], ends[at]))
                 if word == END_OF_STATEMENT and at + 1 < last and at + 1 not in going_on:
                     self._end_statement()
                 at += 1
@@ -193,12 +199,12 @@ class Lexer:
                 shared = self._with_words_before(origin, match, at)
                 match = shared or match
             role = match.meaning.role if match is not None else ""
-            if (role in QUESTIONS or word in asking) and self._begins():
+            if (role in QUESTIONS or word in asking) and begins(tokens):
                 end = self._requests.question(match, role, at)
                 if end:
                     at = end
                     continue
-            if remarks is not None and self._begins() and (match is None or role in ("condition", "there_are")):
+            if remarks is not None and begins(tokens) and (match is None or role in ("condition", "there_are")):
                 end = remarks.end(at)
                 if end:
                     span = text.span(at, end)
@@ -219,11 +225,11 @@ class Lexer:
                 if end:
                     at = end
                     continue
-                end = self._unknown_end(at, last)
+                end = self._unknown.end(at, last)
                 if role == INCLUDE:
                     end += words[end][0] == '"'
-                if self._explain and not self._is_reported(starts[at], ends[end - 1]):
-                    self.problems.append(self._why(at, end, match if role not in NOT_ALONE or role in ORDER else None))
+                if self._explain and not self._unknown.is_reported(starts[at], ends[end - 1]):
+                    self.problems.append(self._unknown.why(at, end, match))
                 tokens.append(Token("unknown", starts[at], ends[end - 1]))
                 at = end
             else:
@@ -240,6 +246,10 @@ class Lexer:
                     if end:
                         at = end
                         continue
+                end = self._partial.add_third(at + 1, None) if role == "condition" and begins(tokens) else 0
+                if end:
+                    at = end
+                    continue
                 if role in _CONDITIONS:
                     if role != "condition":
                         tokens.append(Token("not", starts[at], starts[at]))
@@ -274,10 +284,6 @@ class Lexer:
                     calls.note(match)
                 at = match.last
 
-    def _begins(self) -> bool:
-        """Whether a statement begins at the next word."""
-        return not self.tokens or self.tokens[-1].kind in BEGINS
-
     def _end_statement(self) -> None:
         """Pronouns reach back to earlier statements, but not out of a definition or a standing rule."""
         if self._is_apart:
@@ -310,35 +316,8 @@ class Lexer:
         if match is not None and role == "keep" and self._partial.doing(match.last) is not None:
             tokens.append(Token("repeat", text.starts[at], text.ends[match.last - 1], role="doing"))
             return match.last
-        return self._partial.add_doing(at, match) if at and may_be_doing(tokens) else 0
-
-    def _is_reported(self, start: int, end: int) -> bool:
-        """Whether the latest problem is about these characters already."""
-        latest = self.problems[-1].span if self.problems else None
-        return latest is not None and latest.source is self.text.source and latest.start <= start and end <= latest.end
-
-    def _why(self, at: int, end: int, match: Match | None) -> Diagnostic:
-        """What is wrong with words that are no phrase, or one that stands where it cannot."""
-        from btlang.frontends.mission.explanations import fragments, unknown  # most missions have nothing to explain
-
-        if match is None:
-            text = self.text
-            if text.words[at] in self.vocabulary.roles["define"] and self._begins():
-                return diagnostic("BT016", text.span(at, at + 1), word=text.words[at])
-            doing = self._partial.doing(at) if text.words[at - 1] in self.vocabulary.halting else None
-            if doing is not None:
-                return fragments.stopped(text.span(at - 1, doing.last), self.vocabulary)
-            if text.words[at] in self._verb_forms and may_be_doing(self.tokens):
-                text = with_verb(text, at, self.vocabulary.doing, self.vocabulary.trie)
-            return unknown.explain_unknown(
-                text, at, end, self.vocabulary, self.context, self.names.definitions, self.tokens
-            )
-        if match.meaning.role in ORDER:
-            drives = f"goes to {match.values[0].text}" if match.values else "drives"
-            return diagnostic("BT177", self.text.span(at, match.last), words=self.text.span(at, match.last).text, drives=drives)
-        if match.meaning.role == INCLUDE:
-            return misplaced(self.text.span(at, end), self.vocabulary)
-        return unknown.misread_head(self.text, at, match.meaning.role, self.vocabulary)
+        end = self._partial.add_doing(at, match) if at and may_be_doing(tokens) else 0
+        return end or self._partial.add_third(at, match)
 
     def _with_words_before(self, origin: Origin, match: Match | None, at: int) -> Match | None:
         """Words behind `and` or `or` that are no condition, read with those of the one before them in front."""
@@ -387,7 +366,7 @@ class Lexer:
             if self._explain and (
                 prefix.role in ("each", "remember") or prefix.key in self.names.known
             ):  # else it has been reported
-                self.problems.append(self._why(at, at, Match(Meaning(prefix.role), at)))
+                self.problems.append(self._unknown.why(at, at, Match(Meaning(prefix.role), at)))
             self.tokens.append(Token("unknown", span.start, span.end))
             return bisect_right(self.text.starts, span.end - 1)
         self.tokens.append(read[0])
@@ -404,7 +383,7 @@ class Lexer:
             read = read_node(text, head.last, head.meaning, self.vocabulary, definitions.subtrees, definitions.trie)
         except Unreadable as problem:
             self.problems.append(unreadable(text, at, problem))
-            end = self._unknown_end(at, bisect_right(text.starts, span_of(text, at).end - 1))
+            end = self._unknown.end(at, bisect_right(text.starts, span_of(text, at).end - 1))
             self.tokens.append(Token("unknown", text.starts[at], text.ends[end - 1]))
             return end
         if read is None:
@@ -416,25 +395,6 @@ class Lexer:
         kind = "condition" if head.meaning.role == "test" else "node" if text.words[end] == ":" else "command"
         self.tokens.append(Token(kind, text.starts[at], text.ends[end - 1], call))
         return end
-
-    def _unknown_end(self, at: int, last: int) -> int:
-        """Unknown words reach to the next mark or connective, or to a phrase that is more than one word.
-
-        A value that nothing has the name of, and a pronoun, are read as values there: they may be another mistake.
-        """
-        text, context = self.text, self.context.with_references()
-        context.latest = dict.fromkeys(context.types, "")
-        while True:
-            at += 1
-            if at < last and text.words[at] == "(" and context.values.number(text, at + 1):
-                return text.words.index(")", at) + 1 if ")" in text.words[at:last] else at  # meant as a point
-            if at >= last or text.words[at] in _MARKS:
-                return at
-            match = longest(self.vocabulary.trie, text, at, context)
-            if match is not None and match.meaning.role in (*NODE_ROLES, *NOT_ALONE):
-                continue
-            if match is not None and (match.meaning.entry is None or match.last > at + 1):
-                return at
 
     def _mark(self, kind: str, at: int) -> None:
         start = self.text.starts[at] if at < len(self.text.starts) else len(self.text.source.text)

@@ -1,6 +1,6 @@
 """Words about the order of commands: `once you get to the lab, A`, `A when you arrive`, `on the way to the lab, A`.
 
-An arrival goes on as `then` would. A journey in the words behind `on the way to` or `from` becomes a command of its own.
+An arrival goes on as `then` would. A journey behind `on the way to` or `from` becomes a command of its own.
 """
 
 from __future__ import annotations
@@ -127,7 +127,7 @@ class OrderWords:
             return journey.last
         behind = journey.last + (text.words[journey.last] == ",")
         match = longest(self._vocabulary.trie, text, behind, self._context)
-        if tokens and tokens[-1].kind not in BEGINS or match is None or match.meaning.entry is None:
+        if (tokens and tokens[-1].kind not in BEGINS) or match is None or match.meaning.entry is None:
             return 0
         following = self._calls.token(match, behind)
         joint = "and" if constraint_of(following) is not None else self._joint(following)

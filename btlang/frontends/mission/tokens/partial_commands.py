@@ -88,6 +88,23 @@ class PartialCommands:
         self._tokens.append(self._token_of(match, at))
         return match.last
 
+    def add_third(self, at: int, other: Match | None) -> int:
+        """A command in the third person: `the robot goes to the lab, then waves`."""
+        tokens, text = self._tokens, self._text
+        if tokens and tokens[-1].kind in JOINTS:
+            before = next((token for token in reversed(tokens) if token.kind in _DOING or token.kind in _ENDS), None)
+            if before is None or before.role != "third":
+                return 0
+        elif at == 0 or text.words[at - 1] not in self._vocabulary.asking["subject"]:
+            return 0
+        match = doing(text, at, self._vocabulary.third_person, self._tries, self._context)
+        if match is None or (other is not None and other.last >= match.last):
+            return 0
+        token = self._token_of(match, at)
+        token.role = "third"
+        tokens.append(token)
+        return match.last
+
     def add_left_out(self, at: int, least: int = 0) -> int:
         """A command whose first words are those of the one before it, and which ends at a word `least` or behind it."""
         read = self._left_out(at)
@@ -263,7 +280,9 @@ def _match(
         read.words.append(END_OF_TEXT)
         read.starts.append(text.ends[end - 1])
         read.ends.append(text.ends[end - 1])
-    found = [longest(trie, read, 0, context, names) for trie, names in zip(tries, (*tries[1:], *tries[:1]), strict=True)]
+    found = [
+        longest(trie, read, 0, context, names) for trie, names in zip(tries, (*tries[1:], *tries[:1]), strict=True)
+    ]
     return max((match for match in found if match is not None), key=lambda match: match.last, default=None)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.references import choice_of
+from btlang.vocabulary.references import COUNT, choice_of
 from btlang.vocabulary.word_tree import find, tree_of
 
 _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ",")
@@ -68,7 +68,9 @@ class Remarks:
             ways += context.ways(kind, text, at)
             for value, last in reversed(ways):
                 end = self._place(kind, last) if stands else last
-                if value and end and text.words[end] in _ENDS and (stands or choice_of(value) is not None):
+                choice = choice_of(value)
+                counts = choice is not None and COUNT in dict(choice.parts)
+                if end and text.words[end] in _ENDS and (stands or choice is not None) and not counts:
                     context.latest[kind] = value
                     return end
         return 0

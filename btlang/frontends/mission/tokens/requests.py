@@ -38,7 +38,6 @@ class Requests:
     ) -> None:
         self._text, self._vocabulary, self._context, self._calls = text, vocabulary, context, calls
         self._partial, self._tokens, self._problems = partial, tokens, problems
-        self._taken: set[str] = set()
         self._saying = vocabulary.entry(SAY)
 
     def question(self, match: Match | None, role: str, at: int) -> int:
@@ -68,10 +67,9 @@ class Requests:
             self._tokens.append(command)
             return known[1]
         if measured is None:
-            words, known_values = text.span(first, match.last).text, self._values()
-            advice = f"Values are: {known_values}\nTo say the words, put them in quotes: {text.span(at, first).text} "
-            advice += f'"{words}"'
-            self._problems.append(diagnostic("BT178", text.span(first, match.last), words=words, advice=advice))
+            span = text.span(first, match.last)
+            quoted = f'{text.span(at, first).text} "{span.text}"'
+            self._problems.append(diagnostic("BT178", span, words=span.text, values=self._values(), quoted=quoted))
             return 0
         self._say(at, measured, command, value.name)
         return measured.last
@@ -100,7 +98,9 @@ class Requests:
         search = self._partial.with_front(at, end, self._vocabulary.asking["search"])
         if search is None or not self._ends(search.last):
             return 0
-        measured = self._partial.with_front(at, end, self._vocabulary.asking["whereabouts"], self._vocabulary.quantities)
+        measured = self._partial.with_front(
+            at, end, self._vocabulary.asking["whereabouts"], self._vocabulary.quantities
+        )
         if measured is None or measured.last != search.last:
             return 0
         self._tokens.append(self._calls.token(search, at))
@@ -120,7 +120,9 @@ class Requests:
         if counted is None:
             return None
         behind = longest(self._vocabulary.trie, self._text, counted.last, self._context)
-        return counted.replace(last=behind.last) if behind is not None and behind.meaning.role == "there_are" else counted  # type: ignore[no-any-return]
+        return (
+            counted.replace(last=behind.last) if behind is not None and behind.meaning.role == "there_are" else counted
+        )
 
     def _say_count(self, at: int, counted: Match, command: Token | None = None, slot: str = "") -> int:
         count = self._vocabulary.entry(COUNT)
@@ -207,6 +209,4 @@ class Requests:
         """A free key for what a quantity measures, by its words."""
         words = entry.quantity[0].split()
         slot = next((at for at, word in enumerate(words) if "{" in word), len(words) + 1)
-        key = free_key(key_of(words[: slot - 1]), {*(self._context.known or ()), *self._taken})
-        self._taken.add(key)
-        return key
+        return free_key(key_of(words[: slot - 1]), self._context.known or ())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from btlang.frontends.mission.token import Token, constraint_of
 from btlang.text.words import END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
@@ -10,8 +12,15 @@ from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import find
 
+MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
+"""The raw kinds of marks."""
 BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon", "comma", "then"))
 """Behind these a statement, or an item of a list, begins."""
+
+
+def begins(tokens: Sequence[Token]) -> bool:
+    """Whether a statement begins at the word behind these tokens."""
+    return not tokens or tokens[-1].kind in BEGINS
 
 
 def without_meaning(
@@ -30,6 +39,11 @@ def without_meaning(
     if not tokens:
         return 0
     before = tokens[-1]
+    if before.kind == "check" and text.words[at] in vocabulary.subjects:
+        follows = longest(vocabulary.trie, text, at + 1, context)
+        if follows is not None and follows.meaning.role == "command":
+            tokens.pop()  # `make sure that you wave`
+            return at + 1
     if before.kind in ("until", "before") and text.words[at] in vocabulary.subjects:
         return at + 1
     if role == "ordinal" and match is not None and before.kind in ("command", "but"):
