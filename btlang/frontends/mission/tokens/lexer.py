@@ -208,7 +208,7 @@ class Lexer:
                 end = remarks.end(at)
                 if end:
                     span = text.span(at, end)
-                    self.problems.append(diagnostic("BT179", span, words=span.text))
+                    self.problems.append(diagnostic("BT158", span, words=span.text))
                     at = end + (words[end] == ",")
                     continue
             if role in NOT_ALONE or word in verb_forms:

@@ -69,7 +69,7 @@ class Requests:
         if measured is None:
             span = text.span(first, match.last)
             quoted = f'{text.span(at, first).text} "{span.text}"'
-            self._problems.append(diagnostic("BT178", span, words=span.text, values=self._values(), quoted=quoted))
+            self._problems.append(diagnostic("BT157", span, words=span.text, values=self._values(), quoted=quoted))
             return 0
         self._say(at, measured, command, value.name)
         return measured.last

@@ -49,7 +49,7 @@ class UnknownWords:
         if match is not None and role in ORDER:
             span = self._text.span(at, match.last)
             drives = f"goes to {match.values[0].text}" if match.values else "drives"
-            return diagnostic("BT177", span, words=span.text, drives=drives)
+            return diagnostic("BT156", span, words=span.text, drives=drives)
         if match is None or role in NOT_ALONE:
             text = self._text
             if text.words[at] in self._vocabulary.roles["define"] and begins(self._tokens):
