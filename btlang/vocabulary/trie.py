@@ -205,7 +205,7 @@ def all_names(
         one = SlotValue(name, kind, value[0], last, value[1])
         listed = _listed(root, text, one, context, None, is_subject=False) or one
         left_out, at = tuple(chain(*map(context.values.meant_by, (listed.text, *listed.more)))), listed.last
-    names = [one for one in context.values.described(meant) if one not in left_out]
+    names = [one for one in context.values.likenesses.described(meant) if one not in left_out]
     return SlotValue(name, kind, names[0] if names else "", first, at, tuple(names[1:]), "and" if names[1:] else "")
 
 

@@ -42,6 +42,10 @@ def test_meaning(sentence: str, tree: str) -> None:
         ("wave through the door", "BT010"),
         ("do you think you can find the book", "BT010"),
         ("pick up the shiny cup", "BT013"),
+        ("pick up the big and red cup", "BT013"),
+        ("go to the dirty room", "BT178"),
+        ("pick up one", "BT011"),
+        ("pick up the big one", "BT013"),
         ("move forward for 10 s or 2 m", "BT019"),
     ],
 )
@@ -55,6 +59,27 @@ def test_what_is_refused(sentence: str, code: str) -> None:
 def test_what_only_permits_is_noted() -> None:
     mission = btlang.parse_tree("go to the lab. Then you may go to the hall.", world=WORLD)
     assert [warning.code for warning in mission.warnings] == ["BT176"]
+
+
+@pytest.mark.parametrize(
+    ("sentence", "owners"),
+    [
+        ("bring me my plate", []),
+        ("look at her plate", ["her"]),
+        ("go to Alice and Bob, then take her plate", ["her"]),
+        ("go to my room, then to Bob's room", []),
+        ("take my book to his room", ["his"]),
+    ],
+)
+def test_an_owner_whom_nobody_knows_is_noted(sentence: str, owners: list[str]) -> None:
+    mission = btlang.parse_tree(sentence, world=WORLD)
+    assert [warning.span.text for warning in mission.warnings if warning.code == "BT177"] == owners
+
+
+def test_nobody_owns_anything_where_the_world_does_not_say_so() -> None:
+    mission = btlang.parse_tree("bring me my cup, then go to Alice's cup")
+    assert [warning.span.text for warning in mission.warnings] == ["my", "Alice's"]
+    assert "owner" not in plain(mission.tree)
 
 
 def run(sentence: str) -> btlang.Outcome:
@@ -77,6 +102,10 @@ def test_a_closed_zone_is_driven_round() -> None:
         ("pick up the red cup in the hall", "I know no red cup in the hall"),
         ("pick up three cups", "3 are needed"),
         ("look at every book near Alice", "book near Alice"),
+        ("bring Alice my book", "a book that belongs to you"),
+        ("pick up Bob's plate", "plate that belongs to Bob"),
+        ("pick up the dirty blue plate", "dirty blue plate"),
+        ("look at the plate on the small plate", "plate on the small plate"),
     ],
 )
 def test_what_cannot_be_done_says_why(sentence: str, reason: str) -> None:

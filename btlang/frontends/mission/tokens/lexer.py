@@ -253,7 +253,8 @@ class Lexer:
     def _in_its_place(self, match: Match | None, role: str, at: int) -> int:
         """Words that say something in one place only, and forms of verbs. Returns where to go on, 0 for any other."""
         text, tokens = self.text, self.tokens
-        if match is not None and role == "ordinal" and (not tokens or tokens[-1].kind in BEGINS):
+        begins = at not in text.articles and (not tokens or tokens[-1].kind in BEGINS)
+        if match is not None and role == "ordinal" and begins:
             return match.last + (text.words[match.last] == ",")
         if match is not None and role == "keep" and self._partial.doing(match.last) is not None:
             tokens.append(Token("repeat", text.starts[at], text.ends[match.last - 1], role="doing"))

@@ -231,6 +231,7 @@ def _match(
 ) -> Match | None:
     """The longest phrase of words of a text side by side, some of them replaced."""
     read = Words(text.source)
+    read.picked = text, places
     for number, place in enumerate(places):
         read.words.append(other.get(number, text.words[place]))
         if place in text.articles:
