@@ -99,9 +99,9 @@ class Adjectives:
                 if not found[0] or (found[0] == _SOMEBODY and not _only_person(text, at, names)):
                     yield at, found[1]
 
-    def starts(self, names: Names) -> frozenset[str]:
-        """The words at which one may begin."""
-        trees = [names(part) for part in (*_BEFORE, OWNER)]
+    def starts(self, names: Names, is_told: Callable[[str], bool]) -> frozenset[str]:
+        """The words at which one may begin that says a part which can be judged."""
+        trees = [names(part) for part in (*_BEFORE, OWNER) if is_told(part)]
         return frozenset(word for tree in (*trees, self._determiners) for word in tree)
 
 

@@ -53,6 +53,10 @@ class Likenesses:
             return True
         return any(name == part for _, parts in self.features.get(type, ()) for name, _ in parts)
 
+    def is_ever_told(self, part: str) -> bool:
+        """Whether the part of a thing of any type can be judged."""
+        return any(self.is_told(type, part) for type in (OBJECT, PLACE))
+
     def described(self, meant: Description) -> tuple[str, ...]:
         """The names of a type that have the parts of a description, in the order of the world."""
         if not meant.parts:

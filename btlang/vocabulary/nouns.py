@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Set
 from itertools import chain
 
 from btlang.record import Record
@@ -82,21 +82,27 @@ class Nouns:
             ways.append((kind, how))
 
     def longest(
-        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits
+        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits, before: Set[str]
     ) -> tuple[Description, int] | None:
         """The longest noun phrase at a word whose type and parts fit, and where it ends; of equally long ones the one
-        that says most.
+        that says most. Adjectives begin at the words `before`.
         """
-        return self._longest(self.tree, text, at, names, fits)
+        return self._longest(self.tree, text, at, names, fits, before)
 
     def plural(
-        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits
+        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits, before: Set[str]
     ) -> tuple[Description, int] | None:
         """The longest one in the plural."""
-        return self._longest(self.plurals, text, at, names, fits) or self.noun(text, at, names, fits)
+        return self._longest(self.plurals, text, at, names, fits, before) or self.noun(text, at, names, fits, before)
 
     def _longest(
-        self, tree: WordTree, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits
+        self,
+        tree: WordTree,
+        text: Words,
+        at: int,
+        names: Callable[[str], WordTree],
+        fits: Fits,
+        before: Set[str],
     ) -> tuple[Description, int] | None:
         best: tuple[Description, int] | None = None
         paths: list[tuple[WordTree, int, Parts, bool]] = [(tree, at, (), False)]
@@ -113,7 +119,7 @@ class Nouns:
                     paths.append((child, value[1], (*parts, (name, value[0])), False))
             if word in node and (not is_open or word in self._heads):
                 paths.append((node[word], i + 1, parts, False))
-            if not is_open:
+            if word in before and not is_open:
                 paths += [
                     (node, end, (*parts, *more), True)
                     for more, end in self.adjectives.chains(text, i, names, determined=tree is self.tree)
@@ -131,11 +137,11 @@ class Nouns:
         return found is not None and found[0] == kind
 
     def noun(
-        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits
+        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits, before: Set[str]
     ) -> tuple[Description, int] | None:
         """All names that a noun such as `places` or `red cup` is for, and where it ends."""
         kind = find(self._types, text.words, at)
-        found = self.longest(text, at, names, fits)
+        found = self.longest(text, at, names, fits, before)
         if kind is not None and fits(kind[0], ()) and (found is None or (found[1] <= kind[1] and not found[0].parts)):
             return Description(kind[0], ALL), kind[1]
         return (found[0].replace(how=ALL), found[1]) if found is not None and found[0].parts else None

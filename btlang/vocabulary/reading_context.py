@@ -37,14 +37,18 @@ class ReadingContext:
     """
 
     __slots__ = (
-        "_most_words", "before", "joiners", "keys", "known", "lacked", "latest", "manners", "met", "modifiers",
-        "openers", "pronouns", "starts", "types", "untyped", "values",
+        "_most_words", "before", "deniable", "denials", "joiners", "keys", "known", "lacked", "latest", "manners",
+        "met", "modifiers", "openers", "pronouns", "set_starts", "starts", "types", "untyped", "values",
     )  # fmt: skip
 
     def __init__(self, values: Values, known: Mapping[str, Known] | None = None) -> None:
         self.values = values
         self.types, self.joiners, self.pronouns = values.types, values.joiners, values.pronouns
         self.starts, self.modifiers = values.choice_starts, values.modifiers.starts
+        self.set_starts = values.choice_starts | values.group_starts
+        """The words of letters alone at which a set of names may begin."""
+        self.denials, self.deniable = frozenset(values.adjectives.denials), values.deniable
+        """Words before an adjective that deny it, and the first words of those adjectives."""
         self.before = values.adjective_starts | values.names_tree("color").keys()
         self.manners = values.names_tree(MANNER) if MANNER in values.types else {}
         self.latest: dict[str, str] = {}

@@ -165,7 +165,7 @@ class Values(Measures):
 
     def noun(self, text: Words, at: int) -> tuple[Description, int] | None:
         """All names that a noun such as `places` or `red cup` is for, and where it ends."""
-        return self.phrases.noun(text, at, self.names_tree, self._fits(""))
+        return self.phrases.noun(text, at, self.names_tree, self._fits(""), self.adjective_starts)
 
     @property
     def choice_starts(self) -> frozenset[str]:
@@ -175,17 +175,22 @@ class Values(Measures):
         return self._choice_starts
 
     @property
+    def deniable(self) -> frozenset[str]:
+        """The words with which an adjective begins that can be denied before a head: `non-red`."""
+        return frozenset(word for part in OF if part != "kind" for word in self.names_tree(part))
+
+    @property
     def adjective_starts(self) -> frozenset[str]:
         """The words at which what stands before a head may begin: `my`, `big`."""
         if self._adjective_starts is None:
-            self._adjective_starts = self.adjectives.starts(self.names_tree)
+            self._adjective_starts = self.adjectives.starts(self.names_tree, self.likenesses.is_ever_told)
         return self._adjective_starts
 
     def choice(self, text: Words, at: int, kind: str = "") -> tuple[Description, int] | None:
         """Of words such as `every place` and `the red cup` which names they are for, and where they end."""
         if text.words[at] not in self.choice_starts:
             return None
-        found = self.phrases.longest(text, at, self.names_tree, self._fits(kind))
+        found = self.phrases.longest(text, at, self.names_tree, self._fits(kind), self.adjective_starts)
         return self._resolved(found, text, at)
 
     def _resolved(self, found: tuple[Description, int] | None, text: Words, at: int) -> tuple[Description, int] | None:
@@ -273,7 +278,7 @@ class Values(Measures):
                 count, start = str(int(number[0])), number[1]
             elif not is_bare and text.words[at] not in self.group_starts:
                 return  # as nearly always
-            found = self.phrases.plural(text, start, self.names_tree, self._fits(kind))
+            found = self.phrases.plural(text, start, self.names_tree, self._fits(kind), self.adjective_starts)
             found = self._resolved(found, text, start)
             if found is None or not (count or is_bare or self._is_plural(text, at, found[1], kind)):
                 return
@@ -315,7 +320,9 @@ class Values(Measures):
 
     def _left_out_one(self, meant: Description, text: Words, at: int) -> tuple[str, str, int] | None:
         kind = meant.type
-        found = self.phrases.plural(text, at, self.names_tree, self._fits(kind)) or self.choice(text, at, kind)
+        found = self.phrases.plural(text, at, self.names_tree, self._fits(kind), self.adjective_starts) or self.choice(
+            text, at, kind
+        )
         found = self._resolved(found, text, at)
         parts = dict(found[0].parts) if found is not None else {}
         named = find(self._names[kind], text.words, at)
