@@ -72,7 +72,7 @@ SWITCHES = frozenset(("decimal_comma",))
 WORD_LISTS = frozenset((
     "articles", "politeness", "unit_joiner", "one_each", "quantifiers", "halting", "asked_once", "relatives",
     "relative_denials", "particles", "fillers", "speaker", "subjects", "purpose", "determiners", "denials",
-    "possessive_endings", "ones",
+    "possessive_endings", "ones", "directions",
 ))  # fmt: skip
 
 
@@ -196,7 +196,7 @@ _LANGUAGE: dict[str, Any] = {
     "language": "", "decimal_comma": False,
     "articles": [], "politeness": [], "unit_joiner": [], "one_each": [],
     "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},
-    "determiners": [], "denials": [], "possessive_endings": [], "ones": [],
+    "determiners": [], "denials": [], "possessive_endings": [], "ones": [], "directions": [],
     "possessives": {"speaker": [], "others": []},
     "prepositions": {}, "synonyms": {}, "particles": [], "fillers": [], "speaker": [], "subjects": [], "purpose": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {}, "doing": {},
