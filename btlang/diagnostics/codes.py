@@ -194,6 +194,7 @@ _ALL = (
          'The world file can say whose a thing is: owner = "Alice", or owner = "me"', "note", "owner"),
     Code("BT178", "I can't tell what is '{words}': this world doesn't say the {part} of any {type}.",
          "Give things their {part} in the world file, for example: {line}"),
+    Code("BT179", "'{verb}' doesn't take '{words}'.", "It takes: {phrase}"),
     Code("BT180", "'{words}' isn't a line of a test.", "Write for example: {wanted}"),
     Code("BT181", "This test can't run: {reason}.", "Write for example: {example}"),
     Code("BT182", "'{words}' {reason}."),

@@ -10,6 +10,7 @@ from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.explanations.fragments import explain_fragment
+from btlang.frontends.mission.explanations.roles import explain_role
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
 from btlang.frontends.mission.explanations.times import explain_time
 from btlang.frontends.mission.symbols.definitions import Definitions
@@ -63,6 +64,10 @@ def explain_unknown(
         longer = [found for found in _misfits(text, phrase, roots, context) if found.at >= at]
         if longer and (not misfits or longer[0].at >= misfits[0].at):
             start, misfits = phrase, longer
+    names_fit = any(context.types[misfit.kind].kind == "names" for misfit in misfits)
+    untaken = explain_role(text, at, end, before, vocabulary, context) if not names_fit else None
+    if untaken is not None:
+        return untaken
     if misfits:
         return _misfit(text, start, end, misfits, vocabulary, context, definitions)
     time = explain_time(text, at, False, vocabulary)
