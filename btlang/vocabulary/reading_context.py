@@ -38,7 +38,7 @@ class ReadingContext:
 
     __slots__ = (
         "_most_words", "before", "deniable", "denials", "joiners", "keys", "known", "lacked", "latest", "manners",
-        "met", "modifiers", "openers", "pronouns", "set_starts", "starts", "types", "untyped", "values",
+        "met", "modifiers", "openers", "pronouns", "same", "set_starts", "starts", "types", "untyped", "values",
     )  # fmt: skip
 
     def __init__(self, values: Values, known: Mapping[str, Known] | None = None) -> None:
@@ -52,6 +52,8 @@ class ReadingContext:
         self.before = values.adjective_starts | values.names_tree("color").keys()
         self.manners = values.names_tree(MANNER) if MANNER in values.types else {}
         self.latest: dict[str, str] = {}
+        self.same: dict[int, int] = {}
+        """Where what is read is the latest of its type once more, with the words that it ends at."""
         self.lacked = False
         self.met: set[str] = set()
         self.keys: Mapping[str, str] = {}
@@ -77,6 +79,8 @@ class ReadingContext:
 
     def read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """The port text of a value of the type and where it ends, or None if there is none."""
+        if at in self.same and kind in self.latest:
+            return self.latest[kind], self.same[at]
         if self.known != {}:
             known = self._known(kind, text, at)
             if known is not None:

@@ -45,6 +45,8 @@ def test_meaning(sentence: str, tree: str) -> None:
         ("pick up the big and red cup", "BT013"),
         ("go to the dirty room", "BT178"),
         ("pick up one", "BT011"),
+        ("pick up and bring the cup and the book to Alice", "BT012"),
+        ("pick up and look at it", "BT012"),
         ("pick up the big one", "BT013"),
         ("move forward for 10 s or 2 m", "BT019"),
     ],

@@ -134,6 +134,7 @@ class Lexer:
         found, verb_forms, calls = self._found, self._verb_forms, self._calls
         headers, prefixes, others = self.names.definitions.headers, self.names.prefixes, self.names.others
         going_on, articles, meanings_of = text.going_on, text.articles, self._meanings_of
+        sharing, joint = self._partial.sharing, self.vocabulary.word("and")
         origin: Origin | None = None
         while at < last:
             word = words[at]
@@ -156,7 +157,7 @@ class Lexer:
                     context.latest.clear()
                 at += 1
                 continue
-            if at in found:
+            if at in found and at not in sharing:
                 match = found[at]
                 if names and match is not None and any(value.more for value in match.values):
                     match = longest(trie, text, at, context, names)  # a name may end the list
@@ -180,6 +181,11 @@ class Lexer:
             role = match.meaning.role if match is not None else ""
             if role in NOT_ALONE or word in verb_forms:
                 end = self._in_its_place(match, role, at)
+                if end:
+                    at = end
+                    continue
+            if match is None or (role == "command" and not match.values and words[match.last] == joint):
+                end = self._partial.add_sharing(at, match)
                 if end:
                     at = end
                     continue
