@@ -47,6 +47,15 @@ class Modifiers:
         self.starts = frozenset((*self._relations, *self._clauses))
         """The words with which something behind a head may begin."""
 
+    @property
+    def relative(self) -> str:
+        """The words that begin a relative clause: `that is`."""
+        return next(iter(self._relatives), "")
+
+    def relates(self, text: Words, at: int) -> bool:
+        """Whether words that say how things stand to each other begin at a word."""
+        return find(self._relations, text.words, at) is not None
+
     def words(self) -> Iterator[str]:
         """Every word of it."""
         for phrases in (*self._words.values(), self._relatives, self._denials):

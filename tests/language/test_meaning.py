@@ -84,6 +84,28 @@ def test_nobody_owns_anything_where_the_world_does_not_say_so() -> None:
     assert "owner" not in plain(mission.tree)
 
 
+@pytest.mark.parametrize(
+    ("sentence", "readings"),
+    [
+        (
+            "put the book on the table in the box",
+            ["put the book that is on the table in the box", "put the book on the table that is in the box"],
+        ),
+        ("put the book that is on the table in the box", []),
+        ("put the book on the table that is in the box", []),
+        ("put the book on the table near the sink", []),
+        ("take the book on the table to the box", []),
+        ("bring the book on the table to Alice", []),
+    ],
+)
+def test_two_goals_in_a_row_show_both_readings(sentence: str, readings: list[str]) -> None:
+    mission = btlang.parse_tree(sentence, world=WORLD)
+    twice = [warning for warning in mission.warnings if warning.code == "BT050"]
+    assert [text for warning in twice for _, text in warning.readings] == readings
+    trees = [plain(btlang.parse_tree(text, world=WORLD).tree) for text in readings]
+    assert trees == [] or (trees[0] == plain(mission.tree) != trees[1])
+
+
 def run(sentence: str) -> btlang.Outcome:
     """The outcome of a mission on the simulated robot."""
     return btlang.parse_tree(sentence, world=WORLD).run(speed="max")

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.tokens.two_goals import two_goals
 from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.adjectives import OWNER
@@ -47,6 +48,9 @@ class Calls:
         values = match.values
         for value in values if self._owners else ():
             self._note_owners(value)
+        twice = two_goals(match, at, text, self._vocabulary) if len(values) > 1 else None
+        if twice is not None:
+            self._problems.append(twice)
         start, end = text.starts[at], text.ends[match.last - 1]
         if values and values[-1].first == match.last:  # the article was the value: `print a`
             end = text.articles[match.last][1]
