@@ -35,7 +35,9 @@ def _with(name: str, *more: str) -> str:
 
 
 def _object(thing: WorldObject) -> str:
-    return _with(thing.name, thing.color, thing.kind, thing.switch and f"is {thing.switch}", _unknown(thing.known))
+    switch, owner = thing.switch and f"is {thing.switch}", thing.owner and f"owner {thing.owner}"
+    like = (thing.sized, *thing.state, thing.color, thing.kind)
+    return _with(thing.name, *like, owner, switch, _unknown(thing.known))
 
 
 def _person(person: Person) -> str:

@@ -6,12 +6,17 @@ from collections.abc import Iterator, Mapping
 from itertools import chain
 
 Parts = tuple[tuple[str, str], ...]
+SPEAKER = "me"
+"""The owner of what belongs to whoever gives the robot its missions."""
 
 
-def of_object(kind: str, color: str, uses: tuple[str, ...]) -> Parts:
-    """The parts by which an object can be described, in lower case."""
-    named = [("color", _spelt(color)), ("kind", kind), *(("use", use) for use in uses)]
-    return tuple((name, text.lower()) for name, text in named if text)
+def of_thing(
+    kind: str, color: str, size: str, states: tuple[str, ...], owner: str, uses: tuple[str, ...] = ()
+) -> Parts:
+    """The parts by which an object or a place can be described, in lower case but for its owner."""
+    several = (*(("state", state) for state in states), *(("use", use) for use in uses))
+    named = [("color", _spelt(color)), ("kind", kind), ("size", size), *several]
+    return (*((name, text.lower()) for name, text in named if text), *([("owner", owner)] if owner else []))
 
 
 def of_person(wears: tuple[str, ...], gesture: str) -> Parts:
@@ -30,7 +35,9 @@ def unseen(kind: str, parts: Mapping[str, str], behind: str = "") -> str:
     """What is said where the robot knows nothing like that: `I haven't seen a red cup`; `behind` follows the thing."""
     if kind == "person" and "named" not in parts:
         return f"I don't see anybody{_person(parts)}{behind}"
-    words = [parts[name] for name in ("color", "kind", "named") if name in parts]
+    words = [parts[name] for name in ("size", "state", "color", "kind", "named") if name in parts]
+    if "owner" in parts:
+        behind = f" that belongs to {'you' if parts['owner'] == SPEAKER else parts['owner']}{behind}"
     use = f" to {parts['use']}" if "use" in parts else ""
     if "named" in parts:
         return f"I know no {' '.join(words)}{use}{behind}"

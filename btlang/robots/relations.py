@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from math import dist
 
 from btlang.robots.geometry import Point, Pose
+from btlang.robots.likeness import Parts
 from btlang.robots.robot import RobotError
 from btlang.robots.world import World, WorldObject, said
 from btlang.vocabulary.references import DENIED, RELATIONS
@@ -43,15 +44,17 @@ def related_words(parts: Mapping[str, str]) -> str:
 
 def _thing(value: str) -> str:
     head, *filters = value.split("; ")
-    color, behind = "", ""
+    before, behind = "", ""
     for each in filters:
         name, _, of = each.partition(" ")
-        if name == "color":
-            color = f"{of} "
-        else:
+        if name == "owner":
+            behind = f" of {of}{behind}"
+        elif name in RELATIONS:
             behind += f" {_WORDS.get(name, name)} {said(of)}"
+        else:
+            before += f"{'non-' if name in DENIED else ''}{of} "
     noun = head.removeprefix("kind ")
-    return (f"the {color}{noun}" if color or noun != head else said(noun)) + behind
+    return (f"the {before}{noun}" if before or noun != head else said(noun)) + behind
 
 
 class Relations:
@@ -76,9 +79,15 @@ class Relations:
         return True
 
     def _is_like(self, name: str, part: str, values: list[str]) -> bool:
-        like = dict(self._things[name].parts) if name in self._things else {}
         wanted = {value.lower() for value in values}
-        return like.get(part, "") in wanted or (part == "kind" and name.lower() in wanted)
+        is_like = any(of == part and value in wanted for of, value in self._parts(name))
+        return is_like or (part == "kind" and name.lower() in wanted)
+
+    def _parts(self, name: str) -> Parts:
+        """What a thing or a place can be described by."""
+        if name in self._things:
+            return self._things[name].parts
+        return next((place.parts for place in self._world.places if place.name == name), ())
 
     def _meant(self, value: str, pose: Pose) -> Iterator[str]:
         """The names of what a relation leads to."""
@@ -92,11 +101,11 @@ class Relations:
             known = [place.name for place in world.places] + list(self._things)
             known += [*(door.name for door in world.doors), *(zone.name for zone in world.zones)]
             names = [name for name in dict.fromkeys(known) if name.lower() == head.lower()]
-        like = {part: text for part, text in likes.items() if part not in RELATIONS}
+        like = without_relations(likes)
         for name in names:
-            if like and not (name in self._things and self._things[name].fits(like)):
-                continue
-            if self.holds(name, {part: text for part, text in likes.items() if part in RELATIONS}, pose):
+            thing = self._things.get(name)
+            fits = thing.fits(like) if thing is not None else set(like.items()) <= set(self._parts(name))
+            if fits and self.holds(name, {part: text for part, text in likes.items() if part not in like}, pose):
                 yield name
 
     def _stands(self, name: str, relation: str, other: str, pose: Pose) -> bool:

@@ -7,38 +7,45 @@ from itertools import pairwise
 
 from btlang.record import Record
 from btlang.robots.geometry import Point, Pose, Segment, contains
-from btlang.robots.likeness import Parts, of_object, of_person, wears
+from btlang.robots.likeness import Parts, of_person, of_thing, wears
 from btlang.robots.visits import Visits
 from btlang.text.time_of_day import USUAL_START
+from btlang.vocabulary.references import PARTS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-PARTS = ("clothing", "color", "gesture", "kind", "use")
-"""What objects and people can be described by; each is a type of slots."""
 KEEP_OUT, SLOW, AREA = "keep out", "slow", "area"
 PERSON_RADIUS = 0.25
 OBJECT_RADIUS = 0.05
 NEVER = float("inf")
 _UNDRAWN = (
     "comes", "leaves", "says", "answers", "answers_after", "follows", "again", "uses", "walks", "visits", "asks",
+    "sized", "state", "owner",
 )  # fmt: skip
 
 
 class Place(Record):
-    """A named point to stand on; `facing` (degrees) is None where any direction will do, `kind` may be "room"."""
+    """A named point to stand on; `facing` (degrees) is None where any direction will do, `kind` may be "room".
+
+    It may be described as an object is.
+    """
 
     name: str
     x: float
     y: float
     facing: float | None = None
     kind: str = ""
+    color: str = ""
+    sized: str = ""
+    state: tuple[str, ...] = ()
+    owner: str = ""
 
     @property
     def parts(self) -> Parts:
         """What it can be described by."""
-        return (("kind", self.kind.lower()),) if self.kind else ()
+        return of_thing(self.kind, self.color, self.sized, self.state, self.owner)
 
 
 class Thing(Record):
@@ -66,6 +73,7 @@ class Thing(Record):
 class WorldObject(Thing):
     """An object. `size` is the metres of its longest side, `uses` are what it is good for: "drink".
 
+    It may be `sized` in a word ("small"), have a `state` ("dirty"), and belong to its `owner`.
     `switch` is "on" or "off" where it can be switched; what is `fixed` can't be picked up.
     """
 
@@ -75,11 +83,14 @@ class WorldObject(Thing):
     uses: tuple[str, ...] = ()
     switch: str = ""
     fixed: bool = False
+    sized: str = ""
+    state: tuple[str, ...] = ()
+    owner: str = ""
 
     @property
     def parts(self) -> Parts:
         """What it can be described by."""
-        return of_object(self.kind, self.color, self.uses)
+        return of_thing(self.kind, self.color, self.sized, self.state, self.owner, self.uses)
 
 
 class Stop(Record):

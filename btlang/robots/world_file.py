@@ -25,6 +25,7 @@ from btlang.robots.world_tables import (
     read_corners,
     read_crowd,
     read_door,
+    read_likeness,
     read_object,
     read_person,
     read_zone,
@@ -172,7 +173,8 @@ def _place(table: Table) -> tuple[Place, Zone | None]:
     """A place, and the zone that it is where the file has its corners."""
     facing = table.number("facing") if table.has("facing") else None
     kind = table.text("kind") if table.has("kind") else ""
-    place = Place(table.text("name"), table.number("x"), table.number("y"), facing, kind)
+    color, (sized, state, owner) = table.text("color") if table.has("color") else "", read_likeness(table)
+    place = Place(table.text("name"), table.number("x"), table.number("y"), facing, kind, color, sized, state, owner)
     zone = Zone(place.name, AREA, read_corners(table)) if table.has("points") else None
     return table.finish((place, zone))
 

@@ -44,10 +44,19 @@ def read_object(table: Table, known: bool) -> WorldObject:
     radius = table.number("radius", OBJECT_RADIUS, low=0.01)
     known = table.flag("known", known)
     kind, color = _optional(table, "kind"), _optional(table, "color")
-    size, uses = table.number("size", 2 * radius, low=0.0), table.texts("uses")
+    sized, state, owner = read_likeness(table)
+    size, uses = 2 * radius if sized else table.number("size", 2 * radius, low=0.0), table.texts("uses")
     switch = table.choice("switch", ("on", "off"), "")
     fixed = table.flag("fixed", bool(switch))
-    return table.finish(WorldObject(name, x, y, radius, known, kind, color, size, uses, switch, fixed))
+    return table.finish(
+        WorldObject(name, x, y, radius, known, kind, color, size, uses, switch, fixed, sized, state, owner)
+    )
+
+
+def read_likeness(table: Table) -> tuple[str, tuple[str, ...], str]:
+    """The size of a thing in a word, "" where it is in metres, its states, and its owner. Raises Problem."""
+    sized = table.text("size") if table.has("size") and table.is_text("size") else ""
+    return sized, table.texts("state"), _optional(table, "owner")
 
 
 def read_person(table: Table, known: bool, places: Sequence[Place]) -> Person:

@@ -50,6 +50,8 @@ def _row(record: Record) -> dict[str, Any]:
         for field, value in record.as_dict().items()
         if field in always or field not in usual or value != usual[field]
     }
+    if sized := row.pop("sized", ""):
+        row["size"] = sized
     if isinstance(record, Person):
         if row.pop("wanders", False):
             row["walks"] = ANYWHERE

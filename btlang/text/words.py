@@ -106,6 +106,7 @@ class Words:
         "going_on",
         "lines",
         "open_quotes",
+        "picked",
         "source",
         "starts",
         "unreadable",
@@ -126,6 +127,8 @@ class Words:
         """From each `#` to the end of its line."""
         self.open_quotes: list[Span] = []
         self.unreadable: list[Span] = []
+        self.picked: tuple[Words, Sequence[int]] | None = None
+        """Where these are words of another text, side by side: that text, and the place of each in it."""
         self._distinct: frozenset[str] | None = None
 
     @property
@@ -142,6 +145,16 @@ class Words:
         made.starts, made.ends, made.lines, made.articles = self.starts, self.ends, self.lines, self.articles
         made.going_on = self.going_on
         return made
+
+    def earlier(self, at: int) -> tuple[Words, int, int]:
+        """Where what stands before a word in its statement is: the text, its first word, and the word behind it."""
+        if self.picked is not None and at < len(self.picked[1]):
+            text, places = self.picked
+            return text.earlier(places[at])
+        first = at
+        while first and self.words[first - 1] not in (END_OF_STATEMENT, END_OF_TEXT):
+            first -= 1
+        return self, first, at
 
     def span(self, first: int, last: int) -> Span:
         """The characters of words `first` to `last` (exclusive); never empty where there is a word."""

@@ -158,7 +158,7 @@ def _wrapped(chain: ast.Ast, found: _Round, vocabulary: Lexicon) -> ast.Ast:
 
 def _loop(choice: Choice, body: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     """One round for each name; where the names are known, of a single command the list of all."""
-    names = vocabulary.values.members(choice)
+    names = vocabulary.values.likenesses.members(choice)
     if names and isinstance(body, ast.Phrase | ast.Name):
         each = tuple(_with(body, f"{{{choice.key}}}", name) for name in names)
         return each[0] if len(each) == 1 else ast.Chain("sequence", each, True, body.span)

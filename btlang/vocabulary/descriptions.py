@@ -12,7 +12,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from btlang.text.words import Words
-from btlang.vocabulary.references import DENIED, RELATIONS, Parts
+from btlang.vocabulary.adjectives import Adjectives
+from btlang.vocabulary.pattern import forms
+from btlang.vocabulary.references import ADJECTIVES, DENIED, RELATIONS, Parts
 from btlang.vocabulary.word_tree import WordTree, find, tree_of
 
 TYPE_CHECKING = False
@@ -27,6 +29,7 @@ NAME = "named"
 _HEADS = ("object", "place", "person", "door", "zone")
 """The types of what a relation may lead to."""
 _MOST_DEEP = 3
+_LONGEST_CLAUSE = 8  # words
 
 
 class Modifiers:
@@ -36,12 +39,22 @@ class Modifiers:
         self._words: Mapping[str, list[str]] = language["relations"]
         self._relations = tree_of((phrase, name) for name, phrases in self._words.items() for phrase in phrases)
         self._relatives: list[str] = language["relatives"]
-        self._denials: list[str] = language["relative_denials"]
+        self._denials = [" ".join(map(str, form)) for phrase in language["relative_denials"] for form in forms(phrase)]
+        self.adjectives = Adjectives(language)
         clauses = (*((phrase, True) for phrase in self._relatives), *((phrase, False) for phrase in self._denials))
         self._clauses = tree_of(clauses)
         self._either = frozenset(language["roles"].get("or", ()))
         self.starts = frozenset((*self._relations, *self._clauses))
         """The words with which something behind a head may begin."""
+
+    @property
+    def relative(self) -> str:
+        """The words that begin a relative clause: `that is`."""
+        return next(iter(self._relatives), "")
+
+    def relates(self, text: Words, at: int) -> bool:
+        """Whether words that say how things stand to each other begin at a word."""
+        return find(self._relations, text.words, at) is not None
 
     def words(self) -> Iterator[str]:
         """Every word of it."""
@@ -49,23 +62,39 @@ class Modifiers:
             for phrase in phrases:
                 yield from phrase.split()
 
+    def ends_clause(self, text: Words, at: int) -> bool:
+        """Whether `that is`, `that isn't` or the like ends before a word."""
+        found = (find(self._clauses, text.words, start) for start in range(max(at - _LONGEST_CLAUSE, 0), at))
+        return any(clause is not None and clause[1] == at for clause in found)
+
     def behind(self, kind: str, text: Words, at: int, names: Names) -> Iterator[tuple[Parts, int]]:
         """The filters that may stand behind a head of a type, and where each ends; the shortest first."""
         clause = find(self._clauses, text.words, at)
         if clause is None:
             yield from self._related(kind, text, at, names, 1)
         elif clause[0]:
-            color = self._adjective(text, clause[1], names)
-            if color is not None:
-                yield (("color", color[0]),), color[1]
+            for part in ADJECTIVES:
+                said = find(names(part), text.words, clause[1])
+                if said is not None:
+                    yield ((part, said[0]),), said[1]
             yield from self._related(kind, text, clause[1], names, 1)
         else:
             yield from self._denied(kind, text, clause[1], names)
 
-    def before(self, text: Words, at: int, names: Names) -> tuple[Parts, int] | None:
-        """The adjectives that begin at a word, and where they end."""
-        color = self._adjective(text, at, names)
-        return ((("color", color[0]),), color[1]) if color is not None else None
+    def before(self, text: Words, at: int, names: Names) -> Iterator[tuple[Parts, int]]:
+        """What may stand before a name at a word, and where it ends; the shortest first."""
+        for parts, end in ((), at), *self.adjectives.chains(text, at, names):
+            color = find(names("color"), text.words, end)
+            if end > at:
+                yield parts, end
+            if color is not None and "not_color" not in dict(parts):
+                yield (*parts, ("color", color[0])), color[1]
+
+    def said_before(self, parts: Parts, spoken: Callable[[str, str], str]) -> str:
+        """The words of an owner and of adjectives, "" where there are none."""
+        known = dict(parts)
+        owner = [self.adjectives.said_owner(known["owner"])] if "owner" in known else []
+        return " ".join((*owner, *(spoken(part, known[part]) for part in ADJECTIVES if part in known)))
 
     def said(self, parts: Parts, spoken: Callable[[str, str], str]) -> str:
         """The words of the filters that stand behind a head, "" where there are none."""
@@ -84,19 +113,22 @@ class Modifiers:
         return next(iter(sorted(self._either, key=len)), "or")
 
     def _said_thing(self, value: str, spoken: Callable[[str, str], str]) -> str:
-        """A thing with its colors before it and what it is near behind it, which may have the same."""
-        head, _, rest = value.partition("; ")
-        words = [spoken("kind", head.removeprefix("kind ")) if head.startswith("kind ") else head]
-        while rest.startswith("color "):
-            color, _, rest = rest.removeprefix("color ").partition("; ")
-            words.insert(-1, spoken("color", color))
-        if rest:
-            relation, _, other = rest.partition(" ")
-            words += (self._words[relation][0], self._said_thing(other, spoken))
-        return " ".join(words)
-
-    def _adjective(self, text: Words, at: int, names: Names) -> tuple[str, int] | None:
-        return find(names("color"), text.words, at)
+        """A thing with its adjectives before it and what it is near behind it, which may have the same."""
+        head, *filters = value.split("; ")
+        said = spoken("kind", head.removeprefix("kind ")) if head.startswith("kind ") else head
+        likes: list[tuple[str, str]] = []
+        before: list[str] = []
+        for each in filters:
+            name, _, of = each.partition(" ")
+            if name in RELATIONS:
+                rest = value.partition(f"; {name} ")[2]
+                return " ".join((*before, self.said_before(tuple(likes), spoken), said, self._words[name][0],
+                                 self._said_thing(rest, spoken))).strip()  # fmt: skip
+            if name in DENIED:
+                before.append(next(self.adjectives.denied(spoken(DENIED[name], of))))
+            else:
+                likes.append((name, of))
+        return " ".join((*before, self.said_before(tuple(likes), spoken), said)).strip()
 
     def _related(self, kind: str, text: Words, at: int, names: Names, depth: int) -> Iterator[tuple[Parts, int]]:
         found = find(self._relations, text.words, at)
@@ -116,21 +148,14 @@ class Modifiers:
                 yield "; ".join((value, *(f"{name} {of}" for name, of in parts))), last
 
     def _head(self, text: Words, at: int, names: Names) -> tuple[str, str, int] | None:
+        """The longest name, or kind where no name is as long; both may have adjectives before them."""
         best: tuple[str, str, int] | None = None
-        for kind in _HEADS:
-            found = find(names(kind), text.words, at)
-            if found is not None and (best is None or found[1] > best[2]):
-                best = kind, found[0], found[1]
-        color = self._adjective(text, at, names)
-        noun = find(names("kind"), text.words, at if color is None else color[1])
-        if noun is not None and (best is None or noun[1] > best[2]):
-            value = f"kind {noun[0]}" + (f"; color {color[0]}" if color is not None else "")
-            return "object", value, noun[1]
-        if best is None and color is not None:
-            for kind in _HEADS:
-                found = find(names(kind), text.words, color[1])
-                if found is not None:
-                    return kind, f"{found[0]}; color {color[0]}", found[1]
+        for parts, start in ((), at), *self.before(text, at, names):
+            heads = [(kind, "", find(names(kind), text.words, start)) for kind in _HEADS]
+            for kind, of, found in (*heads, ("object", "kind ", find(names("kind"), text.words, start))):
+                if found is not None and (best is None or found[1] > best[2]):
+                    filters = (f"{part} {value}" for part, value in parts)
+                    best = kind, "; ".join((f"{of}{found[0]}", *filters)), found[1]
         return best
 
     def _denied(self, kind: str, text: Words, at: int, names: Names) -> Iterator[tuple[Parts, int]]:

@@ -29,7 +29,7 @@ MEASURED = "value"
 """The port of such a condition that may name the blackboard key to write what was measured to."""
 
 
-THEME, RECIPIENT, PATH, MANNER = "theme", "recipient", "path", "manner"
+THEME, RECIPIENT, GOAL, PATH, MANNER = "theme", "recipient", "goal", "path", "manner"
 VIA = "via"
 """The slot of what a journey passes."""
 UNMARKED = frozenset((THEME, MANNER, "extent", "duration"))

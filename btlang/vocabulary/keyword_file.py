@@ -41,7 +41,7 @@ _MORE = {"action": {*_FLAGS, "constrains"}, "condition": {"touches"}, "quantity"
 """The keys that an entry of one sort has beside those of all."""
 _TYPE = {"name", "units", "whole", "least", "open", "values"}
 _NOUN = {"type", "phrase", "slots", "how"}
-_HOW = ("nearest", "seen")
+_HOW = ("nearest", "seen", "all")
 
 
 class KeywordFile(Record):
@@ -156,7 +156,7 @@ class _Reader:
             self.wrong('[[noun]] needs type = "person" and phrase = "...", and takes slots and how', "[[noun]]")
             return
         if how not in ("", *_HOW):
-            self.wrong('how of [[noun]] is "nearest" or "seen"', "how")
+            self.wrong('how of [[noun]] is "nearest", "seen" or "all"', "how")
         for phrase in phrases:
             names = _slot_names(phrase)
             if how:

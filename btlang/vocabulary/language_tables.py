@@ -85,7 +85,8 @@ SWITCHES = frozenset(("decimal_comma",))
 
 WORD_LISTS = frozenset((
     "articles", "politeness", "unit_joiner", "one_each", "quantifiers", "halting", "asked_once", "relatives",
-    "relative_denials", "particles", "fillers", "speaker", "subjects", "purpose",
+    "relative_denials", "particles", "fillers", "speaker", "subjects", "purpose", "determiners", "denials",
+    "possessive_endings", "ones", "directions",
 ))  # fmt: skip
 
 
@@ -143,6 +144,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "nouns": (_words, "a list of words"),
     "plural_endings": (_is_text, "an ending"),
     "relations": (_words, "a list of phrases"),
+    "possessives": (_words, "a list of words"),
     "prepositions": (_words, "a list of phrases"),
     "synonyms": (_words, "a list of verbs"),
     "everyone": (_words, "a list of words"),
@@ -210,6 +212,8 @@ _LANGUAGE: dict[str, Any] = {
     "language": "", "decimal_comma": False,
     "articles": [], "politeness": [], "unit_joiner": [], "one_each": [],
     "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},
+    "determiners": [], "denials": [], "possessive_endings": [], "ones": [], "directions": [],
+    "possessives": {"speaker": [], "others": []},
     "prepositions": {}, "synonyms": {}, "particles": [], "fillers": [], "speaker": [], "subjects": [], "purpose": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {}, "doing": {},
     "third_person": {},

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Set
+from itertools import chain
 
 from btlang.record import Record
 from btlang.text.words import Words
+from btlang.vocabulary.adjectives import UNSLOTTED, Adjectives
 from btlang.vocabulary.pattern import Form, Slot, forms
 from btlang.vocabulary.references import ALL, CHOICES, SIZED, Parts
 from btlang.vocabulary.value_type import OBJECT, WORLD
@@ -19,12 +21,14 @@ if TYPE_CHECKING:
 
 Features = Mapping[str, tuple[tuple[str, Parts], ...]]
 """What the names of a world are like, by their types."""
+_HEADS = frozenset(("kind", "kinds", "color"))
+"""The slots before which adjectives stand."""
 _PLURALS = {"kind": "kinds"}
 """The slots that are also said in the plural where all are meant: `all red cups`."""
 
 
 class Noun(Record):
-    """A noun phrase as a keyword file declares it: `[{color}] {kind}`; the robot chooses one by `how`."""
+    """A noun phrase as a keyword file declares it: `[{color}] {kind}`. Chosen is one by `how`, or "all"."""
 
     type: str
     how: str
@@ -43,7 +47,8 @@ class Description(Record):
 class Nouns:
     """The noun phrases of a language. `names` gives the word tree of the names that a slot of a type takes."""
 
-    def __init__(self) -> None:
+    def __init__(self, adjectives: Adjectives, heads: frozenset[str]) -> None:
+        self.adjectives, self._heads = adjectives, heads
         self.tree: WordTree = {}
         """Their words."""
         self.plurals: WordTree = {}
@@ -77,47 +82,66 @@ class Nouns:
             ways.append((kind, how))
 
     def longest(
-        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits
+        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits, before: Set[str]
     ) -> tuple[Description, int] | None:
-        """The longest noun phrase at a word whose type and parts fit, and where it ends."""
-        return self._longest(self.tree, text, at, names, fits)
+        """The longest noun phrase at a word whose type and parts fit, and where it ends; of equally long ones the one
+        that says most. Adjectives begin at the words `before`.
+        """
+        return self._longest(self.tree, text, at, names, fits, before)
 
     def plural(
-        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits
+        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits, before: Set[str]
     ) -> tuple[Description, int] | None:
         """The longest one in the plural."""
-        return self._longest(self.plurals, text, at, names, fits) or self.noun(text, at, names, fits)
+        return self._longest(self.plurals, text, at, names, fits, before) or self.noun(text, at, names, fits, before)
 
-    @staticmethod
     def _longest(
-        tree: WordTree, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits
+        self,
+        tree: WordTree,
+        text: Words,
+        at: int,
+        names: Callable[[str], WordTree],
+        fits: Fits,
+        before: Set[str],
     ) -> tuple[Description, int] | None:
         best: tuple[Description, int] | None = None
-        paths: list[tuple[WordTree, int, Parts]] = [(tree, at, ())]
+        paths: list[tuple[WordTree, int, Parts, bool]] = [(tree, at, (), False)]
         while paths:
-            node, i, parts = paths.pop()
-            if END in node and (best is None or i > best[1] or (i == best[1] and parts and not best[0].parts)):
+            node, i, parts, is_open = paths.pop()
+            word = text.words[i]
+            if not is_open and END in node and (best is None or (i, *_says(parts)) > (best[1], *_says(best[0].parts))):
                 way = next((way for way in node[END] if fits(way[0], parts)), None)
                 if way is not None:
                     best = Description(way[0], way[1], tuple(sorted(parts))), i
             for name, of, child in node.get(SLOTS, ()):
-                value = find(names(of), text.words, i)
-                if value is not None:
-                    paths.append((child, value[1], (*parts, (name, value[0]))))
-            if text.words[i] in node:
-                paths.append((node[text.words[i]], i + 1, parts))
+                value = find(names(of), text.words, i) if not is_open or name in _HEADS else None
+                if value is not None and all(name != known for known, _ in parts):
+                    paths.append((child, value[1], (*parts, (name, value[0])), False))
+            if word in node and (not is_open or word in self._heads):
+                paths.append((node[word], i + 1, parts, False))
+            if word in before and not is_open:
+                paths += [
+                    (node, end, (*parts, *more), True)
+                    for more, end in self.adjectives.chains(text, i, names, determined=tree is self.tree)
+                    if not {name for name, _ in more} & {name for name, _ in parts}
+                ]
         return best
 
     def add_type(self, words: str, kind: str) -> None:
         """Adds a word for a type: `places`."""
         insert(self._types, words.split(), kind)
 
+    def is_type(self, kind: str, text: Words, at: int) -> bool:
+        """Whether a word for a type begins at a word."""
+        found = find(self._types, text.words, at)
+        return found is not None and found[0] == kind
+
     def noun(
-        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits
+        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits, before: Set[str]
     ) -> tuple[Description, int] | None:
         """All names that a noun such as `places` or `red cup` is for, and where it ends."""
         kind = find(self._types, text.words, at)
-        found = self.longest(text, at, names, fits)
+        found = self.longest(text, at, names, fits, before)
         if kind is not None and fits(kind[0], ()) and (found is None or (found[1] <= kind[1] and not found[0].parts)):
             return Description(kind[0], ALL), kind[1]
         return (found[0].replace(how=ALL), found[1]) if found is not None and found[0].parts else None
@@ -135,12 +159,21 @@ class Nouns:
         slots = (word for _, kind, _ in tree.get(SLOTS, ()) for word in names(kind))
         return frozenset((*tree, *slots)) - {END, SLOTS}
 
-    def words(self, meant: Description, spoken: Mapping[tuple[str, str], str]) -> str:
-        """The first way to say what has these parts, "" if there is none. `spoken` are the words of their names."""
+    def words(self, meant: Description, spoken: Mapping[tuple[str, str], str], before: str = "") -> str:
+        """The first way to say what has these parts, "" if there is none. `spoken` are the words of their names, and
+        the adjectives `before` stand at the head.
+        """
         parts = dict(meant.parts)
         form = self._said.get((meant.type, meant.how, tuple(sorted(parts))), ())
-        pieces = ((part, "") if isinstance(part, str) else (part.name, parts[part.name]) for part in form)
-        return " ".join(spoken.get(piece, piece[1] or piece[0]) for piece in pieces)
+        pieces = [(part, "") if isinstance(part, str) else (part.name, parts[part.name]) for part in form]
+        words = [spoken.get(piece, piece[1] or piece[0]) for piece in pieces]
+        if before:
+            heads = _HEADS | self._heads
+            at = next((at for at, piece in enumerate(pieces) if piece[0] in heads), None)
+            if at is None:
+                return ""
+            words.insert(at, before)
+        return " ".join(words)
 
     def said(self, kind: str, likes: Iterable[Parts], spoken: Mapping[tuple[str, str], str]) -> list[str]:
         """What can be said of a type whose names have these parts."""
@@ -154,6 +187,11 @@ class Nouns:
                 if tuple(name for name, _ in some) == names:
                     found[self.words(Description(kind, how, some), spoken)] = None
         return list(found)
+
+
+def _says(parts: Parts) -> tuple[bool, int]:
+    """How much parts say: `big` is a size where it can be one, and else means the biggest."""
+    return bool(parts), sum(name in UNSLOTTED for name, _ in parts)
 
 
 def with_plurals(
@@ -171,9 +209,11 @@ def _plural(words: str, endings: Mapping[str, str]) -> str:
     return words if best is None else words.removesuffix(best) + endings[best]
 
 
-def noun_phrases(kinds: Iterable[str], language: Mapping[str, Any], declared: Iterable[Noun]) -> Nouns:
+def noun_phrases(
+    kinds: Iterable[str], language: Mapping[str, Any], declared: Iterable[Noun], adjectives: Adjectives
+) -> Nouns:
     """Those of a language for types with names, and those that files declare."""
-    found = Nouns()
+    found = Nouns(adjectives, frozenset((*chain(*language["nouns"].values()), *language["ones"])))
     roles: Mapping[str, list[str]] = language["roles"]
     every = [(tuple(words.split()), ALL) for words in roles.get("all_names", ())]
     chosen = [(tuple(words.split()), how) for how in CHOICES for words in roles.get(how, ())]
@@ -188,12 +228,21 @@ def noun_phrases(kinds: Iterable[str], language: Mapping[str, Any], declared: It
         for noun in declared:
             if noun.type == kind:
                 for form in forms(noun.phrase, frozenset(language["articles"])):
-                    takes_more = isinstance(form[0], Slot) or form[0] in language["nouns"].get(kind, (kind,))
+                    takes_more = isinstance(form[0], Slot) or form[0] in (
+                        *language["nouns"].get(kind, (kind,)),
+                        *language["ones"],
+                    )
                     _add_declared(found, noun, form, ways if takes_more else ())
     return found
 
 
 def _add_declared(nouns: Nouns, noun: Noun, form: Form, ways: Iterable[tuple[Form, str]]) -> None:
+    if noun.how == ALL:
+        nouns.add_plural(form, noun.slots, noun.type)
+        for before, how in ways:
+            if how == ALL:
+                nouns.add((*before, *form), noun.slots, noun.type, how)
+        return
     nouns.add(form, noun.slots, noun.type, noun.how)
     if _PLURALS.keys() & noun.slots.keys():
         nouns.add_plural(form, {**noun.slots, **_PLURALS}, noun.type)

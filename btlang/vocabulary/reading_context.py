@@ -37,16 +37,23 @@ class ReadingContext:
     """
 
     __slots__ = (
-        "_most_words", "joiners", "keys", "known", "lacked", "latest", "manners", "met", "modifiers", "openers",
-        "pronouns", "starts", "types", "untyped", "values",
+        "_most_words", "before", "deniable", "denials", "joiners", "keys", "known", "lacked", "latest", "manners",
+        "met", "modifiers", "openers", "pronouns", "same", "set_starts", "starts", "types", "untyped", "values",
     )  # fmt: skip
 
     def __init__(self, values: Values, known: Mapping[str, Known] | None = None) -> None:
         self.values = values
         self.types, self.joiners, self.pronouns = values.types, values.joiners, values.pronouns
         self.starts, self.modifiers = values.choice_starts, values.modifiers.starts
+        self.set_starts = values.choice_starts | values.group_starts
+        """The words of letters alone at which a set of names may begin."""
+        self.denials, self.deniable = frozenset(values.adjectives.denials), values.deniable
+        """Words before an adjective that deny it, and the first words of those adjectives."""
+        self.before = values.adjective_starts | values.names_tree("color").keys()
         self.manners = values.names_tree(MANNER) if MANNER in values.types else {}
         self.latest: dict[str, str] = {}
+        self.same: dict[int, int] = {}
+        """Where what is read is the latest of its type once more, with the words that it ends at."""
         self.lacked = False
         self.met: set[str] = set()
         self.keys: Mapping[str, str] = {}
@@ -72,14 +79,21 @@ class ReadingContext:
 
     def read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """The port text of a value of the type and where it ends, or None if there is none."""
+        if at in self.same and kind in self.latest:
+            return self.latest[kind], self.same[at]
         if self.known != {}:
             known = self._known(kind, text, at)
             if known is not None:
                 return known
         found = self.values.read(kind, text, at)
         if found is None and text.words[at] in self.pronouns and self.types[kind].kind == "names":
-            return self._referred(kind, text.words[at], at)
+            found = self._referred(kind, text.words[at], at)
         chosen = self._chosen(kind, text, at) if text.words[at] in self.starts else None
+        if found is None and kind in WORLD:
+            named = self._named_after(kind, text, at) if text.words[at] in self.before else None
+            if named is None and not self.values.ones.isdisjoint(text.distinct):
+                named = self.values.antecedents.named(kind, text, at)
+            return named if named is not None and (chosen is None or named[1] > chosen[1]) else chosen
         return chosen if found is None or (chosen is not None and chosen[1] > found[1]) else found
 
     def ways(self, kind: str, text: Words, at: int) -> Iterator[tuple[str, int]]:
@@ -97,37 +111,29 @@ class ReadingContext:
         for meant, end in self.values.groups(text, at, kind) if kind in WORLD else ():
             if meant.type == kind:
                 choice = Choice(ALL, kind, self.keys.get(kind, kind), meant.parts)
-                yield "" if self.values.members(choice) == () else choice.text, meant, end
+                yield "" if self.values.likenesses.members(choice) == () else choice.text, meant, end
 
     def wider(self, kind: str, text: Words, at: int, value: tuple[str, int] | None) -> Iterator[tuple[str, int]]:
-        """What a value is with what describes it (`the cup` as `the cup on the table`), the shortest first.
-
-        Without a value: a name with adjectives before it.
-        """
-        if kind not in WORLD or (value is not None and text.words[value[1]] not in self.modifiers):
+        """What a value is with what describes it (`the cup` as `the cup on the table`), the shortest first."""
+        if value is None or kind not in WORLD or text.words[value[1]] not in self.modifiers:
             return  # as nearly always
-        modifiers, names = self.values.modifiers, self.values.names_tree
-        how = "nearest"
-        parts: Parts = ()
-        if value is None:
-            adjectives = modifiers.before(text, at, names)
-            named = find(names(kind), text.words, adjectives[1]) if adjectives is not None else None
-            if adjectives is None or named is None:
-                return
-            parts, end = (*adjectives[0], (NAME, named[0])), named[1]
-            yield self._described(kind, how, parts), end
-        else:
-            written, end = value
-            choice = choice_of(written)
-            if choice is not None:
-                how, parts = choice.how, choice.parts
-            elif written[:1] in ("", "{", "("):
-                return
-            else:
-                parts = ((NAME, written),)
-        if text.words[end] in modifiers.starts:
-            for more, last in modifiers.behind(kind, text, end, names):
+        written, end = value
+        choice = choice_of(written)
+        if choice is None and written[:1] in ("", "{", "("):
+            return
+        how, parts = (choice.how, choice.parts) if choice is not None else ("nearest", ((NAME, written),))
+        for more, last in self.values.modifiers.behind(kind, text, end, self.values.names_tree):
+            if self.values.likenesses.may_say(kind, parts, more):
                 yield self._described(kind, how, (*parts, *more)), last
+
+    def _named_after(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
+        """A name with what may stand before it: `the red ball 2`, `my phone`, `any door`."""
+        names, best = self.values.names_tree, None
+        for parts, start in self.values.modifiers.before(text, at, names):
+            named = find(names(kind), text.words, start)
+            if named is not None and self.values.likenesses.may_say(kind, (), parts):
+                best = self._described(kind, "nearest", (*parts, (NAME, named[0]))) if parts else named[0], named[1]
+        return best
 
     def _described(self, kind: str, how: str, parts: Parts) -> str:
         return Choice(how, kind, self.keys.get(kind, kind), tuple(sorted(parts))).text

@@ -20,8 +20,10 @@ COUNT = "count"
 Parts = tuple[tuple[str, str], ...]
 """What something is like, sorted: ("color", "red")."""
 _PIECE = r"(?P<mark>\{\{|\}\})|\{(?P<name>[^{}]+)\}|(?P<text>[^{}]+|[{}])"  # compiled when a text needs it
-PARTS = ("clothing", "color", "gesture", "kind", "use")
+PARTS = ("clothing", "color", "gesture", "kind", "owner", "size", "state", "use")
 """What a name can be described by."""
+ADJECTIVES = ("size", "state", "color")
+"""The parts that adjectives say, in the order in which they are said."""
 _EVERYTHING = ("object", "person", "place")
 RELATIONS: dict[str, tuple[str, ...]] = {
     "on": ("object",), "inside": ("object", "person", "place"), "at": ("object", "person"), "off": ("object",),
@@ -30,7 +32,7 @@ RELATIONS: dict[str, tuple[str, ...]] = {
     "part_of": ("object", "place"),
 }  # fmt: skip
 """How a thing may stand to another one that describes it, each with the types of things of which that can be said."""
-DENIED = {"not_color": "color", "not_kind": "kind"}
+DENIED = {"not_color": "color", "not_kind": "kind", "not_size": "size", "not_state": "state"}
 """What a thing is said not to be, each with the type of the value; several values stand between semicolons."""
 _NO_PARTS = ("type", "how", "output")  # the other ports of a choice
 

@@ -19,6 +19,7 @@ class RoleWords(Record):
     particles: frozenset[str]
     fillers: frozenset[str]
     speaker: frozenset[str]
+    directions: frozenset[str]
 
 
 def role_words(language: Mapping[str, Any]) -> RoleWords:
@@ -33,4 +34,5 @@ def role_words(language: Mapping[str, Any]) -> RoleWords:
         frozenset(language["particles"]),
         frozenset(language["fillers"]),
         frozenset(language["speaker"]),
+        frozenset(language["directions"]),
     )

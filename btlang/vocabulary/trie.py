@@ -101,18 +101,19 @@ def longest(
                 verbs.append((node, i))
             if SLOTS in node:
                 plain = word.isalpha() or word in _MARKS
+                denies = word in context.denials and words[i + 1] not in context.deniable
                 edges = node[SLOTS]
                 if word == "{" and context.is_untyped(text, i):
                     others = (edge for edge in reversed(edges) if edge[1] != TEXT)
                     edges = [*(edge for edge in edges if edge[1] == TEXT), *others]
                 for name, kind, child in edges:
-                    if plain and kind in openers and word not in openers[kind]:
+                    if plain and kind in openers and (denies or word not in openers[kind]):
                         continue  # as nearly always, without reading
                     value = context.read(kind, text, i)
                     wider = context.wider(kind, text, i, value)
                     paths += [(child, end, (*found, SlotValue(name, kind, said, i, end))) for said, end in wider]
                     if value is None:
-                        if kind in WORLD or word in context.starts:
+                        if not plain or word in context.set_starts:
                             sets = _sets(root, text, i, context, name, kind)
                             paths += [(child, every.last, (*found, every)) for every in reversed(sets)]
                         continue
@@ -205,7 +206,7 @@ def all_names(
         one = SlotValue(name, kind, value[0], last, value[1])
         listed = _listed(root, text, one, context, None, is_subject=False) or one
         left_out, at = tuple(chain(*map(context.values.meant_by, (listed.text, *listed.more)))), listed.last
-    names = [one for one in context.values.described(meant) if one not in left_out]
+    names = [one for one in context.values.likenesses.described(meant) if one not in left_out]
     return SlotValue(name, kind, names[0] if names else "", first, at, tuple(names[1:]), "and" if names[1:] else "")
 
 

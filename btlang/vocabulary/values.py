@@ -11,8 +11,11 @@ from marshal import dumps, loads  # a copy of a trie, at a tenth of the time tha
 
 from btlang.text.source import Source
 from btlang.text.words import Orthography, Words, split
+from btlang.vocabulary.adjectives import OF, OWNER, UNSLOTTED
+from btlang.vocabulary.antecedents import Antecedents
 from btlang.vocabulary.descriptions import NAME, Modifiers
 from btlang.vocabulary.entry import MANNER
+from btlang.vocabulary.likenesses import Likenesses
 from btlang.vocabulary.measures import Measures, too_small
 from btlang.vocabulary.nouns import Description, Features, Noun, noun_phrases
 from btlang.vocabulary.references import ALL, COUNT, DENIED, RELATIONS, Choice, Parts, choice_of
@@ -46,44 +49,55 @@ class Values(Measures):
         for kind in types.values():
             if kind.kind == "names":
                 self._names[kind.name] = {}
-        self.phrases = noun_phrases(self._names, language, nouns)
         self.modifiers = Modifiers(language)
+        self.adjectives = self.modifiers.adjectives
+        self.phrases = noun_phrases(self._names, language, nouns, self.adjectives)
         self.role_words = role_words(language)
         introducing = {phrase[0] for phrases in self.role_words.introducing.values() for phrase in phrases}
         going_on = introducing | self.role_words.particles | self.role_words.fillers | self.modifiers.starts
         firsts = {phrase.split()[0] for phrases in language["roles"].values() for phrase in phrases}
         self.ends = frozenset((",", ";", ":", ")", "\n", *(firsts - going_on)))
         """Words at which no phrase goes on beyond its own pattern."""
-        self._features: Features = {}
+        self.ones = frozenset(language["ones"])
+        """Words in the place of a noun that was said before: `the blue one`."""
+        self.likenesses = Likenesses({}, self.listed)
+        self.antecedents = Antecedents(self.ones, self.names_tree, self.likenesses)
         self._spoken: dict[tuple[str, str], str] = {}
         self._exceptions = tree_of((phrase, True) for phrase in language["roles"].get("except", ()))
         self._openers: dict[str, frozenset[str]] | None = None
         self._choice_starts: frozenset[str] | None = None
+        self._adjective_starts: frozenset[str] | None = None
         self._group_starts: frozenset[str] | None = None
-        self._kinds: dict[str, frozenset[str]] | None = None
         self._both = frozenset(language["roles"].get("both", ()))
         self._joining = frozenset((*language["roles"].get("and", ()), *language["roles"].get("or", ())))
 
     def add_name(self, kind: str, words: str, name: str) -> None:
         """Lets the words stand for a name of a type."""
         insert(self._names[kind], self._as_read(words), name)
+        if OF.get(kind) in self._names:
+            for denied in self.adjectives.denied(words):
+                insert(self._names[OF[kind]], self._as_read(denied), name)
         self._listed.setdefault(kind, {})[name] = None
         self._spoken.setdefault((kind, name), words)
-        self._openers = self._choice_starts = self._group_starts = None
+        self._openers = self._choice_starts = self._group_starts = self._adjective_starts = None
 
     def with_names(self, names: Mapping[str, Iterable[tuple[str, str]]], features: Features | None = None) -> Values:
         """The same with further names of types, each with its words, and what those of a world are like."""
         made = Values.__new__(Values)  # what `copy` does, which takes long to import
         made.__dict__.update(self.__dict__)
         made._listed = {**self._listed, **{kind: dict(self._listed.get(kind, ())) for kind in names}}
-        made._names = {**self._names, **{kind: loads(dumps(self._names[kind])) for kind in names}}
-        made._features = self._features if features is None else features
-        made._kinds = None
+        changed = {*names, *(OF[kind] for kind in names if kind in OF)} & self._names.keys()
+        made._names = {**self._names, **{kind: loads(dumps(self._names[kind])) for kind in changed}}
+        made.likenesses = Likenesses(self.likenesses.features if features is None else features, made.listed)
+        made.antecedents = Antecedents(self.ones, made.names_tree, made.likenesses)
         made._spoken = dict(self._spoken)
         for kind, pairs in names.items():
             for words, name in pairs:
                 if not (self.types[kind].names and self._has(kind, words)):
                     made.add_name(kind, words, name)
+        if OWNER in names:
+            people, owners = (dict(names.get(kind, ())) for kind in ("person", OWNER))
+            made._names[OWNER] = self.adjectives.owners(people, owners)
         return made
 
     def _has(self, kind: str, words: str) -> bool:
@@ -121,8 +135,8 @@ class Values(Measures):
         return self._openers
 
     def names_tree(self, kind: str) -> WordTree:
-        """The words of the names of a type."""
-        return self._names[kind]
+        """The words of the names of a type, none where the language has no such type."""
+        return self._names.get(kind, {})
 
     def word_trees(self) -> list[WordTree]:
         """The words of numbers and units."""
@@ -152,50 +166,59 @@ class Values(Measures):
 
     def noun(self, text: Words, at: int) -> tuple[Description, int] | None:
         """All names that a noun such as `places` or `red cup` is for, and where it ends."""
-        return self.phrases.noun(text, at, self.names_tree, self._fitting(""))
+        return self.phrases.noun(text, at, self.names_tree, self._fits(""), self.adjective_starts)
 
     @property
     def choice_starts(self) -> frozenset[str]:
         """The words at which a noun phrase may begin."""
         if self._choice_starts is None:
-            self._choice_starts = self.phrases.starts(self.names_tree)
+            self._choice_starts = self.phrases.starts(self.names_tree) | self.adjective_starts
         return self._choice_starts
+
+    @property
+    def deniable(self) -> frozenset[str]:
+        """The words with which an adjective begins that can be denied before a head: `non-red`."""
+        return frozenset(word for part in OF if part != "kind" for word in self.names_tree(part))
+
+    @property
+    def adjective_starts(self) -> frozenset[str]:
+        """The words at which what stands before a head may begin: `my`, `big`."""
+        if self._adjective_starts is None:
+            self._adjective_starts = self.adjectives.starts(self.names_tree, self.likenesses.is_ever_told)
+        return self._adjective_starts
 
     def choice(self, text: Words, at: int, kind: str = "") -> tuple[Description, int] | None:
         """Of words such as `every place` and `the red cup` which names they are for, and where they end."""
         if text.words[at] not in self.choice_starts:
             return None
-        return self.phrases.longest(text, at, self.names_tree, self._fitting(kind))
+        found = self.phrases.longest(text, at, self.names_tree, self._fits(kind), self.adjective_starts)
+        return self._resolved(found, text, at)
 
-    def _fitting(self, wanted: str) -> Callable[[str, Parts], bool]:
-        """Whether a description is of the wanted type, "" for any, and of no kind that only another type has."""
+    def _resolved(self, found: tuple[Description, int] | None, text: Words, at: int) -> tuple[Description, int] | None:
+        """What is described, None where a bare noun such as `object` describes nothing."""
+        if found is None:
+            return None
+        meant, end = found
+        if end == at + 1 and not meant.parts and self.phrases.is_type(meant.type, text, at):
+            return found if at in text.articles else None  # `an object`
+        return self.antecedents.resolved(found, text, at)
 
-        def fits(kind: str, parts: Parts) -> bool:
-            if wanted not in ("", kind):
-                return False
-            of = [value for name, value in parts if name == "kind"]
-            return not of or kind in self._types_of.get(of[0], ("object",))
+    def _fits(self, wanted: str) -> Callable[[str, Parts], bool]:
+        """Whether a description is of the wanted type, "" for any, and can be judged."""
+        return lambda kind, parts: wanted in ("", kind) and self.likenesses.fits(kind, parts)
 
-        return fits
-
-    @property
-    def _types_of(self) -> Mapping[str, frozenset[str]]:
-        """The types of what there is of each kind, as far as the world is known."""
-        if self._kinds is None:
-            found: dict[str, set[str]] = {}
-            for kind, named in self._features.items():
-                for _, parts in named:
-                    for name, value in parts:
-                        if name == "kind":
-                            found.setdefault(value, set()).add(kind)
-            self._kinds = {value: frozenset(types) for value, types in found.items()}
-        return self._kinds
+    def begins_noun(self, kind: str, text: Words, at: int) -> bool:
+        """Whether a name or a noun of a type begins at a word."""
+        if find(self.names_tree(kind), text.words, at) is not None or self.phrases.is_type(kind, text, at):
+            return True
+        of = find(self.names_tree("kinds"), text.words, at) or find(self.names_tree("kind"), text.words, at)
+        return of is not None and kind in self.likenesses.types_of(of[0])
 
     def choices(self, kind: str) -> list[list[str]]:
         """The words that stand for all names of a type, and for those that are chosen, in the first way to say them."""
         if kind == MANNER or not self._listed.get(kind):
             return []
-        likes = [parts for _, parts in self._features.get(kind, ())]
+        likes = [parts for _, parts in self.likenesses.features.get(kind, ())]
         return [words.split() for words in self.phrases.said(kind, likes, self._spoken)]
 
     def spoken(self, kind: str, name: str) -> str:
@@ -210,12 +233,14 @@ class Values(Measures):
         """The words that stand for a choice: `nearest person`."""
         behind = tuple(part for part in choice.parts if part[0] in RELATIONS or part[0] in DENIED)
         parts = dict(part for part in choice.parts if part not in behind)
-        count, name, color = parts.pop(COUNT, ""), parts.pop(NAME, ""), ""
+        count, name = parts.pop(COUNT, ""), parts.pop(NAME, "")
         if name:
-            color = parts.pop("color", "")
-            head = " ".join(filter(None, (color and self.spoken("color", color), self.spoken(choice.type, name))))
+            before = self.modifiers.said_before(tuple(parts.items()), self.spoken)
+            head = " ".join(filter(None, (before, self.spoken(choice.type, name))))
         else:
-            head = self.phrases.words(Description(choice.type, choice.how, tuple(parts.items())), self._spoken)
+            adjectives = tuple((part, parts.pop(part)) for part in UNSLOTTED if part in parts)
+            before = self.modifiers.said_before(adjectives, self.spoken)
+            head = self.phrases.words(Description(choice.type, choice.how, tuple(parts.items())), self._spoken, before)
         if not head:
             return choice.text
         if count:
@@ -225,19 +250,19 @@ class Values(Measures):
     def meant_by(self, text: str) -> tuple[str, ...]:
         """The name that a port text is, or all that are described as its choice is."""
         choice = choice_of(text)
-        return self.described(Description(choice.type, ALL, choice.parts)) if choice and choice.parts else (text,)
-
-    def described(self, meant: Description) -> tuple[str, ...]:
-        """The names of a type that have the parts of a description, in the order of the world."""
-        if not meant.parts:
-            return self.listed(meant.type)
-        return tuple(name for name, parts in self._features.get(meant.type, ()) if set(meant.parts) <= set(parts))
+        return (
+            self.likenesses.described(Description(choice.type, ALL, choice.parts))
+            if choice and choice.parts
+            else (text,)
+        )
 
     @property
     def group_starts(self) -> frozenset[str]:
         """The words at which a set of several may begin: numbers, `both`, plurals."""
         if self._group_starts is None:
-            self._group_starts = self.phrases.plural_starts(self.names_tree) | self._numbers.keys() | self._both
+            self._group_starts = (
+                self.phrases.plural_starts(self.names_tree) | self.adjective_starts | self._numbers.keys() | self._both
+            )
         return self._group_starts
 
     def groups(self, text: Words, at: int, kind: str = "", is_bare: bool = False) -> Iterator[tuple[Description, int]]:
@@ -254,7 +279,8 @@ class Values(Measures):
                 count, start = str(int(number[0])), number[1]
             elif not is_bare and text.words[at] not in self.group_starts:
                 return  # as nearly always
-            found = self.phrases.plural(text, start, self.names_tree, self._fitting(kind))
+            found = self.phrases.plural(text, start, self.names_tree, self._fits(kind), self.adjective_starts)
+            found = self._resolved(found, text, start)
             if found is None or not (count or is_bare or self._is_plural(text, at, found[1], kind)):
                 return
         meant, end = found
@@ -262,7 +288,9 @@ class Values(Measures):
         ways = [(parts, end)]
         if text.words[end] in self.modifiers.starts:
             ways += [
-                ((*parts, *more), last) for more, last in self.modifiers.behind(meant.type, text, end, self.names_tree)
+                ((*parts, *more), last)
+                for more, last in self.modifiers.behind(meant.type, text, end, self.names_tree)
+                if self.likenesses.may_say(meant.type, parts, more)
             ]
         for some, last in ways:
             yield meant.replace(how=ALL, parts=tuple(sorted(some))), last
@@ -293,34 +321,22 @@ class Values(Measures):
 
     def _left_out_one(self, meant: Description, text: Words, at: int) -> tuple[str, str, int] | None:
         kind = meant.type
-        found = self.phrases.plural(text, at, self.names_tree, self._fitting(kind)) or self.choice(text, at, kind)
+        found = self.phrases.plural(text, at, self.names_tree, self._fits(kind), self.adjective_starts) or self.choice(
+            text, at, kind
+        )
+        found = self._resolved(found, text, at)
         parts = dict(found[0].parts) if found is not None else {}
         named = find(self._names[kind], text.words, at)
         if named is not None and (found is None or named[1] >= found[1]):
             return "not_kind", named[0], named[1]
-        if found is None or not parts.keys() <= {"color", "kind"}:
+        if found is None:
             return None
-        if "color" in parts and parts.get("kind") in (None, dict(meant.parts).get("kind")):
-            return "not_color", parts["color"], found[1]
-        return ("not_kind", parts["kind"], found[1]) if parts.keys() == {"kind"} else None
-
-    def members(self, choice: Choice) -> tuple[str, ...] | None:
-        """The names of a set where what is known of the world decides; None where only the robot can tell."""
-        parts = dict(choice.parts)
-        denied = {part: parts.pop(part).split("; ") for part in DENIED if part in parts}
-        if COUNT in parts or parts.keys() & RELATIONS.keys() or choice.type not in self._features:
+        if parts.keys() == {"kind"}:
+            return "not_kind", parts["kind"], found[1]
+        if parts.pop("kind", None) not in (None, dict(meant.parts).get("kind")):
             return None
-        names = self.described(Description(choice.type, ALL, tuple(parts.items())))
-        likes = dict(self._features.get(choice.type, ()))
-        if not names or (denied.get("not_color") and not all("color" in dict(likes.get(name, ())) for name in names)):
-            return None
-
-        def is_denied(name: str) -> bool:
-            like = dict(likes.get(name, ()))
-            of_kind = name in denied.get("not_kind", ()) or like.get("kind") in denied.get("not_kind", ())
-            return of_kind or like.get("color") in denied.get("not_color", ())
-
-        return tuple(name for name in names if not is_denied(name))
+        ((part, value), *others) = parts.items()
+        return (OF[part], value, found[1]) if part in OF and not others else None
 
     def is_listed(self, meant: Description) -> bool:
         """Whether what is known of the world decides which names are meant."""

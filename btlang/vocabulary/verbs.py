@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from btlang.record import Record
 from btlang.text.words import Words
-from btlang.vocabulary.entry import MANNER, PATH, RECIPIENT, THEME, UNMARKED, Entry, Meaning, Role
+from btlang.vocabulary.entry import GOAL, MANNER, PATH, RECIPIENT, THEME, UNMARKED, Entry, Meaning, Role
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.role_words import RoleWords
 
@@ -129,7 +129,8 @@ class _Filling:
         for role in self._frame.roles:
             if role.name in filled:
                 continue
-            if role.is_direct and not (role.name == RECIPIENT and THEME in filled):
+            is_goal = role.name == GOAL and words[at] in self._words.directions
+            if is_goal or (role.is_direct and not (role.name == RECIPIENT and THEME in filled)):
                 yield role, at
             for phrase in role.words:
                 if words[at] == phrase[0] and tuple(words[at : at + len(phrase)]) == phrase:

@@ -17,6 +17,14 @@ def _domains() -> dict[str, Any]:
     return domains
 
 
+def _like(things: dict[str, Any], name: str) -> str:
+    """The lines of a thing that say what it is like."""
+    thing = things.get(name, {})
+    said = {key: f'"{thing[key]}"' for key in ("color", "size", "owner") if key in thing}
+    said |= {"state": f'["{thing["state"]}"]'} if "state" in thing else {}
+    return "".join(f"\n{key} = {text}" for key, text in said.items())
+
+
 @cache
 def world_of(domain: str) -> str:
     """The text of a world file with all nouns of a domain."""
@@ -31,12 +39,12 @@ def world_of(domain: str) -> str:
     lines = ["start = { x = 1, y = 1 }"]
     for name in places:
         kind = f'\nkind = "{kinds[name]}"' if name in kinds else ""
-        lines.append(f'[[places]]\nname = "{name}"\nx = {at[name][0]}\ny = {at[name][1]}{kind}')
+        lines.append(f'[[places]]\nname = "{name}"\nx = {at[name][0]}\ny = {at[name][1]}{kind}{_like(things, name)}')
     for number, name in enumerate(objects):
         thing = things.get(name, {})
         x, y = at.get(thing.get("in", thing.get("on", "")), (2 + number % 30, 40 + number // 30))
-        kind, color = thing.get("kind", kinds.get(name, "")), thing.get("color", "")
-        more = (f'\nkind = "{kind}"' if kind else "") + (f'\ncolor = "{color}"' if color else "")
+        kind = thing.get("kind", kinds.get(name, ""))
+        more = (f'\nkind = "{kind}"' if kind else "") + _like(things, name)
         switch = '\nswitch = "off"' if name in nouns.get("switches", ()) else ""
         spot = f"x = {x + 0.6 + 0.01 * (number % 20):.2f}\ny = {y + 0.6:.2f}"
         lines.append(f'[[objects]]\nname = "{name}"\n{spot}{more}{switch}')

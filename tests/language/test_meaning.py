@@ -49,8 +49,14 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
     ("sentence", "code"),
     [
         ("go to the lab or avoid the hall", "BT155"),
-        ("wave through the door", "BT010"),
+        ("wave through the door", "BT179"),
         ("pick up the shiny cup", "BT013"),
+        ("pick up the big and red cup", "BT013"),
+        ("go to the dirty room", "BT178"),
+        ("pick up one", "BT011"),
+        ("pick up and bring the cup and the book to Alice", "BT012"),
+        ("pick up and look at it", "BT012"),
+        ("pick up the big one", "BT013"),
         ("move forward for 10 s or 2 m", "BT019"),
         ("wave when you arrive", "BT156"),
         ("go to the lab. Once you get to the hall, wave", "BT156"),
@@ -74,6 +80,49 @@ def test_what_only_permits_is_noted() -> None:
     assert [warning.code for warning in mission.warnings] == ["BT176"]
 
 
+@pytest.mark.parametrize(
+    ("sentence", "owners"),
+    [
+        ("bring me my plate", []),
+        ("look at her plate", ["her"]),
+        ("go to Alice and Bob, then take her plate", ["her"]),
+        ("go to my room, then to Bob's room", []),
+        ("take my book to his room", ["his"]),
+    ],
+)
+def test_an_owner_whom_nobody_knows_is_noted(sentence: str, owners: list[str]) -> None:
+    mission = btlang.parse_tree(sentence, world=WORLD)
+    assert [warning.span.text for warning in mission.warnings if warning.code == "BT177"] == owners
+
+
+def test_nobody_owns_anything_where_the_world_does_not_say_so() -> None:
+    mission = btlang.parse_tree("bring me my cup, then go to Alice's cup")
+    assert [warning.span.text for warning in mission.warnings] == ["my", "Alice's"]
+    assert "owner" not in plain(mission.tree)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "readings"),
+    [
+        (
+            "put the book on the table in the box",
+            ["put the book that is on the table in the box", "put the book on the table that is in the box"],
+        ),
+        ("put the book that is on the table in the box", []),
+        ("put the book on the table that is in the box", []),
+        ("put the book on the table near the sink", []),
+        ("take the book on the table to the box", []),
+        ("bring the book on the table to Alice", []),
+    ],
+)
+def test_two_goals_in_a_row_show_both_readings(sentence: str, readings: list[str]) -> None:
+    mission = btlang.parse_tree(sentence, world=WORLD)
+    twice = [warning for warning in mission.warnings if warning.code == "BT050"]
+    assert [text for warning in twice for _, text in warning.readings] == readings
+    trees = [plain(btlang.parse_tree(text, world=WORLD).tree) for text in readings]
+    assert trees == [] or (trees[0] == plain(mission.tree) != trees[1])
+
+
 def run(sentence: str) -> btlang.Outcome:
     """The outcome of a mission on the simulated robot."""
     return btlang.parse_tree(sentence, world=WORLD).run(speed="max")
@@ -94,6 +143,10 @@ def test_a_closed_zone_is_driven_round() -> None:
         ("pick up the red cup in the hall", "I know no red cup in the hall"),
         ("pick up three cups", "3 are needed"),
         ("look at every book near Alice", "book near Alice"),
+        ("bring Alice my book", "a book that belongs to you"),
+        ("pick up Bob's plate", "plate that belongs to Bob"),
+        ("pick up the dirty blue plate", "dirty blue plate"),
+        ("look at the plate on the small plate", "plate on the small plate"),
     ],
 )
 def test_what_cannot_be_done_says_why(sentence: str, reason: str) -> None:

@@ -68,15 +68,21 @@ def _names(places: tuple[Place, ...]) -> set[str]:
 
 
 def _place(draw: st.DrawFn, name: str, at: tuple[float, float]) -> Place:
-    return Place(name, *at, draw(st.none() | _numbers))
+    optional = st.just("") | _texts
+    states = tuple(draw(st.lists(_texts, max_size=2)))
+    return Place(
+        name, *at, draw(st.none() | _numbers), draw(optional), draw(optional), draw(optional), states, draw(optional)
+    )
 
 
 def _object(draw: st.DrawFn, name: str) -> WorldObject:
     switch = draw(st.sampled_from(["", "on", "off"]))
+    optional = st.just("") | _texts
+    radius, sized = draw(st.floats(0.01, 1.0)), draw(optional)
     return WorldObject(
-        name, *draw(_points), draw(st.floats(0.01, 1.0)), draw(st.booleans()), draw(st.just("") | _texts),
-        draw(st.just("") | _texts), draw(st.floats(0.0, 3.0)), tuple(draw(st.lists(_texts, max_size=2))), switch,
-        draw(st.booleans()),
+        name, *draw(_points), radius, draw(st.booleans()), draw(optional), draw(optional),
+        2 * radius if sized else draw(st.floats(0.0, 3.0)), tuple(draw(st.lists(_texts, max_size=2))), switch,
+        draw(st.booleans()), sized, tuple(draw(st.lists(_texts, max_size=2))), draw(optional),
     )  # fmt: skip
 
 

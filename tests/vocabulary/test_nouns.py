@@ -213,7 +213,7 @@ def test_a_pack_declares_nouns_for_all_commands(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("noun", "message"),
     [
-        ('how = "dearest"\nphrase = "guest"', 'how of .* is "nearest" or "seen"'),
+        ('how = "dearest"\nphrase = "guest"', 'how of .* is "nearest", "seen" or "all"'),
         ('how = "seen"\nphrase = "guest from {place}"', "takes the slots clothing, color"),
         ('how = "seen"\nphrase = "guest ["', "'\\['"),
     ],

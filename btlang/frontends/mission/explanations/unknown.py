@@ -10,6 +10,7 @@ from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.explanations.fragments import explain_fragment
+from btlang.frontends.mission.explanations.roles import explain_role
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
 from btlang.frontends.mission.explanations.times import explain_time
 from btlang.frontends.mission.symbols.definitions import Definitions
@@ -25,8 +26,9 @@ from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.node_words import BEHIND_ID, near_commands, role_end
 from btlang.vocabulary.pattern import forms, spelled
 from btlang.vocabulary.reading_context import Known, ReadingContext
+from btlang.vocabulary.references import DENIED
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.value_type import PLACE, ValueType, with_unit
+from btlang.vocabulary.value_type import OBJECT, PLACE, WORLD, ValueType, with_unit
 from btlang.vocabulary.word_tree import NO_WORDS, SLOTS
 
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
@@ -52,6 +54,9 @@ def explain_unknown(
         last = next((i for i in range(unnamed, end) if text.words[i] == "}"), unnamed)
         name = " ".join(text.words[unnamed + 1 : last])
         return unknown_value(text.span(unnamed, last + 1), name, context.known or ())
+    untold = _untold(text, at, end, vocabulary)
+    if untold is not None:
+        return untold
     roots = (vocabulary.trie, definitions.trie)
     start, misfits = at, list(_misfits(text, at, roots, context))
     if before and before[-1].kind not in ("comma", "newline", "indent", "dedent", "open", "semi"):
@@ -59,6 +64,10 @@ def explain_unknown(
         longer = [found for found in _misfits(text, phrase, roots, context) if found.at >= at]
         if longer and (not misfits or longer[0].at >= misfits[0].at):
             start, misfits = phrase, longer
+    names_fit = any(context.types[misfit.kind].kind == "names" for misfit in misfits)
+    untaken = explain_role(text, at, end, before, vocabulary, context) if not names_fit else None
+    if untaken is not None:
+        return untaken
     if misfits:
         return _misfit(text, start, end, misfits, vocabulary, context, definitions)
     time = explain_time(text, at, False, vocabulary)
@@ -73,6 +82,24 @@ def explain_unknown(
     goes_on = bool(before) and before[-1].kind == "command" and _ends_in_a_bare_text(before[-1])  # `say still here`
     part = None if goes_on else explain_fragment(text, at, end, _asks(before), vocabulary, context)
     return part or _unknown_phrase(text, at, end, vocabulary, definitions, before)
+
+
+def _untold(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic | None:
+    """BT178 for a size, a state or a color of which nothing is known, before a noun or behind `that is`."""
+    values = vocabulary.values
+    is_told = values.likenesses.is_told
+    for i in range(at, end):
+        is_clause = values.modifiers.ends_clause(text, i)
+        for parts, last in values.adjectives.chains(text, i, values.names_tree):
+            nouns = [kind for kind in WORLD if values.begins_noun(kind, text, last)]
+            before_noun = nouns and (i > at or i in text.articles) and last not in text.articles
+            kinds = [kind for kind in nouns or (OBJECT, PLACE) if not all(is_told(kind, part) for part, _ in parts)]
+            if kinds and len(kinds) == len(nouns or (OBJECT, PLACE)) and (before_noun or is_clause):
+                said, value = next((part, value) for part, value in parts if not is_told(kinds[0], part))
+                part, span = DENIED.get(said, said), text.span(i, last)
+                line = f'{part} = ["{value}"]' if part == "state" else f'{part} = "{value}"'
+                return diagnostic("BT178", span, words=span.text, part=part, type=kinds[0], line=line)
+    return None
 
 
 def misread_head(text: Words, at: int, role: str, vocabulary: Lexicon) -> Diagnostic:

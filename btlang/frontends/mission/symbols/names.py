@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     Load: TypeAlias = Callable[[str, Span], Included | None]
 else:
     Load = None
+_LONGEST_NAME = 4  # words
 
 
 class Names:
@@ -120,11 +121,17 @@ class Names:
             last = choice[1] if choice is not None else max(last, ends.get(at, 0))
             if choice is not None and choice[0].how in CHOICES:
                 kind, named = choice[0].type, find(values.names_tree(choice[0].type), text.words, at)
-                if named is None or named[1] < last:
+                if (named is None or named[1] < last) and not self._is_in_name(kind, text, at):
                     match = self.phrases.at(at)
                     if match is None or (match.values and match.values[0].first == at):
                         found[kind] = None
         return list(found)
+
+    def _is_in_name(self, kind: str, text: Words, at: int) -> bool:
+        """Whether a word is a further one of a name: the second one of `living room`."""
+        names = self.vocabulary.values.names_tree(kind)
+        before = (find(names, text.words, first) for first in range(max(at - _LONGEST_NAME, 0), at))
+        return any(named is not None and named[1] > at for named in before)
 
     def _name_choices(self, kinds: Iterable[str]) -> None:
         """A free key for each type: its name, or another one. What an included mission chooses gives way, too."""

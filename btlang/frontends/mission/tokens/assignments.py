@@ -104,7 +104,7 @@ def _each(
         meant, last = wide[-1]
         kind = meant.type
         some = Choice(ALL, kind, prefix.key, meant.parts)
-        values: tuple[str, ...] = context.values.members(some) or (some.text,)
+        values: tuple[str, ...] = context.values.likenesses.members(some) or (some.text,)
     elif chosen is not None and chosen[0].how == ALL:
         kind = chosen[0].type
         every = all_names(vocabulary.trie, chosen[0], text, prefix.value, chosen[1], inner)

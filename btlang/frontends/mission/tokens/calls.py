@@ -6,14 +6,16 @@ from collections.abc import Iterable
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.tokens.two_goals import two_goals
 from btlang.text.source import Span
 from btlang.text.words import Words
+from btlang.vocabulary.adjectives import OWNER
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import choice_of, keys_in, point_ports, renamed
-from btlang.vocabulary.value_type import PLACE
+from btlang.vocabulary.value_type import PLACE, WORLD
 from btlang.vocabulary.values import key_of
 
 NEGATED = frozenset(("negated", "negated_twice"))
@@ -38,11 +40,17 @@ class Calls:
 
     def __init__(self, text: Words, vocabulary: Lexicon, context: ReadingContext, problems: list[Diagnostic]) -> None:
         self._text, self._vocabulary, self._context, self._problems = text, vocabulary, context, problems
+        self._owners = not text.distinct.isdisjoint(vocabulary.values.names_tree(OWNER))
 
     def token(self, match: Match, at: int) -> Token:
         """The token of a phrase."""
         text, meaning = self._text, match.meaning
         values = match.values
+        for value in values if self._owners else ():
+            self._note_owners(value)
+        twice = two_goals(match, at, text, self._vocabulary) if len(values) > 1 else None
+        if twice is not None:
+            self._problems.append(twice)
         start, end = text.starts[at], text.ends[match.last - 1]
         if values and values[-1].first == match.last:  # the article was the value: `print a`
             end = text.articles[match.last][1]
@@ -61,6 +69,19 @@ class Calls:
             if choice is not None:
                 self._context.met.add(choice.key)
             self._context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
+
+    def _note_owners(self, value: SlotValue) -> None:
+        """BT177 for each owner of whom it isn't known what they own: `my cup`, but not the cup called "my cup"."""
+        known = self._vocabulary.values
+        named = choice_of(value.group or value.text)
+        names = [value.text, *value.more, *(text for _, text in (named.parts if named is not None else ()))]
+        said = {word for name in names for word in name.lower().split()}
+        if value.type not in WORLD:
+            return
+        for first, last in known.adjectives.nobody_known(self._text, value.first, value.last, known.names_tree):
+            if self._text.words[first] not in said:
+                span = self._text.span(first, last)
+                self._problems.append(diagnostic("BT177", span, words=span.text))
 
     def _called(self, entry: Entry, match: Match, at: int) -> Called | Listed:
         """The entry with its arguments, or with several of them where one slot holds a list."""

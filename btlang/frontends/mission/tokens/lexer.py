@@ -17,7 +17,7 @@ from btlang.frontends.mission.tokens.order_words import OrderWords
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
 from btlang.frontends.mission.tokens.remarks import Remarks
 from btlang.frontends.mission.tokens.requests import Requests
-from btlang.frontends.mission.tokens.silent_words import BEGINS, MARKS, begins, without_meaning
+from btlang.frontends.mission.tokens.silent_words import MARKS, begins, without_meaning
 from btlang.frontends.mission.tokens.unknown_words import UnknownWords
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
@@ -153,6 +153,7 @@ class Lexer:
         going_on, articles, meanings_of = text.going_on, text.articles, self._meanings_of
         remarks = self._remarks if self._remarks.is_possible else None
         asking = {*self.vocabulary.asking["asking_be"], *self.vocabulary.asking["asking_do"]}
+        sharing, joint = self._partial.sharing, self.vocabulary.word("and")
         origin: Origin | None = None
         while at < last:
             word = words[at]
@@ -177,7 +178,7 @@ class Lexer:
                     self._end_statement()
                 at += 1
                 continue
-            if at in found:
+            if at in found and at not in sharing:
                 match = found[at]
                 if names and match is not None and any(value.more for value in match.values):
                     match = longest(trie, text, at, context, names)  # a name may end the list
@@ -213,6 +214,11 @@ class Lexer:
                     continue
             if role in NOT_ALONE or word in verb_forms:
                 end = self._in_its_place(match, role, at)
+                if end:
+                    at = end
+                    continue
+            if match is None or (role == "command" and not match.values and words[match.last] == joint):
+                end = self._partial.add_sharing(at, match)
                 if end:
                     at = end
                     continue
@@ -309,7 +315,7 @@ class Lexer:
         text, tokens = self.text, self.tokens
         if match is not None and role in ORDER:
             return self._order.read(match, at)
-        if match is not None and role == "ordinal" and (not tokens or tokens[-1].kind in BEGINS):
+        if match is not None and role == "ordinal" and at not in text.articles and begins(tokens):
             return match.last + (text.words[match.last] == ",")
         if match is not None and role == "mind":
             return self._partial.add(match.last)

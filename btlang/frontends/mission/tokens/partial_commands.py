@@ -11,11 +11,12 @@ from collections.abc import Container, Iterator, Mapping, Sequence
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.text.words import END_OF_TEXT, Words
-from btlang.vocabulary.entry import MANNER, VIA
+from btlang.vocabulary.entry import MANNER, THEME, VIA
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
+from btlang.vocabulary.value_type import WORLD
 
 BEFORE_DOING = frozenset(("before", "after", "while", "until", "never", "followed_by"))
 """The kinds of tokens behind which a command may have the form of its verb: `after waving`."""
@@ -26,6 +27,7 @@ _DOING = frozenset(("command", "name", "wait", "wait_until", "wait_for", "wait_u
 _ENDS = frozenset(("newline", "semi", "indent", "dedent", "define"))
 _EITHER_END = (["for", "or"], ["up_to", "or"])  # `for 10 s or 2 m` says two ends of one command, not two commands
 _MOST_WORDS = 60
+_LONGEST_VERB = 4  # words
 
 
 class PartialCommands:
@@ -43,6 +45,9 @@ class PartialCommands:
         self._text, self._vocabulary, self._context, self._calls = text, vocabulary, context, calls
         self._tokens = tokens
         self._tries = vocabulary.trie, names
+        self._and = frozenset(vocabulary.roles["and"])
+        self.sharing: set[int] = set()
+        """The words at which commands begin that share their theme with the one before."""
         self._said: dict[int, list[int]] = {}  # the words of commands that leave some out, by where these begin
 
     def doing(self, at: int) -> Match | None:
@@ -115,6 +120,31 @@ class PartialCommands:
         enlist(self._tokens, token)
         return read[0].last
 
+    def add_sharing(self, at: int, match: Match | None) -> int:
+        """A command whose theme is said behind the next one, which means the same thing: `find and bring the cup`."""
+        text, verbs = self._text, range(at + 1, min(at + _LONGEST_VERB, len(self._text.words)))
+        if match is not None and (match.meaning.role != "command" or match.values):
+            return 0
+        last = match.last if match is not None else next((i for i in verbs if text.words[i] in self._and), 0)
+        if not last or text.words[last] not in self._and:
+            return 0
+        other = longest(self._tries[0], text, last + 1, self._context)
+        theme = _theme(other) if other is not None else None
+        if theme is None:
+            return 0
+        places = [*range(at, last), *range(theme.first, theme.last)]
+        found = _match(text, places, {}, self._tries[:1], self._context)
+        if found is None or found.last != len(places) or found.meaning.role != "command":
+            return 0
+        if [(value.first, value.type) for value in found.values] != [(last - at, theme.type)]:
+            return 0
+        token = self._token_of(_relocated(found, places), at)
+        token.end = text.ends[last - 1]
+        self._tokens.append(token)
+        self._context.same[theme.first] = theme.last
+        self.sharing.add(last + 1)
+        return last
+
     def _token_of(self, match: Match, at: int) -> Token:
         token = self._calls.token(match, at)
         self._calls.note(match)
@@ -171,6 +201,16 @@ def enlist(tokens: list[Token], command: Token) -> None:
     else:
         tokens.insert(first - 1, Token("open", before.start, before.start, role="list"))
     tokens += (command, Token("close", command.end, command.end, role="list"))
+
+
+def _theme(match: Match) -> SlotValue | None:
+    """What a command is about, None where that is a list, or isn't said."""
+    entry = match.meaning.entry
+    if entry is None or match.meaning.role != "command":
+        return None
+    slots = {role.slot for _, roles in entry.verbs for role in roles if role.name == THEME}
+    values = [value for value in match.values if value.type in WORLD and (value.name in slots or not entry.verbs)]
+    return values[0] if len(values) == 1 and not (values[0].more and not values[0].group) else None
 
 
 def words_of(text: Words, token: Token) -> range:
@@ -270,6 +310,7 @@ def _match(
 ) -> Match | None:
     """The longest phrase of words of a text side by side, some of them replaced."""
     read = Words(text.source)
+    read.picked = text, places
     for number, place in enumerate(places):
         read.words.append(other.get(number, text.words[place]))
         if place in text.articles:
