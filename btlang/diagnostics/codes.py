@@ -147,6 +147,8 @@ _ALL = (
     Code("BT104", "'{phrase}' needs the ROS 2 interface {type}, which isn't installed here.", "{advice}"),
     Code("BT105", "{type} has no field '{field}', which the ros table of '{phrase}' uses.", "{advice}"),
     Code("BT106", "The ros table of '{phrase}' doesn't fit {type}: {reason}."),
+    Code("BT107", "'{words}' drives without seeing: the robot file has a scanner, but {reason}.",
+         "Have /scan published, or take the scanner out of the robot file.", "warning", "driving blind"),
     Code("BT110", "The ROS 2 interfaces of btlang aren't compiled: {reason}.", "Compile them once: python -m btlang.ros.interfaces --own"),
     Code("BT120", "This isn't valid XML: {reason}."),
     Code("BT121", "XML with {what} is refused.", "{advice}"),

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import sys
 from argparse import ArgumentParser, Namespace
 from contextlib import closing
 from importlib.util import find_spec
 
 from btlang.arguments import namespace, robot_on
+from btlang.diagnostics.render import render
+from btlang.passes.lint.allow import not_allowed, not_silenced
 from btlang.robots.options import add_simulate
 from btlang.robots.platforms import ROBOTS
 from btlang.robots.registry import connector, runs_in_real_time, runs_on
 from btlang.ros.available import require_interfaces, require_ros, unusable
 from btlang.ros.serving.names import FOLDER
-from btlang.text.output import show
+from btlang.text.output import has_colour, show
 from btlang.text.table import Table
 
 TYPE_CHECKING = False
@@ -136,6 +139,7 @@ def print_preflight(tree: Tree, vocabulary: Lexicon, world: World, robot: Any) -
         found = connection.survey(tree, vocabulary)
         lacks = connection.lacking_parts(tree, vocabulary)
         warnings = connection.warnings(found)
+        blind = not_allowed(connection.blind(found))
     rows = [
         (needed.sort, needed.name, needed.type, f"missing: {reason}" if reason else "found")
         for needed, (_, reason) in found.items()
@@ -145,6 +149,9 @@ def print_preflight(tree: Tree, vocabulary: Lexicon, world: World, robot: Any) -
         show(Table(tuple(rows), widths=(7, 20, 36), gap=1))
     for warning in warnings:
         show(f"warning: {warning}")
+    for problem in blind:
+        if not_silenced([problem], problem.span.source, vocabulary):
+            show(render(problem, has_colour(sys.stderr)), sys.stderr)
     missing = sum(bool(reason) for _, reason in found.values()) + len(lacks)
     show(
         f"Missing: {missing} of {len(found) + len(lacks)}."

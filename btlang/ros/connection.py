@@ -8,7 +8,7 @@ from typing import Any
 
 from rosgraph_msgs.msg import Clock as ClockMessage
 
-from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.body import Body
 from btlang.robots.needs import lacking
@@ -24,7 +24,7 @@ from btlang.ros.latest import NodeClock
 from btlang.ros.node import SpunNode
 from btlang.ros.pace import RosPace
 from btlang.ros.robot import RosRobot
-from btlang.ros.robot_interface import ALTERNATIVES, CLOCK, ONE_SOURCE, VELOCITY, Interface, needs
+from btlang.ros.robot_interface import ALTERNATIVES, CLOCK, ONE_SOURCE, VELOCITY, Interface, interfaces, needs
 from btlang.ros.serving.names import served
 from btlang.ros.waiting import wait_until
 from btlang.run.bus import Bus
@@ -162,6 +162,19 @@ class RosConnection:
             *(f"{nodes} publish {name}, so it contradicts itself" for name, nodes in twice),
         ]
 
+    def blind(self, found: Mapping[Interface, tuple[Node | None, str]]) -> list[Diagnostic]:
+        """The warning that the mission drives, and nothing comes from the scanner of the robot file (BT107).
+
+        `found` is what `survey` gave. Where the mission itself needs the scanner, that is missing already.
+        """
+        drives = full_name(self.node, "listener", VELOCITY)
+        node = next((node for need, (node, _) in found.items() if (need.kind, need.name) == ("listener", drives)), None)
+        if node is None or self.robot.body.sensor("scanner") is None:
+            return []
+        [scan] = interfaces("scanner", self.robot.body)
+        reason = self._lacks(scan) if self._named(scan) not in found else ""
+        return [diagnostic("BT107", _place(node), words=_words(node), reason=reason)] if reason else []
+
     def _spoken(self, wanted: Mapping[Interface, Node | None]) -> dict[Interface, Node | None]:
         """With the type of velocity that the robot listens to."""
         types = {VELOCITY: self.robot.velocity_type()}
@@ -247,7 +260,17 @@ class RosConnection:
 
 
 def _lack(interface: Interface, node: Node | None, reason: str) -> Any:
-    span = node.span if node is not None else None
-    words = span.text if span is not None else node.id if node is not None else "--sim-time"
-    place = span or Span(Source("", "ROS 2"), 0, 0)
-    return diagnostic("BT101", place, words=words, sort=interface.sort, name=interface.name, reason=reason)
+    return diagnostic(
+        "BT101", _place(node), words=_words(node), sort=interface.sort, name=interface.name, reason=reason
+    )
+
+
+def _words(node: Node | None) -> str:
+    """Those of a leaf; without one simulated time is what needs something."""
+    if node is None:
+        return "--sim-time"
+    return node.id if node.span is None else node.span.text
+
+
+def _place(node: Node | None) -> Span:
+    return (None if node is None else node.span) or Span(Source("", "ROS 2"), 0, 0)

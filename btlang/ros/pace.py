@@ -11,6 +11,7 @@ from btlang.run.controls import Controls
 from btlang.run.pace import Pace
 
 _SLOW = 6.0  # how often as long as it says the time after a run may take: a simulator may be slow
+_ENDING = 1.0  # real seconds that it may take in sum where the clock has failed
 _LOOK = 0.002  # seconds between two looks at a clock that may run faster than the system's
 
 
@@ -26,10 +27,12 @@ class RosPace(Pace):
         self, controls: Controls, now: Callable[[], float] | None = None, said: Callable[[str], object] = str
     ) -> None:
         super().__init__(1.0, controls)
-        self._time = time.monotonic if now is None else SteadyTime(now, said).now
+        self._steady = None if now is None else SteadyTime(now, said)
+        self._time = time.monotonic if self._steady is None else self._steady.now
         self._look = math.inf if now is None else _LOOK
         self._last = 0.0
-        self._spare = STANDING  # real seconds that the time after a run may take beyond _SLOW
+        self._spare = STANDING / 2  # real seconds that the time after a run may take beyond _SLOW
+        self._rested = 0.0  # real seconds that it has taken
 
     def begin(self) -> None:
         """A period begins now."""
@@ -49,11 +52,18 @@ class RosPace(Pace):
         return passed
 
     def rest(self, seconds: float) -> float:
-        """As `sleep`, whatever is asked for meanwhile. Waits for no clock that stands still or is much too slow."""
+        """As `sleep`, whatever is asked for meanwhile. Waits for no clock that stands still or is much too slow, and a
+        second in sum for one that has failed.
+        """
         begin, began = self._time(), time.monotonic()
         allowed, took = self._spare + _SLOW * seconds, 0.0
-        while (passed := self._time() - begin) < seconds and took < allowed:
+        while (passed := self._time() - begin) < seconds and took < min(allowed, self._left()):
             time.sleep(min(seconds - passed, self._look))
             took = time.monotonic() - began
-        self._spare = min(STANDING, allowed - took)
+        self._rested += took
+        self._spare = min(STANDING / 2, allowed - took)
         return max(passed, seconds)
+
+    def _left(self) -> float:
+        """Real seconds that the time after a run may still take."""
+        return _ENDING - self._rested if self._steady is not None and self._steady.has_failed else math.inf

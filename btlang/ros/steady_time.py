@@ -23,6 +23,8 @@ class SteadyTime:
     def __init__(self, read: Callable[[], float], said: Callable[[str], object] = str) -> None:
         self._read, self._said = read, said
         self._warned: set[str] = set()
+        self.has_failed = False
+        """Whether the clock has done what a clock should not do."""
         now = read()
         # what the clock said and when, how long it has stood still, and the time that was made of it; replaced as one
         self._seen: tuple[float, float, float, float] = now, time.monotonic(), 0.0, now
@@ -48,6 +50,7 @@ class SteadyTime:
         return now
 
     def _warn(self, what: str) -> None:
+        self.has_failed = True
         if what not in self._warned:
             self._warned.add(what)
             self._said(what)

@@ -14,7 +14,7 @@ from btlang.diagnostics.render import render
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.status import FAILURE, SKIPPED
 from btlang.run.controls import Controls
-from btlang.run.emergency import emergency_signal
+from btlang.run.emergency import PATIENCE, emergency_signal
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines, brief
 from btlang.run.overruns import are_many
@@ -74,7 +74,6 @@ EMERGENCY_STOPPED = 131
 """The exit code after an emergency stop, as 130 is that after Ctrl-C: 128 and the signal of the keys."""
 STILL_MOVING = 3
 """The exit code where the robot goes on moving at the end, whatever the mission came to."""
-_PATIENCE = 20.0  # real seconds for halting, the robot's way to rest and the end of its connection
 _LEAST_SIZE = os.terminal_size((30, 10))  # of a terminal in which the live view is of use
 
 
@@ -116,7 +115,7 @@ def run_mission(
     try:
         with (
             _interrupted_by_signals() as came,
-            emergency_signal(controls.emergency_stop, _PATIENCE),
+            emergency_signal(controls.emergency_stop, controls.disable, PATIENCE, quits=True),
             _opened(log) as file,
             view if view is not None else nullcontext(),
             open_monitor(controls) if open_monitor is not None else nullcontext() as monitor,

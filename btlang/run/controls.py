@@ -80,10 +80,14 @@ class Controls:
         """
         self.emergency = self.stopped = True  # first, so that no tick begins once the robot is disabled
         try:
-            if self.robot is not None:
-                disable(self.robot)
+            self.disable()
         finally:
             self.wake()
+
+    def disable(self) -> None:
+        """Stops the robot, which takes no command until the next run begins, and asks for nothing else."""
+        if self.robot is not None:
+            disable(self.robot)
 
     def take_emergency(self) -> bool:
         """Whether there was an emergency stop that has not been seen to; who asks has to halt the tree."""

@@ -14,6 +14,7 @@ from btlang.house_rules import HouseRules, house_rules, no_house_rules
 from btlang.robots.needs import needs_of_tree
 from btlang.robots.preflight import check_mission
 from btlang.robots.registry import runs_on
+from btlang.run.controls import disable
 from btlang.run.world_input import WorldInput
 from btlang.session import Run, Session
 from btlang.task.component_handler import component_data
@@ -144,6 +145,10 @@ class TaskLayer:
     def stop(self, person: str) -> None:
         """The emergency stop, from any thread; nothing delays it."""
         self.emergency.stop(person)
+
+    def disable(self) -> None:
+        """Stops the robot, from any thread, without a latch: for one that is about to end."""
+        disable(self.session.robot)
 
     def start(self) -> None:
         """Takes up what was left, and begins to work. May be called again after `halt`."""

@@ -138,23 +138,26 @@ def _up(options: argparse.Namespace) -> int:
     except BaseException:
         door.close()
         raise
-    try:
+    with emergency_signal(partial(layer.stop, "the keyboard"), layer.disable):
         try:
-            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-                signal.signal(number, lambda *_: ended.set())
-            layer.start()
-            door.start()
-            keep_ticks_in_time()
-            show(f"The robot '{name}' is up. Give it work with: btc task add")
-            if layer.emergency.is_latched:
-                show(f"It is stopped: {layer.emergency.reason}. To let it move: btc robot release", sys.stderr)
-            with emergency_signal(partial(layer.stop, "the keyboard")), companions(options, name, show) as code:
-                while not code and not ended.wait(1.0):
-                    pass
+            try:
+                for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                    signal.signal(number, lambda *_: ended.set())
+                layer.start()
+                door.start()
+                keep_ticks_in_time()
+                show(f"The robot '{name}' is up. Give it work with: btc task add")
+                if layer.emergency.is_latched:
+                    show(
+                        f"It is stopped: {layer.emergency.reason}. To let it move: btc robot release", stream=sys.stderr
+                    )
+                with companions(options, name, show) as code:
+                    while not code and not ended.wait(1.0):
+                        pass
+            finally:
+                door.close()
         finally:
-            door.close()
-    finally:
-        ended_well = layer.close()
+            ended_well = layer.close()
     show(f"The robot '{name}' is down.")
     return code or (0 if ended_well else 1)
 

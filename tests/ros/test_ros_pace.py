@@ -90,7 +90,7 @@ def test_a_run_ends_in_time_whatever_the_clock_does(monkeypatch: pytest.MonkeyPa
         pace=lambda speed, given: RosPace(times.controls, lambda: times.simulated, warnings.append),
     )
     assert runner.run().stopped == "time limit"
-    assert times.real - 100.0 == pytest.approx(1.0 + 4.0 + 2.0, abs=0.2)
+    assert times.real - 100.0 == pytest.approx(1.0 + 4.0 + 1.0, abs=0.2)
     assert len(warnings) == 1
 
 

@@ -230,7 +230,7 @@ def test_a_signal_ends_the_command_that_does_not_end_by_itself(name: str, code: 
     words = tmp_path / "words.toml"
     words.write_text('[[action]]\nphrase = "hang"\nid = "Hang"\ncall = "hanging:hang"\n')
     program = (
-        "import sys; from btlang import cli; from btlang.run import command; command._PATIENCE = 0.5;"
+        "import sys; from btlang import cli; from btlang.run import command; command.PATIENCE = 0.5;"
         f" sys.exit(cli.main(['run', '-c', 'hang', '--keywords', {str(words)!r}]))"
     )
     environment = {**os.environ, "PYTHONPATH": str(REPOSITORY)}
@@ -243,3 +243,37 @@ def test_a_signal_ends_the_command_that_does_not_end_by_itself(name: str, code: 
         process.send_signal(getattr(signal, name))
         _, err = process.communicate(timeout=20)
     assert (process.returncode, err) == (code, "The mission didn't end when it was asked to: the robot was stopped.\n")
+
+
+GOES_ON = """
+import signal, time
+from btlang.run.emergency import emergency_signal
+began = time.monotonic()
+tell = lambda what: print(what, round(time.monotonic() - began, 1), flush=True)
+signal.signal(signal.SIGTERM, lambda *_: tell("told"))
+with emergency_signal(lambda: tell("stop"), lambda: tell("disable"), 1.0):
+    print("ready", flush=True)
+    while True:
+        time.sleep(0.1)
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "code", "said"),
+    [("SIGTERM", 143, ["told", "disable", "stop"]), ("SIGQUIT", -9, ["stop"])],
+)
+def test_what_does_not_end_is_stopped_and_then_ended(name: str, code: int, said: list[str]) -> None:
+    r"""As a robot with tasks that hangs at its end; Ctrl-\ stops it, and doesn't end it."""
+    environment = {**os.environ, "PYTHONPATH": str(REPOSITORY)}
+    with subprocess.Popen(
+        [sys.executable, "-c", GOES_ON], env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "ready\n"
+        process.send_signal(getattr(signal, name))
+        if code < 0:
+            time.sleep(1.5)
+            process.kill()
+        lines = process.stdout.read().splitlines()
+        assert process.wait(PATIENCE) == code
+    assert [line.split()[0] for line in lines] == said

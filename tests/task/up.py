@@ -21,8 +21,11 @@ from btlang.task.missions import MissionReader
 from btlang.task.paths import socket_path
 from btlang.task.store import open_store
 from btlang.task.task import MissionText, State
+from tests.ros.declared import Peer
+from tests.ros.domains import free_domain
 from tests.task.layers import robot_up, submit, wait_for, wait_until
 
+PROFILE = str(Path(__file__).parents[1] / "ros" / "fast_discovery.xml")
 REFUSALS = ("BT186", "BT187", "BT192")
 """Codes that a robot answers with: `btc` ends with 1 then, and with 2 if it can't read a command."""
 _CODES = ("BT185", "BT190", "BT198", "BT199", "BT200", *REFUSALS)
@@ -35,6 +38,10 @@ def robot_for(code: str, patch: pytest.MonkeyPatch) -> Iterator[None]:
     """Puts a robot up for a code that needs one, in folders of its own, and does to it what the code is about."""
     if code in _STORES:
         with _store(code, patch):
+            yield
+        return
+    if code == "BT107":
+        with _without_scanner(patch):
             yield
         return
     if code not in _CODES:
@@ -79,6 +86,22 @@ def _store(code: str, patch: pytest.MonkeyPatch) -> Iterator[None]:
         finally:
             for path in Path().glob(f"{place}*"):
                 path.unlink()
+
+
+@contextmanager
+def _without_scanner(patch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A robot over ROS 2 whose scanner is off."""
+    with free_domain() as domain:
+        patch.setenv("ROS_DOMAIN_ID", str(domain))
+        patch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+        patch.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", PROFILE)
+        patch.setattr("btlang.ros.connection._DISCOVERY", 2.0)  # with this profile all are found sooner
+        peer = Peer("faulty_robot", "scan=absent", domain=domain)
+        peer.expect("ready")
+        try:
+            yield
+        finally:
+            peer.close()
 
 
 @contextmanager

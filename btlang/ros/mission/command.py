@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import signal
-from contextlib import closing
+from contextlib import ExitStack, closing
 from functools import partial
 from typing import Any
 
@@ -91,17 +91,15 @@ def _serve(options: argparse.Namespace, came: EndingSignals) -> int:
         node: Any = spun.node
         stop = partial(StopNode, node.resolve_service_name("~/stop"), node.emergency_stop)
         stopping = SpunNode(f"{options.name}_stop", namespace=options.namespace, make=stop)
+        ending = ExitStack()
         try:
             if options.autostart:
                 node.trigger_configure()
                 if node.error is not None:
                     raise node.error
                 node.trigger_activate()
-            with (
-                emergency_signal(partial(node.emergency_stop, "the keyboard")),
-                stopping,
-                companions(options, robot, show) as code,
-            ):
+            ending.enter_context(emergency_signal(partial(node.emergency_stop, "the keyboard"), node.disable))
+            with stopping, companions(options, robot, show) as code:
                 spun.start()
                 door.start()
                 keep_ticks_in_time()
@@ -111,10 +109,11 @@ def _serve(options: argparse.Namespace, came: EndingSignals) -> int:
                 node.halt()
                 spun.settle(_ANSWERS)
         finally:
-            try:
-                node.halt()
-                stopping.close()
-                spun.close()
-            finally:
-                node.release()
+            with ending:
+                try:
+                    node.halt()
+                    stopping.close()
+                    spun.close()
+                finally:
+                    node.release()
     return 128 + came.numbers[0] if came.numbers else code

@@ -160,6 +160,11 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             return True
         return False
 
+    def disable(self) -> None:
+        """Stops the robot where there is one, without a latch; from any thread."""
+        if self._layer is not None:
+            self._layer.disable()
+
     def answer(self, command: Command | dict[str, Any], person: str = _PERSON) -> Answer:
         """Does a command. From any thread."""
         layer = self._layer

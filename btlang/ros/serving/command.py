@@ -121,7 +121,7 @@ def _spin(connection: Connection, ids: Sequence[str], vocabulary: Lexicon, optio
         executor, bus=bus, robot=connection.robot, rate=options.rate,
         speed=1.0 if options.speed == "real" else options.speed, controls=controls, pace=connection.pace,
     )  # fmt: skip
-    with ending_signals() as came, emergency_signal(controls.emergency_stop):
+    with ending_signals() as came, emergency_signal(controls.emergency_stop, controls.disable):
         came.on_arrival = controls.stop
         spun = SpunNode(options.name, namespace=options.namespace, use_sim_time=options.sim_time)
         try:

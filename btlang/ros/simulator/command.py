@@ -72,7 +72,7 @@ def _simulate(options: argparse.Namespace, body: Body, world: World, came: Endin
     simulator = Simulator(
         world, namespace=options.namespace, gives_clock=options.clock, show=show, body=body, seed=options.seed
     )
-    with simulator, emergency_signal(simulator.robot.stop):
+    with simulator, emergency_signal(simulator.robot.stop, simulator.robot.stop):
         came.on_arrival = simulator.wake
         simulator.step(1 / rate)
         if not can_navigate():

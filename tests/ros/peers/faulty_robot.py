@@ -5,7 +5,8 @@ of those before and put the robot back to where it began:
 
 - `odom=FAULT`: nan, inf, zero (the quaternion), far (1e9 m away), jump (50 m, once), frozen (the pose, not the twist),
   spin (the heading turns 40 degrees with each message), silent; with `@moving` from the first velocity on
-- `scan=FAULT`: nan, negative, zero, empty, flat (no angle between the beams), close (-inf), free (+inf), silent
+- `scan=FAULT`: nan, negative, zero, empty, flat (no angle between the beams), close (-inf), free (+inf), silent,
+  absent (from the start: no publisher)
 - `battery=FAULT`: nan, high (a percentage of 80), silent, empty (0), blip (0 in one of 25 messages)
 - `joint=FAULT`: nan, split (each in a message of its own), half (so, and those of the head no more)
 - `docked=FAULT`: volatile (no last message for later listeners), best (effort), silent; without one nobody says it
@@ -62,7 +63,8 @@ class FaultyRobot:
         self.clock = node.create_publisher(Clock, "/clock", 10)
         self.time, self.samples = 1000.0, 0
         self.odometry = node.create_publisher(Odometry, "odom", 10)
-        self.scans = node.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
+        absent = self.faults.get("scan") == "absent"
+        self.scans = None if absent else node.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
         self.batteries = node.create_publisher(BatteryState, "battery_state", 10)
         self.states = node.create_publisher(JointState, "joint_states", 10)
         node.create_timer(PERIOD, self.step)
@@ -167,7 +169,7 @@ class FaultyRobot:
         self.odometry.publish(message)
 
     def publish_scan(self, fault: str) -> None:
-        if fault == "silent":
+        if fault == "silent" or self.scans is None:
             return
         scan = LaserScan(angle_min=0.0, angle_increment=math.tau / 360, range_min=0.05, range_max=10.0)
         scan.ranges = BEAMS.get(fault, [2.0] * 360)
