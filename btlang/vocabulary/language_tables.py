@@ -84,7 +84,8 @@ EXPLAINED = (*(role for role in ROLES if role not in _UNEXPLAINED), "compare", "
 SWITCHES = frozenset(("decimal_comma",))
 
 WORD_LISTS = frozenset((
-    "articles", "politeness", "unit_joiner", "one_each", "quantifiers", "halting", "asked_once", "relatives",
+    "articles", "politeness", "unit_joiner", "one_each", "every_second", "quantifiers",
+    "halting", "asked_once", "relatives",
     "relative_denials", "particles", "fillers", "speaker", "subjects", "purpose", "determiners", "denials",
     "possessive_endings", "ones", "directions",
 ))  # fmt: skip
@@ -156,6 +157,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "numbers": (_number, "a number"),
     "multipliers": (_number, "a number"),
     "fractions": (_number, "a number"),
+    "parts_of_day": (_time, "the hours to add: 0 or 12"),
     "times": (_time, 'a time such as "12:00", or the hours to add: 0 or 12'),
 }
 """Each table, whether a value fits it, and what does."""
@@ -210,7 +212,7 @@ def _phrase_problems(kind: str, name: str, phrases: list[str], known: Mapping[st
 
 _LANGUAGE: dict[str, Any] = {
     "language": "", "decimal_comma": False,
-    "articles": [], "politeness": [], "unit_joiner": [], "one_each": [],
+    "articles": [], "politeness": [], "unit_joiner": [], "one_each": [], "every_second": [],
     "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},
     "determiners": [], "denials": [], "possessive_endings": [], "ones": [], "directions": [],
     "possessives": {"speaker": [], "others": []},
@@ -219,6 +221,7 @@ _LANGUAGE: dict[str, Any] = {
     "third_person": {},
     "negative_subjects": {}, "plurals": {}, "asking": {}, "plural_endings": {}, "nouns": {}, "everyone": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {}, "times": {},
+    "parts_of_day": {},
 }  # fmt: skip
 
 

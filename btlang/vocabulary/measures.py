@@ -26,7 +26,8 @@ class Measures:
         self._numbers: Mapping[str, float] = language["numbers"]
         self._multipliers: Mapping[str, float] = language["multipliers"]
         self._joiner = frozenset(language["unit_joiner"])
-        self._one_each = frozenset(language["one_each"])
+        self._one_each, self._every_second = frozenset(language["one_each"]), frozenset(language["every_second"])
+        self._parts_of_day: dict[str, int] = language["parts_of_day"]
         self._fractions = tree_of(language["fractions"].items())
         self._times = tree_of(language["times"].items())
         self._number_starts = frozenset((*self._numbers, *self._multipliers, *self._fractions))
@@ -57,6 +58,8 @@ class Measures:
             return None
         hour, end = number
         half = self.half_of_day(text, end)
+        if half is None and not minutes and at > 1 and text.words[at - 2] in self._parts_of_day:
+            half = self._parts_of_day[text.words[at - 2]], end  # `every evening at 8`
         if half is not None:
             hour, end = (hour % 12 + half[0] if 1 <= hour <= 12 else -1), half[1]
         if hour not in range(24) or not (minutes or half):
@@ -80,6 +83,8 @@ class Measures:
             if at not in text.articles and not (at and text.words[at - 1] in self._one_each):
                 return None
             number = 1.0, at  # "a minute", "every hour"
+            if text.words[at] in self._every_second and at not in text.articles:
+                number = 2.0, at + 1
         value, after = number
         if text.words[after] in self._joiner:
             after += 1

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from btlang.record import Record
+from btlang.vocabulary.entry import PATH
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -20,19 +21,31 @@ class RoleWords(Record):
     fillers: frozenset[str]
     speaker: frozenset[str]
     directions: frozenset[str]
+    ends: frozenset[str]
+    way_starts: frozenset[str]
+
+    def ends_at(self, words: Sequence[str], at: int) -> bool:
+        """Whether no phrase goes on at a word; `to the lab, going through the hall` goes on at the comma."""
+        return words[at] in self.ends and not (words[at] == "," and words[at + 1] in self.way_starts)
 
 
-def role_words(language: Mapping[str, Any]) -> RoleWords:
-    """The words of the tables of a language."""
+def role_words(language: Mapping[str, Any], describing: frozenset[str]) -> RoleWords:
+    """The words of the tables of a language; `describing` are those with which what describes a thing may begin."""
 
     def split_all(phrases: Iterable[str]) -> tuple[tuple[str, ...], ...]:
         return tuple(tuple(phrase.split()) for phrase in phrases)
 
+    introducing = {role: split_all(phrases) for role, phrases in language["prepositions"].items()}
+    going_on = {phrase[0] for phrases in introducing.values() for phrase in phrases}
+    going_on |= {*language["particles"], *language["fillers"], *describing}
+    firsts = {phrase.split()[0] for phrases in language["roles"].values() for phrase in phrases}
     return RoleWords(
-        {role: split_all(phrases) for role, phrases in language["prepositions"].items()},
+        introducing,
         {verb: tuple(verbs) for verb, verbs in language["synonyms"].items()},
         frozenset(language["particles"]),
         frozenset(language["fillers"]),
         frozenset(language["speaker"]),
         frozenset(language["directions"]),
+        frozenset((",", ";", ":", ")", "\n", *(firsts - going_on))),
+        frozenset(phrase[0] for phrase in introducing.get(PATH, ()) if len(phrase) > 1),
     )

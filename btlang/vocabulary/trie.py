@@ -128,7 +128,7 @@ def longest(
         if not paths:
             break
         node, i, found = paths.pop()
-    if verbs and (best is None or words[best_last] not in context.values.ends):
+    if verbs and (best is None or not context.values.role_words.ends_at(words, best_last)):
         for node, i in verbs:
             match = _filled(root, node, text, i, context, names)
             if match is not None and (best is None or match.last > best_last):

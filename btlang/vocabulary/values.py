@@ -52,12 +52,7 @@ class Values(Measures):
         self.modifiers = Modifiers(language)
         self.adjectives = self.modifiers.adjectives
         self.phrases = noun_phrases(self._names, language, nouns, self.adjectives)
-        self.role_words = role_words(language)
-        introducing = {phrase[0] for phrases in self.role_words.introducing.values() for phrase in phrases}
-        going_on = introducing | self.role_words.particles | self.role_words.fillers | self.modifiers.starts
-        firsts = {phrase.split()[0] for phrases in language["roles"].values() for phrase in phrases}
-        self.ends = frozenset((",", ";", ":", ")", "\n", *(firsts - going_on)))
-        """Words at which no phrase goes on beyond its own pattern."""
+        self.role_words = role_words(language, self.modifiers.starts)
         self.ones = frozenset(language["ones"])
         """Words in the place of a noun that was said before: `the blue one`."""
         self.likenesses = Likenesses({}, self.listed)
@@ -120,7 +115,7 @@ class Values(Measures):
         """
         if self._openers is None:
             numbers = self._number_starts
-            quantities = numbers | self._joiner | self._units.keys()
+            quantities = numbers | self._joiner | self._units.keys() | self._every_second
             self._openers = {
                 kind: frozenset((*tree, *self.pronouns, *self.choice_starts, *self.group_starts))
                 for kind, tree in self._names.items()

@@ -120,6 +120,10 @@ class _Filling:
         if word in self._words.fillers and word != frame.particle:
             for role, after in self._introduced(at + 1, filled):
                 self._take(role, after, filled, has_particle)
+        if word == ",":  # `go to the lab, travelling through the hall`
+            for role, after in self._introduced(at + 1, filled):
+                if role.name == PATH and after > at + 2:
+                    self._take(role, after, filled, has_particle)
         for role, after in self._introduced(at, filled):
             self._take(role, after, filled, has_particle)
 

@@ -76,6 +76,8 @@ def _unjoin(scan: Scan) -> None:
 def _behind_joint(scan: Scan) -> int:
     """The place of the first command that a constraint in front is about; 0 where there is none."""
     at, raw = scan.at + 1, scan.raw
+    if raw[scan.at].role == "fronted" and raw[at].kind == "command":
+        return at if _has_journey(scan, at) else 0  # `without entering the kitchen go to the lab`
     if raw[at].kind == "comma" and raw[at + 1].kind in ("and", *_UNTIL):
         at += 1
     ends = raw[at].kind in _UNTIL

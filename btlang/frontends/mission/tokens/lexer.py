@@ -13,20 +13,21 @@ from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_o
 from btlang.frontends.mission.token import RULES, Called, Token, begins_condition, constraint_of, go_on
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_names import called, condition_names
+from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
 from btlang.frontends.mission.tokens.order_words import OrderWords
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
 from btlang.frontends.mission.tokens.remarks import Remarks
 from btlang.frontends.mission.tokens.requests import Requests
-from btlang.frontends.mission.tokens.silent_words import MARKS, begins, without_meaning
+from btlang.frontends.mission.tokens.silent_words import MARKS, after_politeness, begins, without_meaning
 from btlang.frontends.mission.tokens.unknown_words import UnknownWords
 from btlang.text.source import Source, Span
-from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
+from btlang.text.words import END_OF_STATEMENT, Words, split
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE, ORDER, QUESTIONS
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.trie import TrieNode, longest
+from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import SLOTS
 
 _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
@@ -35,12 +36,10 @@ _NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
 _CONDITIONS = frozenset(("condition", *NEGATED))
 _JOINING = ("and", "or")
 
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import TypeAlias
-
-    Origin: TypeAlias = tuple[Token, int, Match, TrieNode]
-    """A condition that was read as a whole: the latest part of it, its first word, and where it was found."""
+    from btlang.frontends.mission.tokens.condition_words import Origin
 
 
 class Lexer:
@@ -90,6 +89,7 @@ class Lexer:
         if not self.text.distinct.isdisjoint(self.vocabulary.asking["subject"]):
             endings = tuple(self.vocabulary.third_person)
             self._verb_forms |= {word for word in self.text.distinct if word.endswith(endings)}
+        self._before_doing = {phrase.split()[0] for phrase in self.vocabulary.roles["without_entering"]}
         self._is_apart = False  # the statement that is read runs at another time than the next one
         self._unknown = UnknownWords(
             self.text, self.vocabulary, self.context, self.names.definitions, self._partial, self.tokens, self.problems,
@@ -197,7 +197,8 @@ class Lexer:
                     match, root = named, names
             shared = None
             if origin is not None and tokens[-1].kind in _JOINING and (match is None or match.meaning.role == "not"):
-                shared = self._with_words_before(origin, match, at)
+                shared, problem = with_words_before(origin, tokens, text, match, at, self.vocabulary, names, context)
+                self.problems += [problem] if problem is not None else []
                 match = shared or match
             role = match.meaning.role if match is not None else ""
             if (role in QUESTIONS or word in asking) and begins(tokens):
@@ -226,6 +227,7 @@ class Lexer:
                 end = (
                     without_meaning(tokens, text, match, role, at, self.vocabulary, self.context)
                     or self._order.start_of_leg(at)
+                    or self._order.end_by_place(at)
                     or self._partial.add_left_out(at)
                 )
                 if end:
@@ -240,13 +242,18 @@ class Lexer:
                 at = end
             else:
                 if role == "politeness":
-                    at = self._politeness(match, at)
+                    at = after_politeness(tokens, words, match)
                     continue
                 if role == "after" and tokens and tokens[-1].kind == "until":
                     at = match.last  # `until after going to the lab`
                     continue
                 if at in going_on:
                     go_on(tokens)
+                if role == "condition" and len(tokens) > 1 and tokens[-2].kind == "command":
+                    end = self._partial.add_left_out(at, match.last)  # `go to the kitchen and then in the lab`
+                    if end:
+                        at = end
+                        continue
                 if role == "command" and at in articles:
                     end = self._partial.add_left_out(at, match.last)  # `then the dock`: with an article it is a name
                     if end:
@@ -260,7 +267,7 @@ class Lexer:
                     if role != "condition":
                         tokens.append(Token("not", starts[at], starts[at]))
                         if not shared:
-                            self._check_negation(match, at)
+                            self.problems += check_negation(text, match, at, self.vocabulary, tokens)
                     token = calls.token(match, at)
                     tokens.append(token)
                     if role != "negated_twice":
@@ -271,6 +278,8 @@ class Lexer:
                     if end:
                         at = end
                         continue
+                    if words[at] in self._before_doing and constraint_of(said) is not None:
+                        said.role = "fronted"
                     tokens.append(said)
                     if len(tokens) > 1 and tokens[-2].kind == "while" and constraint_of(tokens[-1]) is not None:
                         tokens[-2].kind = "while_doing"  # `while avoiding the kitchen`
@@ -324,43 +333,6 @@ class Lexer:
             return match.last
         end = self._partial.add_doing(at, match) if at and may_be_doing(tokens) else 0
         return end or self._partial.add_third(at, match)
-
-    def _with_words_before(self, origin: Origin, match: Match | None, at: int) -> Match | None:
-        """Words behind `and` or `or` that are no condition, read with those of the one before them in front."""
-        before = self.tokens[-2 if self.tokens[-2].kind != "comma" else -3]
-        if before is not origin[0]:
-            return None
-        if match is not None:  # `not`
-            roots = (self.vocabulary.trie, self.names.definitions.trie)
-            following = (longest(root, self.text, match.last, self.context) for root in roots)
-            if any(own is not None and own.meaning.role in ("name", "condition", "negated") for own in following):
-                return None
-        from btlang.frontends.mission.tokens.shared_words import continued  # most missions have none
-
-        found = continued(*origin[1:], self.text, at, self.vocabulary, self.context)
-        if found is not None and found[1] is not None:
-            self.problems.append(found[1])
-        return found[0] if found is not None else None
-
-    def _check_negation(self, match: Match, at: int) -> None:
-        """BT151 for a second negation, and for the negation of a list that is the subject."""
-        subject = match.values[0] if match.values else None
-        is_list = subject is not None and subject.first == at and subject.more
-        if is_list or match.meaning.role == "negated_twice":
-            from btlang.frontends.mission.explanations import negations  # most missions have none
-
-            explain = negations.negated_list if is_list else negations.negated_twice
-            before = self.tokens[-2] if len(self.tokens) > 1 else None
-            self.problems.append(explain(self.text, at, match.last, self.vocabulary, before))
-
-    def _politeness(self, match: Match, at: int) -> int:
-        """Politeness is left out with the comma beside it: `Robot, go home, please`. Returns where to go on."""
-        words, tokens = self.text.words, self.tokens
-        if tokens and tokens[-1].kind == "comma" and words[match.last] in (",", ";", ")", END_OF_TEXT):
-            tokens.pop()
-        elif words[match.last] == "," and (not tokens or tokens[-1].kind not in ("command", "name", "condition")):
-            return match.last + 1
-        return match.last
 
     def _statement(self, prefix: Prefix, at: int) -> int:
         """A statement about a value of the mission. Returns where to go on."""

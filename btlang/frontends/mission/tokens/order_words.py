@@ -83,8 +83,8 @@ class OrderWords:
         if tokens and tokens[-1].kind not in (*BEGINS, *_JOINTS):
             return 0
         journey = self._partial.with_front(at, end, self._vocabulary.asking["journey"])
-        if journey is None or self._is_end(journey.last):
-            return 0
+        if journey is None or self._is_end(journey.last) or any("{" in value.text for value in journey.values):
+            return 0  # `from your room` isn't where it starts
         behind = journey.last + (words[journey.last] == ",")
         self._add(journey, at)
         tokens.append(Token("then", self._text.ends[journey.last - 1], self._text.ends[journey.last - 1]))
@@ -96,6 +96,17 @@ class OrderWords:
             return 0
         match = longest(self._vocabulary.trie, self._text, at + 1, self._context)
         return self._start(at, match.last) if match is not None and match.meaning.role == "start_at" else 0
+
+    def end_by_place(self, at: int) -> int:
+        """`avoid the hall until the lab`: a constraint that a journey ends."""
+        tokens = self._tokens
+        if len(tokens) < 2 or tokens[-1].kind not in ("until", "before") or constraint_of(tokens[-2]) is None:
+            return 0
+        journey = self._partial.with_front(at, at, self._vocabulary.asking["journey"])
+        if journey is None:
+            return 0
+        self._add(journey, at)
+        return journey.last
 
     def _on_way(self, at: int, end: int) -> int:
         """`A, and on the way B`: with the journey, before it if it is a task; at the end of a statement nothing."""

@@ -23,6 +23,15 @@ def begins(tokens: Sequence[Token]) -> bool:
     return not tokens or tokens[-1].kind in BEGINS
 
 
+def after_politeness(tokens: list[Token], words: Sequence[str], match: Match) -> int:
+    """Politeness is left out with the comma beside it: `Robot, go home, please`. Returns where to go on."""
+    if tokens and tokens[-1].kind == "comma" and words[match.last] in (",", ";", ")", END_OF_TEXT):
+        tokens.pop()
+    elif words[match.last] == "," and (not tokens or tokens[-1].kind not in ("command", "name", "condition")):
+        return match.last + 1
+    return match.last
+
+
 def without_meaning(
     tokens: list[Token],
     text: Words,

@@ -1,0 +1,56 @@
+"""Conditions that aren't written whole, or that are denied twice: `the battery is below 20% or above 90%`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.frontends.mission.token import Token
+from btlang.text.words import Words
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.match import Match
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.trie import TrieNode, longest
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Origin: TypeAlias = tuple[Token, int, Match, TrieNode]
+    """A condition that was read as a whole: the latest part of it, its first word, and where it was found."""
+
+
+def with_words_before(
+    origin: Origin,
+    tokens: Sequence[Token],
+    text: Words,
+    match: Match | None,
+    at: int,
+    vocabulary: Lexicon,
+    names: TrieNode,
+    context: ReadingContext,
+) -> tuple[Match | None, Diagnostic | None]:
+    """Words behind `and` or `or` that are no condition, read with those of the one before them in front."""
+    before = tokens[-2 if tokens[-2].kind != "comma" else -3]
+    if before is not origin[0]:
+        return None, None
+    if match is not None:  # `not`
+        following = (longest(root, text, match.last, context) for root in (vocabulary.trie, names))
+        if any(own is not None and own.meaning.role in ("name", "condition", "negated") for own in following):
+            return None, None
+    from btlang.frontends.mission.tokens.shared_words import continued  # most missions have none
+
+    return continued(*origin[1:], text, at, vocabulary, context) or (None, None)
+
+
+def check_negation(
+    text: Words, match: Match, at: int, vocabulary: Lexicon, tokens: Sequence[Token]
+) -> Iterator[Diagnostic]:
+    """BT151 for a second negation, and for the negation of a list that is the subject."""
+    subject = match.values[0] if match.values else None
+    is_list = subject is not None and subject.first == at and subject.more
+    if is_list or match.meaning.role == "negated_twice":
+        from btlang.frontends.mission.explanations import negations  # most missions have none
+
+        explain = negations.negated_list if is_list else negations.negated_twice
+        yield explain(text, at, match.last, vocabulary, tokens[-2] if len(tokens) > 1 else None)
