@@ -75,7 +75,7 @@ class Adjectives:
         """
         for part in (*_BEFORE, OWNER):
             found = find(names(part), text.words, at)
-            if found is not None:
+            if found is not None and not any(i in text.articles for i in range(at + 1, found[1])):
                 value = _only_person(text, at, names) if found[0] == _SOMEBODY else found[0]
                 yield (((part, value),) if value else ()), found[1]
         skipped = find(self._determiners, text.words, at) if determined else None

@@ -63,6 +63,12 @@ class Likenesses:
             return self._listed(meant.type)
         return tuple(name for name, parts in self.features.get(meant.type, ()) if set(meant.parts) <= set(parts))
 
+    @staticmethod
+    def is_listed(meant: Description) -> bool:
+        """Whether what is known of the world decides which names are meant."""
+        parts = dict(meant.parts)
+        return not (parts.keys() & {COUNT, *DENIED, *RELATIONS})
+
     def members(self, choice: Choice) -> tuple[str, ...] | None:
         """The names of a set where what is known of the world decides; None where only the robot can tell."""
         parts = dict(choice.parts)

@@ -9,7 +9,7 @@ from btlang.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.adjectives import UNSLOTTED, Adjectives
 from btlang.vocabulary.pattern import Form, Slot, forms
-from btlang.vocabulary.references import ALL, CHOICES, SIZED, Parts
+from btlang.vocabulary.references import ALL, CHOICES, DENIED, SIZED, Parts
 from btlang.vocabulary.value_type import OBJECT, WORLD
 from btlang.vocabulary.word_tree import END, SLOTS, WordTree, find, insert
 
@@ -25,6 +25,10 @@ _HEADS = frozenset(("kind", "kinds", "color"))
 """The slots before which adjectives stand."""
 _PLURALS = {"kind": "kinds"}
 """The slots that are also said in the plural where all are meant: `all red cups`."""
+
+
+_FORMS = frozenset((*_PLURALS.values(), *DENIED))
+"""Types whose names are other forms of those of a type: nobody says `every kinds`."""
 
 
 class Noun(Record):
@@ -217,7 +221,7 @@ def noun_phrases(
     roles: Mapping[str, list[str]] = language["roles"]
     every = [(tuple(words.split()), ALL) for words in roles.get("all_names", ())]
     chosen = [(tuple(words.split()), how) for how in CHOICES for words in roles.get(how, ())]
-    for kind in kinds:
+    for kind in (kind for kind in kinds if kind not in _FORMS):
         ways = every + [way for way in chosen if kind in WORLD and (way[1] not in SIZED or kind == OBJECT)]
         for words in language["nouns"].get(kind, (kind,)):
             found.add_type(words, kind)

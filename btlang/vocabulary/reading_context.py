@@ -113,6 +113,17 @@ class ReadingContext:
                 choice = Choice(ALL, kind, self.keys.get(kind, kind), meant.parts)
                 yield "" if self.values.likenesses.members(choice) == () else choice.text, meant, end
 
+    def without(self, group: str, text: Words, at: int) -> tuple[str, int] | None:
+        """The choice of a set without what is left out at a word, `except the red one`, and where that ends."""
+        choice = choice_of(group) if self.values.exception(text, at) else None
+        if choice is None:
+            return None
+        left_out = self.values.left_out(Description(choice.type, ALL, choice.parts), text, at)
+        if left_out is None or not {part for part, _ in left_out[0]}.isdisjoint(dict(choice.parts)):
+            return None
+        fewer = choice.replace(parts=tuple(sorted((*choice.parts, *left_out[0]))))
+        return "" if self.values.likenesses.members(fewer) == () else fewer.text, left_out[1]
+
     def wider(self, kind: str, text: Words, at: int, value: tuple[str, int] | None) -> Iterator[tuple[str, int]]:
         """What a value is with what describes it (`the cup` as `the cup on the table`), the shortest first."""
         if value is None or kind not in WORLD or text.words[value[1]] not in self.modifiers:

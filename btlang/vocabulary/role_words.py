@@ -38,7 +38,8 @@ def role_words(language: Mapping[str, Any], describing: frozenset[str]) -> RoleW
     introducing = {role: split_all(phrases) for role, phrases in language["prepositions"].items()}
     going_on = {phrase[0] for phrases in introducing.values() for phrase in phrases}
     going_on |= {*language["particles"], *language["fillers"], *describing}
-    firsts = {phrase.split()[0] for phrases in language["roles"].values() for phrase in phrases}
+    firsts = {role: {phrase.split()[0] for phrase in phrases} for role, phrases in language["roles"].items()}
+    going_on |= firsts.get("except", set()) - firsts.get("but", set())
     return RoleWords(
         introducing,
         {verb: tuple(verbs) for verb, verbs in language["synonyms"].items()},
@@ -46,6 +47,6 @@ def role_words(language: Mapping[str, Any], describing: frozenset[str]) -> RoleW
         frozenset(language["fillers"]),
         frozenset(language["speaker"]),
         frozenset(language["directions"]),
-        frozenset((",", ";", ":", ")", "\n", *(firsts - going_on))),
+        frozenset((",", ";", ":", ")", "\n", *(set().union(*firsts.values()) - going_on))),
         frozenset(phrase[0] for phrase in introducing.get(PATH, ()) if len(phrase) > 1),
     )

@@ -265,7 +265,8 @@ class Values(Measures):
 
         `every cup on the table`, `two red cups`, `the cups except the blue one`; where it `is_bare` also `red cup`.
         """
-        found, count = self.choice(text, at, kind), ""
+        found = one = self.choice(text, at, kind)
+        count = ""
         if found is None or found[0].how != ALL:
             start = at
             if text.words[at] in self._both:
@@ -276,8 +277,9 @@ class Values(Measures):
                 return  # as nearly always
             found = self.phrases.plural(text, start, self.names_tree, self._fits(kind), self.adjective_starts)
             found = self._resolved(found, text, start)
-            if found is None or not (count or is_bare or self._is_plural(text, at, found[1], kind)):
-                return
+            is_plural = text.words[at] in self.group_starts and (one is None or found is None or one[1] < found[1])
+            if found is None or not (count or is_bare or is_plural):
+                return  # `cup` and `sheep` are no plurals
         meant, end = found
         parts: Parts = (*meant.parts, *([(COUNT, count)] if count else []))
         ways = [(parts, end)]
@@ -289,16 +291,11 @@ class Values(Measures):
             ]
         for some, last in ways:
             yield meant.replace(how=ALL, parts=tuple(sorted(some))), last
-            left_out = self._left_out(meant, text, last)
+            left_out = self.left_out(meant, text, last)
             if left_out is not None:
                 yield meant.replace(how=ALL, parts=tuple(sorted((*some, *left_out[0])))), left_out[1]
 
-    def _is_plural(self, text: Words, at: int, end: int, kind: str) -> bool:
-        """Whether words that describe things are in the plural alone: `cups`, not `cup` or `sheep`."""
-        one = self.choice(text, at, kind)
-        return text.words[at] in self.group_starts and (one is None or one[1] < end)
-
-    def _left_out(self, meant: Description, text: Words, at: int) -> tuple[Parts, int] | None:
+    def left_out(self, meant: Description, text: Words, at: int) -> tuple[Parts, int] | None:
         """What stands behind `except` as what the things are not: `the blue one`, `Alice and Bob`."""
         found: dict[str, list[str]] = {}
         last = at = self.exception(text, at)
@@ -332,11 +329,6 @@ class Values(Measures):
             return None
         ((part, value), *others) = parts.items()
         return (OF[part], value, found[1]) if part in OF and not others else None
-
-    def is_listed(self, meant: Description) -> bool:
-        """Whether what is known of the world decides which names are meant."""
-        parts = dict(meant.parts)
-        return not (parts.keys() & {COUNT, *DENIED, *RELATIONS})
 
     def exception(self, text: Words, at: int) -> int:
         """Where a word such as `except` ends, 0 if there is none."""

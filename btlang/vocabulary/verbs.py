@@ -126,6 +126,11 @@ class _Filling:
                     self._take(role, after, filled, has_particle)
         for role, after in self._introduced(at, filled):
             self._take(role, after, filled, has_particle)
+        for name, value in filled.items():
+            fewer = self._context.without(value.group, self._text, at) if value is not None and value.group else None
+            if value is not None and fewer is not None and value.last < at:
+                one = value.replace(text=fewer[0], group=fewer[0])
+                self._go_on(fewer[1], {**filled, name: one}, has_particle)
 
     def _introduced(self, at: int, filled: Mapping[str, SlotValue | None]) -> Iterator[tuple[Role, int]]:
         """The empty roles whose value may begin here, and where: behind the words that introduce them, or at once."""

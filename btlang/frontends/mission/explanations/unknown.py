@@ -28,7 +28,7 @@ from btlang.vocabulary.pattern import forms, spelled
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.references import DENIED
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.value_type import OBJECT, PLACE, WORLD, ValueType, with_unit
+from btlang.vocabulary.value_type import OBJECT, PLACE, ValueType, with_unit
 from btlang.vocabulary.word_tree import NO_WORDS, SLOTS
 
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
@@ -91,7 +91,7 @@ def _untold(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic |
     for i in range(at, end):
         is_clause = values.modifiers.ends_clause(text, i)
         for parts, last in values.adjectives.chains(text, i, values.names_tree):
-            nouns = [kind for kind in WORLD if values.begins_noun(kind, text, last)]
+            nouns = [kind for kind in (OBJECT, PLACE) if values.begins_noun(kind, text, last)]
             before_noun = nouns and (i > at or i in text.articles) and last not in text.articles
             kinds = [kind for kind in nouns or (OBJECT, PLACE) if not all(is_told(kind, part) for part, _ in parts)]
             if kinds and len(kinds) == len(nouns or (OBJECT, PLACE)) and (before_noun or is_clause):

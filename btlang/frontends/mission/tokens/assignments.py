@@ -100,7 +100,7 @@ def _each(
     chosen = (prefix.noun, prefix.last) if prefix.noun is not None else inner.choice(text, prefix.value)
     sets = [chosen] if prefix.noun is not None else [*context.values.groups(text, prefix.value)]
     wide = [way for way in sets if way is not None and text.words[way[1]] in BEFORE_BODY]
-    if wide and wide[-1][0].how == ALL and not context.values.is_listed(wide[-1][0]):
+    if wide and wide[-1][0].how == ALL and not context.values.likenesses.is_listed(wide[-1][0]):
         meant, last = wide[-1]
         kind = meant.type
         some = Choice(ALL, kind, prefix.key, meant.parts)
