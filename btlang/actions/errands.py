@@ -65,6 +65,17 @@ def _carry(
     yield from put_down(robot, object)
 
 
+def put_in(robot: Fetching, object: str, container: str, manner: str | None = None) -> Steps:
+    """Picks up an object unless a hand holds it, drives up to another object and puts it down there."""
+    yield from paced(robot, manner, _put_in(robot, object, container))
+
+
+def _put_in(robot: Fetching, object: str, container: str) -> Steps:
+    yield from _hold(robot, object)
+    yield from travel(robot, container)
+    yield from put_down(robot, object)
+
+
 def bring(robot: Bringing, object: str, person: str | None = None, manner: str | None = None) -> Steps:
     """Picks up an object unless a hand holds it, drives to a person and hands it over.
 

@@ -48,12 +48,14 @@ class Orthography(Record):
     """How a language is written: its articles, and whether `1,5` is a number.
 
     `spellings` are words that are read as another one: contractions (Spanish `al` as `a`), and words that are written
-    without their accents, where no other word is written so.
+    without their accents, where no other word is written so. `contracted` are words with an apostrophe, which may be
+    written as two: `don t`, `do n't`.
     """
 
     articles: frozenset[str] = frozenset()
     decimal_comma: bool = False
     spellings: Mapping[str, str] = {}
+    contracted: frozenset[str] = frozenset()
 
     def with_words(self, words: Iterable[str]) -> Orthography:
         """The same, where these words may be written without their accents."""
@@ -171,6 +173,7 @@ def split(source: Source, orthography: Orthography) -> Words:
     if orthography.decimal_comma:
         text = re.sub(_DECIMAL_COMMA, r"\1.\2", text)
     articles, spellings = orthography.articles, orthography.spellings
+    tails = {"n't", *(word.partition("'")[2] for word in orthography.contracted)}
     first = 0
     margin = _MARGIN.match(text).group()  # type: ignore[union-attr]
     indent, is_item = below = _indent(margin)
@@ -196,6 +199,13 @@ def split(source: Source, orthography: Orthography) -> Words:
             held = -1
         if kind == _WORD:
             word = word.lower() if word.isascii() and not spellings else orthography.word(word)
+            if (
+                word in tails
+                and len(words) > first
+                and (whole := _contracted(words[-1], word)) in orthography.contracted
+            ):
+                words[-1], ends[-1] = whole, end
+                continue
             if word in articles and not (
                 text[start - 1 : start] == "{" and text[end : end + 1] == "}"
             ):  # a name is `{a}`
@@ -239,6 +249,11 @@ def split(source: Source, orthography: Orthography) -> Words:
     if any(line.is_item for line in result.lines):
         result.lines = list(_indented_items(words, result.lines))
     return result
+
+
+def _contracted(word: str, tail: str) -> str:
+    """`don` and `t` as `don't`, `do` and `n't` too."""
+    return word + tail if "'" in tail else f"{word}'{tail}"
 
 
 def _indent(margin: str) -> tuple[int, bool]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
@@ -18,7 +19,7 @@ from btlang.vocabulary.nouns import Features, with_plurals
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import TrieNode, add, collisions
-from btlang.vocabulary.value_type import ValueType
+from btlang.vocabulary.value_type import PLACE, WORLD, ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import Frame, parts_of, phrases_of
 from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS, tree_of
@@ -65,12 +66,19 @@ class Lexicon:
                 ]
         self.articles = frozenset(language["articles"])
         self.orthography = Orthography(self.articles, language["decimal_comma"], language["contractions"])
+        said = chain(*language["roles"].values(), *language["negations"].values(), language["relative_denials"])
+        contracted = {word for phrase in said for word in phrase.split() if re.fullmatch(r"[a-z]+'[a-z]+", word)}
+        self.orthography = self.orthography.replace(contracted=frozenset(contracted))
         self._with_names: dict[tuple[object, ...], Lexicon] = {}
         self.values = Values(self._types_of(files, english), language, [noun for file in files for noun in file.nouns])
         for file in files:
             for kind, words, name in file.names:
                 if self.types[kind].kind == "names":
                     self.values.add_name(kind, self._bare(words), name)
+        own = {kind: [(name, name) for name in self.values.listed(kind)] for kind in WORLD if kind in self.types}
+        for kind, pairs in self._with_colors(own).items():
+            for words, name in pairs[len(own[kind]) :]:
+                self.values.add_name(kind, words, name)
         self.context = ReadingContext(self.values)
         """What is known without a mission; each reader of one has its own context."""
         self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
@@ -143,7 +151,7 @@ class Lexicon:
 
         def made() -> Lexicon:
             pairs = {kind: [(self._bare(name), name) for name in listed] for kind, listed in names.items()}
-            pairs = with_plurals(pairs, self._endings)
+            pairs = with_plurals(self._with_colors(pairs), self._endings)
             values = self.values.with_names(pairs, features)
             words = (word for pair in chain(*pairs.values()) for word in pair[0].lower().split())
             written = self.orthography.with_words(word for word in words if not word.isascii())
@@ -151,6 +159,18 @@ class Lexicon:
 
         known = (*((kind, tuple(listed)) for kind, listed in names.items()), *(features or {}).items())
         return recent(self._with_names, known, made)
+
+    def _with_colors(self, named: dict[str, list[tuple[str, str]]]) -> dict[str, list[tuple[str, str]]]:
+        """`the green` and `the green one` for the green room, where no other name begins with that color."""
+        names = {name.lower() for pairs in named.values() for _, name in pairs}
+        made = dict(named)
+        for kind in (PLACE, "zone"):
+            firsts = [(words.lower().partition(" ")[0], name) for words, name in named.get(kind, ()) if " " in words]
+            colors = [(color, name) for color, name in firsts if self.values.takes_word("color", color)]
+            own = [pair for pair in colors if sum(f"{name} ".startswith(f"{pair[0]} ") for name in names) == 1]
+            own += [(f"{color} {one}", name) for color, name in own for one in sorted(self.values.ones)]
+            made |= {kind: [*named[kind], *own]} if own else {}
+        return made
 
     def _bare(self, words: str) -> str:
         """Articles do not matter in names either."""

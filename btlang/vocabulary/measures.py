@@ -58,8 +58,9 @@ class Measures:
             return None
         hour, end = number
         half = self.half_of_day(text, end)
-        if half is None and not minutes and at > 1 and text.words[at - 2] in self._parts_of_day:
-            half = self._parts_of_day[text.words[at - 2]], end  # `every evening at 8`
+        part = self._parts_of_day.get(text.words[at - 2]) if half is None and at > 1 else None
+        if part is not None and (hour <= 12 or part == 0):
+            half = part, end  # `every evening at 8`
         if half is not None:
             hour, end = (hour % 12 + half[0] if 1 <= hour <= 12 else -1), half[1]
         if hour not in range(24) or not (minutes or half):

@@ -81,11 +81,22 @@ class Permissions:
         words = text.words
         for place in range(at - 1, first - 1, -1):
             if words[place] == "," or words[place] in self._fronts:
-                begin = place
-                while begin > first and (words[begin - 1] in self._fronts or words[begin - 1] == ","):
-                    begin -= 1
-                return begin
+                return self._before_fronts(text, first, self._asked(text, first, place))
         return first
+
+    def _before_fronts(self, text: Words, first: int, at: int) -> int:
+        while at > first and (text.words[at - 1] in self._fronts or text.words[at - 1] == ","):
+            at -= 1
+        return at
+
+    def _asked(self, text: Words, first: int, at: int) -> int:
+        """The word behind which the condition begins that ends at a place: `and if you are in the lab then you may`."""
+        for place in range(at - 1, first - 1, -1):
+            if text.words[place] in self._asking:
+                read = longest(self._trie, text, place + 1, self._context)
+                if read is not None and read.last == at and read.meaning.role == "condition":
+                    return place
+        return at
 
     def _offers(self, text: Words, first: int, last: int) -> bool:
         """Whether `stay there` is one of two things that may be done."""

@@ -63,7 +63,7 @@ class Calls:
 
     def note(self, match: Match) -> None:
         """What pronouns stand for from here on."""
-        for value in match.values:
+        for value in sorted(match.values, key=lambda value: value.name == value.type):  # a theme last: `it` prefers it
             latest = value.group or (value.more[-1] if value.more else value.text)
             choice = choice_of(latest) if latest[:1] == "{" else None
             if choice is not None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Container, Iterator, Mapping, Sequence
 
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import Token, constraint_of
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.text.words import END_OF_TEXT, Words
 from btlang.vocabulary.entry import MANNER, THEME, VIA
@@ -74,6 +74,8 @@ class PartialCommands:
         if match is None or (other is not None and other.last >= match.last):
             return 0
         end = match.last
+        if before.kind == "if" and len(self._tokens) > 1 and constraint_of(self._tokens[-2]) is not None:
+            before.kind = "while"  # `avoid the hall when going to the lab`
         if before.kind == "if":
             failing = longest(self._vocabulary.trie, self._text, end, self._context)
             if failing is None or failing.meaning.role != "fails":

@@ -12,7 +12,7 @@ from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing, with_verb
 from btlang.frontends.mission.tokens.silent_words import MARKS, begins
 from btlang.text.words import Words
-from btlang.vocabulary.language_tables import NOT_ALONE, ORDER
+from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
@@ -46,7 +46,7 @@ class UnknownWords:
         from btlang.frontends.mission.explanations import fragments, unknown  # most missions have nothing to explain
 
         role = match.meaning.role if match is not None else ""
-        if match is not None and role in ORDER:
+        if match is not None and role in ("arrival", "arrival_at"):
             span = self._text.span(at, match.last)
             drives = f"goes to {match.values[0].text}" if match.values else "drives"
             return diagnostic("BT156", span, words=span.text, drives=drives)
