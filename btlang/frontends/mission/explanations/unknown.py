@@ -21,6 +21,7 @@ from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.node_words import BEHIND_ID, near_commands, role_end
@@ -28,9 +29,13 @@ from btlang.vocabulary.pattern import forms, spelled
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.references import DENIED
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.value_type import OBJECT, PLACE, ValueType, with_unit
-from btlang.vocabulary.word_tree import NO_WORDS, SLOTS
+from btlang.vocabulary.value_type import OBJECT, PLACE, WORLD, ValueType, with_unit
+from btlang.vocabulary.verbs import Frame, canonical
+from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS
 
+_MOST_NAMES = 6  # that a message lists
+_KIND_NAMES = {"kinds": "kind"}
+"""What messages call types whose names are no words for people."""
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
 
 
@@ -151,6 +156,10 @@ def _misfits(text: Words, at: int, roots: Iterable[TrieNode], context: ReadingCo
     paths: list[tuple[TrieNode, int]] = [(root, at) for root in roots]
     while paths:
         node, i = paths.pop()
+        for kind, last in _empty_roles(node.get(VERBS, ()), text, i, context) if i > at else ():
+            if last >= furthest and context.read(kind, text, last) is None:
+                found = {**(found if last == furthest else {}), kind: set()}
+                furthest = last
         for _, kind, child in node.get(SLOTS, ()):
             value = context.read(kind, text, i)
             if value is not None:
@@ -165,6 +174,21 @@ def _misfits(text: Words, at: int, roots: Iterable[TrieNode], context: ReadingCo
         if child is not None:
             paths.append((child, i + 1))
     yield from (_Misfit(furthest, kind, frozenset(following)) for kind, following in found.items())
+
+
+def _empty_roles(
+    frames: Iterable[Frame], text: Words, at: int, context: ReadingContext, has_theme: bool = False
+) -> Iterator[tuple[str, int]]:
+    """The types of the values that words such as `to` behind a verb or its theme introduce, and where each begins."""
+    for frame in frames:
+        for role in frame.roles:
+            lengths = (len(words) for words in role.words if tuple(text.words[at : at + len(words)]) == words)
+            length = max(lengths, default=0)
+            if length and role.name != MANNER:
+                yield role.type, at + length
+            theme = context.read(role.type, text, at) if role.is_direct and not has_theme else None
+            if theme is not None:
+                yield from _empty_roles((frame,), text, theme[1], context, True)
 
 
 def _misfit(
@@ -217,10 +241,12 @@ def _misfit(
         )
     if named:
         known = [name for kind in named for name in vocabulary.values.said_names(kind.name)]
-        kinds = " or ".join(kind.name for kind in named)
+        kinds = " or ".join(dict.fromkeys(_KIND_NAMES.get(kind.name, kind.name) for kind in named))
         near = nearest(span.text.lower(), known)
         fix = (span, near[0]) if near else None
-        return diagnostic("BT013", span, fix=fix, type=kinds, words=span.text, help=_near_names(near, known))
+        understood = f"I understood '{head} ...'. " if at > first else ""
+        advice = understood + _near_names(near, known)
+        return diagnostic("BT013", span, fix=fix, type=kinds, words=span.text, help=advice)
     if text.words[at][0] != '"':  # `turn leftt` lacks no angle
         part = explain_fragment(text, first, end, False, vocabulary, context)
         return part or _unknown_phrase(text, first, max(end, at + 1), vocabulary, definitions, [])
@@ -307,11 +333,10 @@ def _unknown_phrase(
     inside = [(name, end - at) for name in names if f" {name} " in written]
     near = dict(inside) | dict(_nearest_phrases(tuple(text.words[at:end]), vocabulary, tuple(names))) | dict(inside)
     if not near:  # a value alone, in a list or where the other words are left out: `if Allice or Bob is near`
-        values = [name for type in vocabulary.types.values() if type.kind == "names"
-                  for name in vocabulary.values.said_names(type.name)]  # fmt: skip
+        values = [name for kind in WORLD if kind in vocabulary.types for name in vocabulary.values.said_names(kind)]
         value = nearest(text.words[at], values) if text.words[at].isalpha() else []
         fix = (text.span(at, at + 1), value[0]) if value else None
-        advice = nearest_known(value) if value else "'btc words' lists what I know."
+        advice = nearest_known(value) if value else _examples(vocabulary)
         return diagnostic("BT010", span, fix=fix, kind=kind, words=span.text, help=advice)
     likely, words = next(iter(near.items()))
     fix = (text.span(at, min(at + words, end)), likely.partition(" {")[0])
@@ -331,9 +356,22 @@ def _asks(before: list[Token]) -> bool:
     return next((kind for kind in kinds if kind not in _BEFORE_ANY), "") in _ASKING
 
 
+def _examples(vocabulary: Lexicon) -> str:
+    """Three commands about what there is in the world, where nothing is like the words that are unknown."""
+    found: list[str] = []
+    for kind in (PLACE, OBJECT, "person"):
+        names = vocabulary.values.said_names(kind) if kind in vocabulary.types else []
+        entries = (entry for entries in vocabulary.entries.values() for entry in entries if entry.verbs)
+        ways = (forms(canonical(verbs[0], roles[:1])) for entry in entries for verbs, roles in entry.verbs[:1]
+                if roles and roles[0].type == kind and not any(role.is_needed for role in roles[1:]))  # fmt: skip
+        said = next((spelled(way[0]) for way in ways), "") if names else ""
+        found += [re.sub(r"\{\w+\}", names[0], said)] if said else []
+    return f"I understand for example: {'; '.join(found)}" if found else "'btc words' lists what I know."
+
+
 def nearest_known(words: Iterable[str]) -> str:
     """The advice that lists what was probably meant."""
-    return "Similar: " + ", ".join(words)
+    return "Similar: " + ", ".join(re.sub(r"\{\w+\}", "...", phrase) for phrase in words)
 
 
 @lru_cache(maxsize=4)  # a text full of unknown words asks for them at each
@@ -356,14 +394,24 @@ def _nearest_phrases(
     """Phrases and names that may have been meant, each with the number of words that stand for it; one of each id."""
     phrases = {name: (name, name.split()) for name in names} | _phrases(vocabulary)
     written = list(takewhile(lambda word: word[0].isalpha(), all_written))  # a value stands for no word
-    near = nearest_start(written, {key: start for key, (_, start) in phrases.items()})
+    found = nearest_start(written, {key: start for key, (_, start) in phrases.items()})
+    near = [key for key in found if _begins_like(written, phrases[key][1], vocabulary)]
     best = {phrases[key][0]: key for key in reversed(near)}
     return [(key, len(phrases[key][1])) for key in near if best[phrases[key][0]] == key][:3]
 
 
+def _begins_like(written: list[str], start: list[str], vocabulary: Lexicon) -> bool:
+    """Whether the first words are the same but for spelling: `lookaround` and `look around`, too."""
+    first, joined = written[0], "".join(start)
+    pairs = (first, start[0]), (first, joined), ("".join(written), joined)
+    return any(one == other or is_respelling(one, other, vocabulary) for one, other in pairs)
+
+
 def _near_names(near: list[str], known: list[str]) -> str:
     if near:
-        return "Similar: " + ", ".join(near)
+        return "Similar: " + ", ".join(near[:_MOST_NAMES])
+    if len(known) > _MOST_NAMES:
+        return f"Known: {', '.join(known[:_MOST_NAMES])} and {len(known) - _MOST_NAMES} more"
     return "Known: " + ", ".join(known) if known else "This world has none."
 
 

@@ -28,7 +28,9 @@ def taken(scan: Scan, token: Token) -> bool:
     if has_more and len(scan.out) > entry.begins:
         if scan.out[-1].kind in ("OR", "OR_ELSE", "WIDE_OR"):
             words = scan.words(token)
-            scan.fail("BT155", scan.span(token), words=words, example=f"{words} {scan.word('and')} ...")
+            scan.fail(
+                "BT155", scan.span(token), words=words, advice=f"Write for example: {words} {scan.word('and')} ..."
+            )
             return True
         if scan.out[-1].kind not in _JOINTS:
             return False

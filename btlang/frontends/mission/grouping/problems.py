@@ -34,7 +34,7 @@ def no_operand(scan: Scan, token: Token) -> None:
     elif token.kind in ("do_that", "repeat_that", "again"):
         scan.fail("BT067", scan.span(token), words=scan.words(token))
     elif starts or token.kind not in ENDS | {*CONNECTIVES, "otherwise", "comma"}:
-        scan.fail("BT022", scan.span(token), word=scan.words(token), example="wave")
+        scan.fail("BT022", scan.span(token), word=scan.words(token))
     elif before is not None and before.kind == "comma" and token.kind in ENDS:
         advice = "Remove it, or add what follows."
         scan.fail("BT032", scan.span(before), (scan.span(before), ""), place="at the end", advice=advice)
@@ -82,14 +82,15 @@ def prohibition(scan: Scan, token: Token) -> None:
     if not condition and scan.stack[-1].kind == "body" and opener is not None and opener.role == "if":
         condition = scan.source.text[opener.end : token.start].strip(" ,")
     what = _between(scan, [token, *rest[:form]]) or "wave"
-    example, others = f"{scan.word('unless')} {condition or '...'}, {what}", ""
+    advice = "It does only what it is told, so leave this out, or say what to do in its place."
     if form < end and rest[form].kind == "until":
-        example = f"{scan.word('wait_until')} {condition}"
+        advice = f"Write for example: {scan.word('wait_until')} {condition}"
     elif condition:
         failing = f"{scan.word('whenever')} {condition}, {scan.word('fail')}"
-        others = f"Or: {what} {scan.word('stop_when')} {condition}. Or: {failing}"
+        advice = f"Write for example: {scan.word('unless')} {condition}, {what}"
+        advice += f". Or: {what} {scan.word('stop_when')} {condition}. Or: {failing}"
     span = scan.span(token, rest[end - 1] if end else token)
-    scan.fail("BT155", span, words=scan.words(token), example=example, help=others)
+    scan.fail("BT155", span, words=scan.words(token), advice=advice)
 
 
 def without(scan: Scan, token: Token) -> None:
@@ -97,8 +98,8 @@ def without(scan: Scan, token: Token) -> None:
     entry = scan.stack[-1]
     start = scan.out[entry.operand].start if entry.operand < len(scan.out) else token.start
     end = next(at for at in range(scan.at, len(scan.raw)) if scan.raw[at].kind in ENDS)
-    example = f"{scan.source.text[start : scan.last_end]} {scan.word('stop_when')} ..."
-    scan.fail("BT155", scan.span(token, scan.raw[end - 1]), words=scan.words(token), example=example)
+    advice = f"Write for example: {scan.source.text[start : scan.last_end]} {scan.word('stop_when')} ..."
+    scan.fail("BT155", scan.span(token, scan.raw[end - 1]), words=scan.words(token), advice=advice)
 
 
 def _between(scan: Scan, tokens: list[Token]) -> str:

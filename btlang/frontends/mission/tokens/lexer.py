@@ -35,6 +35,8 @@ _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parall
 _NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
 _CONDITIONS = frozenset(("condition", *NEGATED))
 _JOINING = ("and", "or")
+_BEFORE_CONDITIONS = frozenset(("if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "not"))
+"""Behind these a polite word could be a misspelt one: `wave if now bumped`."""
 
 
 TYPE_CHECKING = False
@@ -201,6 +203,8 @@ class Lexer:
                 self.problems += [problem] if problem is not None else []
                 match = shared or match
             role = match.meaning.role if match is not None else ""
+            if role == "politeness" and tokens and tokens[-1].kind in _BEFORE_CONDITIONS:
+                match, role = None, ""
             if (role in QUESTIONS or word in asking) and begins(tokens):
                 end = self._requests.question(match, role, at)
                 if end:
