@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from functools import lru_cache
 from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.explanations.fragments import explain_fragment
+from btlang.frontends.mission.explanations.misfits import Misfit, misfits_of
 from btlang.frontends.mission.explanations.roles import explain_role
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
 from btlang.frontends.mission.explanations.times import explain_time
@@ -17,21 +18,19 @@ from btlang.frontends.mission.symbols.definitions import Definitions
 from btlang.frontends.mission.symbols.nodes import misread_node
 from btlang.frontends.mission.symbols.prefixes import span_of
 from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Called, Token
-from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
-from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.node_words import BEHIND_ID, near_commands, role_end
 from btlang.vocabulary.pattern import forms, spelled
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.references import DENIED
-from btlang.vocabulary.trie import TrieNode, longest
+from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import OBJECT, PLACE, WORLD, ValueType, with_unit
-from btlang.vocabulary.verbs import Frame, canonical
-from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS
+from btlang.vocabulary.verbs import canonical
+from btlang.vocabulary.word_tree import SLOTS
 
 _MOST_NAMES = 6  # that a message lists
 _KIND_NAMES = {"kinds": "kind"}
@@ -63,10 +62,10 @@ def explain_unknown(
     if untold is not None:
         return untold
     roots = (vocabulary.trie, definitions.trie)
-    start, misfits = at, list(_misfits(text, at, roots, context))
+    start, misfits = at, list(misfits_of(text, at, roots, context))
     if before and before[-1].kind not in ("comma", "newline", "indent", "dedent", "open", "semi"):
         phrase = bisect_left(text.starts, before[-1].start)  # `move forward 5 s`: read that far, and no further
-        longer = [found for found in _misfits(text, phrase, roots, context) if found.at >= at]
+        longer = [found for found in misfits_of(text, phrase, roots, context) if found.at >= at]
         if longer and (not misfits or longer[0].at >= misfits[0].at):
             start, misfits = phrase, longer
     names_fit = any(context.types[misfit.kind].kind == "names" for misfit in misfits)
@@ -141,61 +140,11 @@ _NOT_OFFERED = NOT_ALONE | {
 """Roles that say nothing alone or are for texts that programs write: what is like their words was hardly meant so."""
 
 
-class _Misfit(Record):
-    """A slot without a value of its type: the word where it is, the type, and the words that may follow the value."""
-
-    at: int
-    kind: str
-    following: frozenset[str]
-
-
-def _misfits(text: Words, at: int, roots: Iterable[TrieNode], context: ReadingContext) -> Iterator[_Misfit]:
-    """The slots that a phrase would have at the furthest word that its own words reach."""
-    furthest = at
-    found: dict[str, set[str]] = {}
-    paths: list[tuple[TrieNode, int]] = [(root, at) for root in roots]
-    while paths:
-        node, i = paths.pop()
-        for kind, last in _empty_roles(node.get(VERBS, ()), text, i, context) if i > at else ():
-            if last >= furthest and context.read(kind, text, last) is None:
-                found = {**(found if last == furthest else {}), kind: set()}
-                furthest = last
-        for _, kind, child in node.get(SLOTS, ()):
-            value = context.read(kind, text, i)
-            if value is not None:
-                paths.append((child, value[1]))
-            elif context.types[kind].names and any(word not in NO_WORDS for word in node):
-                continue  # one of a few names would be an addition to the words that are missing
-            elif i > furthest:
-                furthest, found = i, {kind: set(child)}
-            elif i == furthest and i > at:
-                found.setdefault(kind, set()).update(child)
-        child = node.get(text.words[i])
-        if child is not None:
-            paths.append((child, i + 1))
-    yield from (_Misfit(furthest, kind, frozenset(following)) for kind, following in found.items())
-
-
-def _empty_roles(
-    frames: Iterable[Frame], text: Words, at: int, context: ReadingContext, has_theme: bool = False
-) -> Iterator[tuple[str, int]]:
-    """The types of the values that words such as `to` behind a verb or its theme introduce, and where each begins."""
-    for frame in frames:
-        for role in frame.roles:
-            lengths = (len(words) for words in role.words if tuple(text.words[at : at + len(words)]) == words)
-            length = max(lengths, default=0)
-            if length and role.name != MANNER:
-                yield role.type, at + length
-            theme = context.read(role.type, text, at) if role.is_direct and not has_theme else None
-            if theme is not None:
-                yield from _empty_roles((frame,), text, theme[1], context, True)
-
-
 def _misfit(
     text: Words,
     first: int,
     end: int,
-    misfits: list[_Misfit],
+    misfits: list[Misfit],
     vocabulary: Lexicon,
     context: ReadingContext,
     definitions: Definitions,

@@ -54,11 +54,16 @@ class PartialCommands:
         """The command whose verb has the form that stands there: `going to the lab`."""
         return doing(self._text, at, self._vocabulary.doing, self._tries, self._context)
 
-    def with_front(self, at: int, end: int, words: Sequence[str], trie: TrieNode | None = None) -> Match | None:
-        """The phrase that `words` (`go to`) make of the name behind the words from one on: `on the way to the lab`."""
+    def with_front(
+        self, at: int, end: int, words: Sequence[str], trie: TrieNode | None = None, left_out: range = range(0)
+    ) -> Match | None:
+        """The phrase that `words` (`go to`) make of the name behind the words from one on: `on the way to the lab`.
+
+        Some words may be left out of it.
+        """
         if not words:
             return None
-        places = [*[at] * len(words), *_rest(self._text, end)]
+        places = [*[at] * len(words), *(place for place in _rest(self._text, end) if place not in left_out)]
         tries = self._tries[:1] if trie is None else (trie,)
         match = _match(self._text, places, dict(enumerate(words)), tries, self._context)
         return _relocated(match, places) if match is not None and match.last > len(words) else None

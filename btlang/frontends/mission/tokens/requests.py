@@ -120,9 +120,14 @@ class Requests:
         if counted is None:
             return None
         behind = longest(self._vocabulary.trie, self._text, counted.last, self._context)
-        return (
-            counted.replace(last=behind.last) if behind is not None and behind.meaning.role == "there_are" else counted
-        )
+        if behind is None or behind.meaning.role != "there_are":
+            return counted
+        counting, left_out = self._vocabulary.asking["counting"], range(counted.last, behind.last)
+        wider = self._partial.with_front(at - 1, at, counting, left_out=left_out)
+        if wider is not None and wider.last > behind.last:
+            return wider  # `how many people are there in the lab`
+        made: Match = counted.replace(last=behind.last)
+        return made
 
     def _say_count(self, at: int, counted: Match, command: Token | None = None, slot: str = "") -> int:
         count = self._vocabulary.entry(COUNT)

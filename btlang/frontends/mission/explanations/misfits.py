@@ -1,0 +1,63 @@
+"""The slots of a phrase that has been begun for which the text has no value: `drive to the foo`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from btlang.record import Record
+from btlang.text.words import Words
+from btlang.vocabulary.entry import MANNER
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.trie import TrieNode
+from btlang.vocabulary.verbs import Frame
+from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS
+
+
+class Misfit(Record):
+    """A slot without a value of its type: the word where it is, the type, and the words that may follow the value."""
+
+    at: int
+    kind: str
+    following: frozenset[str]
+
+
+def misfits_of(text: Words, at: int, roots: Iterable[TrieNode], context: ReadingContext) -> Iterator[Misfit]:
+    """The slots that a phrase would have at the furthest word that its own words reach."""
+    furthest = at
+    found: dict[str, set[str]] = {}
+    paths: list[tuple[TrieNode, int]] = [(root, at) for root in roots]
+    while paths:
+        node, i = paths.pop()
+        for kind, last in _empty_roles(node.get(VERBS, ()), text, i, context) if i > at else ():
+            if last >= furthest and context.read(kind, text, last) is None:
+                found = {**(found if last == furthest else {}), kind: set()}
+                furthest = last
+        for _, kind, child in node.get(SLOTS, ()):
+            value = context.read(kind, text, i)
+            if value is not None:
+                paths.append((child, value[1]))
+            elif context.types[kind].names and any(word not in NO_WORDS for word in node):
+                continue  # one of a few names would be an addition to the words that are missing
+            elif i > furthest:
+                furthest, found = i, {kind: set(child)}
+            elif i == furthest and i > at:
+                found.setdefault(kind, set()).update(child)
+        child = node.get(text.words[i])
+        if child is not None:
+            paths.append((child, i + 1))
+    yield from (Misfit(furthest, kind, frozenset(following)) for kind, following in found.items())
+
+
+def _empty_roles(
+    frames: Iterable[Frame], text: Words, at: int, context: ReadingContext, has_theme: bool = False
+) -> Iterator[tuple[str, int]]:
+    """The types of the values that words such as `to` behind a verb or its theme introduce, and where each begins."""
+    for frame in frames:
+        for role in frame.roles:
+            lengths = (len(words) for words in role.words if tuple(text.words[at : at + len(words)]) == words)
+            length = max(lengths, default=0)
+            if length and role.name != MANNER:
+                yield role.type, at + length
+            theme = context.read(role.type, text, at) if role.is_direct and not has_theme else None
+            if theme is not None:
+                yield from _empty_roles((frame,), text, theme[1], context, True)
