@@ -92,6 +92,7 @@ class Lexer:
             endings = tuple(self.vocabulary.third_person)
             self._verb_forms |= {word for word in self.text.distinct if word.endswith(endings)}
         self._before_doing = {phrase.split()[0] for phrase in self.vocabulary.roles["without_entering"]}
+        self._asking = {*self.vocabulary.asking["asking_be"], *self.vocabulary.asking["asking_do"]}
         self._is_apart = False  # the statement that is read runs at another time than the next one
         self._unknown = UnknownWords(
             self.text, self.vocabulary, self.context, self.names.definitions, self._partial, self.tokens, self.problems,
@@ -154,7 +155,7 @@ class Lexer:
         headers, prefixes, others = self.names.definitions.headers, self.names.prefixes, self.names.others
         going_on, articles, meanings_of = text.going_on, text.articles, self._meanings_of
         remarks = self._remarks if self._remarks.is_possible else None
-        asking = {*self.vocabulary.asking["asking_be"], *self.vocabulary.asking["asking_do"]}
+        asking = self._asking
         sharing, joint = self._partial.sharing, self.vocabulary.word("and")
         origin: Origin | None = None
         while at < last:
