@@ -57,7 +57,7 @@ def mended_line(diagnostic: Diagnostic) -> str:
     shown = mended  # a hint that has the words together with the one before them says enough
     if before.strip():
         shown = words if span.start < diagnostic.span.start else f"{before.split()[-1]} {words}"
-    is_in_hint = re.search(rf"{re.escape(shown)}(?! \{{)", diagnostic.hint)  # `go to {place}` doesn't show `go to`
+    is_in_hint = re.search(rf"{re.escape(shown)}(?! \.\.\.| \{{)", diagnostic.hint)  # `go to ...` doesn't show `go to`
     return "" if len(mended) > _WIDEST or is_in_hint else mended
 
 

@@ -14,7 +14,16 @@ from btlang.text.spelling import nearest
 from btlang.text.words import Orthography, split
 from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, Role, SlotSpec
-from btlang.vocabulary.language_tables import ASKING, GOES_ON, NO_PHRASES, ROLES, about_roles, comparing_phrases, merged
+from btlang.vocabulary.language_tables import (
+    ASKING,
+    GOES_ON,
+    NO_PHRASES,
+    NOT_ALONE,
+    ROLES,
+    about_roles,
+    comparing_phrases,
+    merged,
+)
 from btlang.vocabulary.nouns import Features, with_plurals
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants
 from btlang.vocabulary.reading_context import Known, ReadingContext
@@ -430,11 +439,12 @@ class Lexicon:
         ordered = self.types[kind].kind in ("quantity", "number")
         for name, patterns in self.comparisons.items():
             if ordered or name == "equal":
-                yield from (form for way in comparing_phrases(name, patterns) for form in forms(way, self.articles))
+                yield from (form for way in comparing_phrases(name, patterns) for form in self._forms(way))
 
     def _find_collisions(self) -> None:
         for one, other in collisions(self.trie, self.values):
-            self._collide(one, other)
+            if one.role not in NOT_ALONE and other.role not in NOT_ALONE:
+                self._collide(one, other)
 
     def _collide(self, one: Meaning, other: Meaning) -> None:
         """Told at the entry that was loaded later; connectives come first."""

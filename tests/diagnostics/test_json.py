@@ -28,7 +28,7 @@ def test_a_diagnostic_of_a_misspelt_name(capsys: pytest.CaptureFixture[str]) -> 
             "code": "BT013",
             "severity": "error",
             "message": "There's no place or person or object called 'ktichen'.",
-            "hint": "Similar: kitchen",
+            "hint": "I understood 'go to ...'. Similar: kitchen",
             **place,
             "words": "ktichen",
             "fix": {"text": "kitchen", **place},

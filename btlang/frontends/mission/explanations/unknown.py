@@ -351,6 +351,8 @@ def _nearest_phrases(
 
 def _begins_like(written: list[str], start: list[str], vocabulary: Lexicon) -> bool:
     """Whether the first words are the same but for spelling: `lookaround` and `look around`, too."""
+    if not (written and start):
+        return False
     first, joined = written[0], "".join(start)
     pairs = (first, start[0]), (first, joined), ("".join(written), joined)
     return any(one == other or is_respelling(one, other, vocabulary) for one, other in pairs)

@@ -18,7 +18,7 @@ from btlang.frontends.mission.tokens.order_words import OrderWords
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
 from btlang.frontends.mission.tokens.remarks import Remarks
 from btlang.frontends.mission.tokens.requests import Requests
-from btlang.frontends.mission.tokens.silent_words import MARKS, after_politeness, begins, without_meaning
+from btlang.frontends.mission.tokens.silent_words import MARKS, after_politeness, begins, begins_item, without_meaning
 from btlang.frontends.mission.tokens.unknown_words import UnknownWords
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, Words, split
@@ -329,7 +329,7 @@ class Lexer:
         text, tokens = self.text, self.tokens
         if match is not None and role in ORDER:
             return self._order.read(match, at)
-        if match is not None and role == "ordinal" and at not in text.articles and begins(tokens):
+        if role == "ordinal" and match is not None and at not in text.articles and begins_item(tokens):
             return match.last + (text.words[match.last] == ",")
         if match is not None and role == "mind":
             return self._partial.add(match.last)

@@ -12,6 +12,7 @@ from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import find
 
+_LINES = frozenset(("newline", "semi", "indent", "dedent", "define"))
 MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 """The raw kinds of marks."""
 BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon", "comma", "then"))
@@ -19,7 +20,12 @@ BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "co
 
 
 def begins(tokens: Sequence[Token]) -> bool:
-    """Whether a statement begins at the word behind these tokens."""
+    """Whether a statement begins at the word behind these tokens, out of brackets."""
+    return not tokens or tokens[-1].kind in _LINES
+
+
+def begins_item(tokens: Sequence[Token]) -> bool:
+    """The same, or an item of a list or bracket."""
     return not tokens or tokens[-1].kind in BEGINS
 
 
