@@ -107,6 +107,7 @@ class Words:
         "ends",
         "going_on",
         "lines",
+        "memo",
         "open_quotes",
         "picked",
         "source",
@@ -131,6 +132,8 @@ class Words:
         self.unreadable: list[Span] = []
         self.picked: tuple[Words, Sequence[int]] | None = None
         """Where these are words of another text, side by side: that text, and the place of each in it."""
+        self.memo: dict[object, dict[tuple[int, str], object]] = {}
+        """What readers found at its words, each for itself: the same words are read again and again."""
         self._distinct: frozenset[str] | None = None
 
     @property

@@ -110,10 +110,11 @@ def longest(
                     if plain and kind in openers and (denies or word not in openers[kind]):
                         continue  # as nearly always, without reading
                     value = context.read(kind, text, i)
-                    wider = context.wider(kind, text, i, value)
-                    paths += [(child, end, (*found, SlotValue(name, kind, said, i, end))) for said, end in wider]
+                    if value is not None and words[value[1]] in context.modifiers:
+                        wider = context.wider(kind, text, i, value)
+                        paths += [(child, end, (*found, SlotValue(name, kind, said, i, end))) for said, end in wider]
                     if value is None:
-                        if not plain or word in context.set_starts:
+                        if kind in WORLD and (not plain or word in context.set_starts):
                             sets = _sets(root, text, i, context, name, kind)
                             paths += [(child, every.last, (*found, every)) for every in reversed(sets)]
                         continue

@@ -186,8 +186,11 @@ class Values(Measures):
         """Of words such as `every place` and `the red cup` which names they are for, and where they end."""
         if text.words[at] not in self.choice_starts:
             return None
-        found = self.phrases.longest(text, at, self.names_tree, self._fits(kind), self.adjective_starts)
-        return self._resolved(found, text, at)
+        memo: dict[tuple[int, str], Any] = text.memo.setdefault(self, {})
+        if (at, kind) not in memo:
+            found = self.phrases.longest(text, at, self.names_tree, self._fits(kind), self.adjective_starts)
+            memo[at, kind] = self._resolved(found, text, at)
+        return memo[at, kind]  # type: ignore[no-any-return]
 
     def _resolved(self, found: tuple[Description, int] | None, text: Words, at: int) -> tuple[Description, int] | None:
         """What is described, None where a bare noun such as `object` describes nothing."""
@@ -273,6 +276,8 @@ class Values(Measures):
                 count, start = "2", at + 1
             elif (number := self.number(text, at)) is not None and number[0] >= 1 and number[0] == int(number[0]):
                 count, start = str(int(number[0])), number[1]
+                if text.words[start] not in self.group_starts:
+                    return  # `2 m`
             elif not is_bare and text.words[at] not in self.group_starts:
                 return  # as nearly always
             found = self.phrases.plural(text, start, self.names_tree, self._fits(kind), self.adjective_starts)

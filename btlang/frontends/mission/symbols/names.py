@@ -119,7 +119,7 @@ class Names:
         for at in [at for at, word in enumerate(text.words) if word in starts]:
             choice = values.choice(text, at) if at >= last and at not in ends else None
             last = choice[1] if choice is not None else max(last, ends.get(at, 0))
-            if choice is not None and choice[0].how in CHOICES:
+            if choice is not None and choice[0].how in CHOICES and choice[0].type not in found:
                 kind, named = choice[0].type, find(values.names_tree(choice[0].type), text.words, at)
                 if (named is None or named[1] < last) and not self._is_in_name(kind, text, at):
                     match = self.phrases.at(at)

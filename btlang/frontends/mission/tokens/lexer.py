@@ -28,6 +28,7 @@ from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import longest
+from btlang.vocabulary.value_type import TEXT
 from btlang.vocabulary.word_tree import SLOTS
 
 _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
@@ -93,6 +94,7 @@ class Lexer:
             self._verb_forms |= {word for word in self.text.distinct if word.endswith(endings)}
         self._before_doing = {phrase.split()[0] for phrase in self.vocabulary.roles["without_entering"]}
         self._asking = {*self.vocabulary.asking["asking_be"], *self.vocabulary.asking["asking_do"]}
+        self._joint = self.vocabulary.word("and")
         self._is_apart = False  # the statement that is read runs at another time than the next one
         self._unknown = UnknownWords(
             self.text, self.vocabulary, self.context, self.names.definitions, self._partial, self.tokens, self.problems,
@@ -156,7 +158,7 @@ class Lexer:
         going_on, articles, meanings_of = text.going_on, text.articles, self._meanings_of
         remarks = self._remarks if self._remarks.is_possible else None
         asking = self._asking
-        sharing, joint = self._partial.sharing, self.vocabulary.word("and")
+        sharing, joint = self._partial.sharing, self._joint
         origin: Origin | None = None
         while at < last:
             word = words[at]
@@ -279,7 +281,8 @@ class Lexer:
                         origin = (token, *origin[1:]) if shared and origin else (token, at, match, root)
                 else:
                     said = calls.token(match, at)
-                    end = self._requests.value_in(match, at, said) if match.values else 0
+                    has_text = match.values and match.values[-1].type == TEXT
+                    end = self._requests.value_in(match, at, said) if has_text else 0
                     if end:
                         at = end
                         continue
