@@ -61,9 +61,20 @@ class Calls:
             return Token(meaning.role, start, end, values[0].text)
         return Token(meaning.role, start, end, str(meaning.value) if meaning.role == "count" else None, meaning.between)
 
-    def note(self, match: Match) -> None:
-        """What pronouns stand for from here on."""
+    def note(self, match: Match, is_alternative: bool = False) -> None:
+        """What pronouns stand for from here on: of alternatives only the run knows which one it was."""
+        before = dict(self._context.latest) if is_alternative else {}
+        self._note_values(match)
+        for kind, value in before.items():
+            if self._context.latest.get(kind, value) != value:
+                del self._context.latest[kind]
+
+    def _note_values(self, match: Match) -> None:
         for value in sorted(match.values, key=lambda value: value.name == value.type):  # a theme last: `it` prefers it
+            entry = match.meaning.entry
+            if value.more and (value.joiner == "or" or (entry is not None and entry.first and value.type == PLACE)):
+                self._context.latest.pop(value.type, None)
+                continue
             latest = value.group or (value.more[-1] if value.more else value.text)
             choice = choice_of(latest) if latest[:1] == "{" else None
             if choice is not None:

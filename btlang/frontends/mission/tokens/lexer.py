@@ -304,7 +304,7 @@ class Lexer:
                 if role in _ROLES:
                     tokens[-1].kind = _ROLES[role][len(tokens) > 1 and tokens[-2].kind == "stop"]
                 if match.values:
-                    calls.note(match)
+                    calls.note(match, len(tokens) > 1 and tokens[-2].kind in ("or", "otherwise"))
                 at = match.last
 
     def _end_statement(self) -> None:

@@ -5,7 +5,7 @@ An arrival goes on as `then` would. A journey behind `on the way to` or `from` b
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import Called, Listed, Token, constraint_of
+from btlang.frontends.mission.token import RULES, Called, Listed, Token, constraint_of
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands
 from btlang.frontends.mission.tokens.silent_words import BEGINS
@@ -17,6 +17,8 @@ from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
 
 _JOINTS = frozenset(("and", "comma", "then"))
+_LINE_STARTS = frozenset(("newline", "semi", "dedent"))
+_FORMS = frozenset((*RULES, "if", "unless", "while", "until", "otherwise", "if_doing", "if_works"))
 _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ")")
 
 
@@ -68,6 +70,8 @@ class OrderWords:
         journey = self._journey()
         if journey is None or (match.values and not _leads_to(journey, match.values[0].text)):
             return 0
+        if self._may_be_left_out(journey):
+            return 0  # `If bumped, go to the lab. When you arrive, wave` might wave without the journey
         if self._is_end(end):
             return end if tokens[-1].kind == "command" else 0
         while tokens[-1].kind in _JOINTS:
@@ -76,6 +80,18 @@ class OrderWords:
             return 0
         tokens.append(Token("then", self._text.starts[at], self._text.ends[end - 1]))
         return end + (self._text.words[end] == ",")
+
+    def _may_be_left_out(self, journey: Token) -> bool:
+        """Whether the journey is that of an earlier statement that doesn't always run, or runs beside the others."""
+        at = self._tokens.index(journey)
+        if not any(token.kind in _LINE_STARTS for token in self._tokens[at:]):
+            return False
+        for token in reversed(self._tokens[:at]):
+            if token.kind in _LINE_STARTS:
+                return False
+            if token.kind in _FORMS:
+                return True
+        return False
 
     def _start(self, at: int, end: int) -> int:
         """`from the lab, go to the hall`, `go from the lab to the hall`: to the first place, then on."""

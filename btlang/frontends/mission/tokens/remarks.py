@@ -8,7 +8,7 @@ from __future__ import annotations
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.references import COUNT, choice_of
+from btlang.vocabulary.references import COUNT, Parts, choice_of
 from btlang.vocabulary.word_tree import find, tree_of
 
 _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ",")
@@ -67,18 +67,19 @@ class Remarks:
             ways = [(group, last) for group, _, last in context.sets(kind, text, at) if group]
             ways += context.ways(kind, text, at)
             for value, last in reversed(ways):
-                end = self._place(kind, last) if stands else last
+                parts, end = self._place(kind, last) if stands else ((), last)
                 choice = choice_of(value)
                 counts = choice is not None and COUNT in dict(choice.parts)
                 if end and text.words[end] in _ENDS and (stands or choice is not None) and not counts:
-                    context.latest[kind] = value
+                    told = choice and choice.replace(parts=tuple(sorted((*choice.parts, *parts))))
+                    context.latest[kind] = told.text if told is not None else value
                     return end
         return 0
 
-    def _place(self, kind: str, at: int) -> int:
-        """Where the words about a thing end that say where it is; 0 if there are none."""
+    def _place(self, kind: str, at: int) -> tuple[Parts, int]:
+        """Where a thing stands, and where the words about that end; 0 if there are none."""
         context, text = self._context, self._text
         if text.words[at] not in self._be or text.words[at + 1] not in context.modifiers:
-            return 0
+            return (), 0
         behind = context.values.modifiers.behind(kind, text, at + 1, context.values.names_tree)
-        return max((last for _, last in behind), default=0)
+        return max(behind, key=lambda way: way[1], default=((), 0))
