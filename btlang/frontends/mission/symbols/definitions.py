@@ -161,7 +161,7 @@ def _header(
         polite = phrases.at(start)
         if polite is None or polite.meaning.role != "politeness" or polite.last > at:
             break
-        start = polite.last
+        start = polite.last + (text.words[polite.last] == ",")
     if start + 1 == at and text.words[start][0] == '"':
         return Header(text.words[start][1:], text.span(start, at), at + 1, reach(text, at), is_quoted=True)
     asking = phrases.vocabulary.asking

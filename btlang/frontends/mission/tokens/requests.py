@@ -20,6 +20,7 @@ from btlang.vocabulary.value_type import TEXT
 from btlang.vocabulary.values import key_of
 
 _MOST_WORDS = 8  # of the subject of a question
+_BEHIND = ("politeness", "then", "and")
 _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ",", ")")
 
 
@@ -184,7 +185,11 @@ class Requests:
         return Called(self._saying, ((self._saying.slots[0].name, words),))
 
     def _ends(self, at: int) -> bool:
-        return self._text.words[at] in _ENDS
+        """Whether a question may end before a word."""
+        if self._text.words[at] in _ENDS:
+            return True
+        match = longest(self._vocabulary.trie, self._text, at, self._context)
+        return match is not None and match.meaning.role in _BEHIND
 
     def _then(self, at: int) -> None:
         self._tokens.append(Token("then", self._text.starts[at], self._text.starts[at]))
