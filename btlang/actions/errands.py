@@ -54,25 +54,18 @@ def carry(
     manner: str | None = None,
 ) -> Steps:
     """Picks up an object unless a hand holds it, drives to a place or a point, and puts it down there."""
-    yield from paced(robot, manner, _carry(robot, object, place, x, y, facing))
-
-
-def _carry(
-    robot: Fetching, object: str, place: str | None, x: float | None, y: float | None, facing: float | None
-) -> Steps:
-    yield from _hold(robot, object)
-    yield from go_to(robot, place, x, y, facing)
-    yield from put_down(robot, object)
+    yield from paced(robot, manner, _carry(robot, object, go_to(robot, place, x, y, facing)))
 
 
 def put_in(robot: Fetching, object: str, container: str, manner: str | None = None) -> Steps:
     """Picks up an object unless a hand holds it, drives up to another object and puts it down there."""
-    yield from paced(robot, manner, _put_in(robot, object, container))
+    yield from paced(robot, manner, _carry(robot, object, travel(robot, container)))
 
 
-def _put_in(robot: Fetching, object: str, container: str) -> Steps:
+def _carry(robot: Fetching, object: str, way: Steps) -> Steps:
+    """Picks up an object unless a hand holds it, goes this way and puts it down."""
     yield from _hold(robot, object)
-    yield from travel(robot, container)
+    yield from way
     yield from put_down(robot, object)
 
 

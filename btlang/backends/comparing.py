@@ -17,12 +17,21 @@ if TYPE_CHECKING:
     from typing import Any
 
 _AS_GOOD_AS_EQUAL = 1e-9
+
+
+def _is_equal(value: Any, wanted: Any) -> bool:
+    """Numbers up to rounding, texts in any case."""
+    if isinstance(value, str) or isinstance(wanted, str):
+        return str(value).casefold() == str(wanted).casefold()
+    return bool(abs(value - wanted) <= _AS_GOOD_AS_EQUAL * max(1.0, abs(wanted)))
+
+
 _HOLDS: dict[str, Callable[[float, float], bool]] = {
     "below": operator.lt,
     "above": operator.gt,
     "at_least": operator.ge,
     "at_most": operator.le,
-    "equal": lambda value, wanted: _is_equal(value, wanted),
+    "equal": _is_equal,
 }
 _MOST_DIGITS = 17  # all that a double has
 
@@ -54,13 +63,6 @@ def comparing(
     compare.__signature__ = own.replace(parameters=[*own.parameters.values(), *ports])  # type: ignore[attr-defined]
     compare.__name__ = getattr(quantity, "__name__", "quantity")
     return compare
-
-
-def _is_equal(value: Any, wanted: Any) -> bool:
-    """Numbers up to rounding, texts in any case."""
-    if isinstance(value, str) or isinstance(wanted, str):
-        return str(value).casefold() == str(wanted).casefold()
-    return bool(abs(value - wanted) <= _AS_GOOD_AS_EQUAL * max(1.0, abs(wanted)))
 
 
 def _hold(limits: Mapping[str, Any], value: Any) -> bool:

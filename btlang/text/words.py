@@ -48,14 +48,14 @@ class Orthography(Record):
     """How a language is written: its articles, and whether `1,5` is a number.
 
     `spellings` are words that are read as another one: contractions (Spanish `al` as `a`), and words that are written
-    without their accents, where no other word is written so. `contracted` are words with an apostrophe, which may be
-    written as two: `don t`, `do n't`.
+    without their accents, where no other word is written so. `contracted` are words with an apostrophe that may be
+    written as two (`don t`, `do n't`), by the second and the first of these.
     """
 
     articles: frozenset[str] = frozenset()
     decimal_comma: bool = False
     spellings: Mapping[str, str] = {}
-    contracted: frozenset[str] = frozenset()
+    contracted: Mapping[str, Mapping[str, str]] = {}
 
     def with_words(self, words: Iterable[str]) -> Orthography:
         """The same, where these words may be written without their accents."""
@@ -63,6 +63,16 @@ class Orthography(Record):
         plain = {without_accents(word): word for word in known if not word.isascii()}
         new = {bare: word for bare, word in plain.items() if bare not in known}
         return self.replace(spellings={**self.spellings, **new}) if new else self
+
+    def with_contractions(self, words: Iterable[str]) -> Orthography:
+        """The same, where these words with an apostrophe may be written as two."""
+        made: dict[str, dict[str, str]] = {}
+        for word in words:
+            front, _, tail = word.partition("'")
+            made.setdefault(tail, {})[front] = word
+            if word.endswith("n't"):
+                made.setdefault("n't", {})[word.removesuffix("n't")] = word
+        return self.replace(contracted=made)  # type: ignore[no-any-return]
 
     def word(self, written: str) -> str:
         """A word in lower case, with its accents as they are known."""
@@ -176,7 +186,7 @@ def split(source: Source, orthography: Orthography) -> Words:
     if orthography.decimal_comma:
         text = re.sub(_DECIMAL_COMMA, r"\1.\2", text)
     articles, spellings = orthography.articles, orthography.spellings
-    tails = {"n't", *(word.partition("'")[2] for word in orthography.contracted)}
+    contracted = orthography.contracted
     first = 0
     margin = _MARGIN.match(text).group()  # type: ignore[union-attr]
     indent, is_item = below = _indent(margin)
@@ -202,12 +212,8 @@ def split(source: Source, orthography: Orthography) -> Words:
             held = -1
         if kind == _WORD:
             word = word.lower() if word.isascii() and not spellings else orthography.word(word)
-            if (
-                word in tails
-                and len(words) > first
-                and (whole := _contracted(words[-1], word)) in orthography.contracted
-            ):
-                words[-1], ends[-1] = whole, end
+            if word in contracted and len(words) > first and words[-1] in contracted[word]:
+                words[-1], ends[-1] = contracted[word][words[-1]], end
                 continue
             if word in articles and not (
                 text[start - 1 : start] == "{" and text[end : end + 1] == "}"
@@ -252,11 +258,6 @@ def split(source: Source, orthography: Orthography) -> Words:
     if any(line.is_item for line in result.lines):
         result.lines = list(_indented_items(words, result.lines))
     return result
-
-
-def _contracted(word: str, tail: str) -> str:
-    """`don` and `t` as `don't`, `do` and `n't` too."""
-    return word + tail if "'" in tail else f"{word}'{tail}"
 
 
 def _indent(margin: str) -> tuple[int, bool]:

@@ -31,7 +31,7 @@ from btlang.vocabulary.trie import TrieNode, add, collisions
 from btlang.vocabulary.value_type import PLACE, WORLD, ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import Frame, parts_of, phrases_of
-from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS, tree_of
+from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS, WordTree, tree_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ class Lexicon:
         self.orthography = Orthography(self.articles, language["decimal_comma"], language["contractions"])
         said = chain(*language["roles"].values(), *language["negations"].values(), language["relative_denials"])
         contracted = {word for phrase in said for word in phrase.split() if re.fullmatch(r"[a-z]+'[a-z]+", word)}
-        self.orthography = self.orthography.replace(contracted=frozenset(contracted))
+        self.orthography = self.orthography.with_contractions(contracted)
         self._with_names: dict[tuple[object, ...], Lexicon] = {}
         self.values = Values(self._types_of(files, english), language, [noun for file in files for noun in file.nouns])
         for file in files:
@@ -85,9 +85,9 @@ class Lexicon:
                 if self.types[kind].kind == "names":
                     self.values.add_name(kind, self._bare(words), name)
         own = {kind: [(name, name) for name in self.values.listed(kind)] for kind in WORLD if kind in self.types}
-        for kind, pairs in self._with_colors(own).items():
-            for words, name in pairs[len(own[kind]) :]:
-                self.values.add_name(kind, words, name)
+        for kind, pairs in self._colors(own).items():
+            for color, name in pairs:
+                self.values.add_name(kind, color, name)
         self.context = ReadingContext(self.values)
         """What is known without a mission; each reader of one has its own context."""
         self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
@@ -101,6 +101,13 @@ class Lexicon:
         """Words that say nothing behind `until` and `before`: `until you go to the lab`."""
         self.asking: Mapping[str, Sequence[str]] = {**dict.fromkeys(ASKING, ()), **language["asking"]}
         """Words that questions and shortened journeys leave out, and those that begin questions, by what they are."""
+        self.remarks: tuple[WordTree, ...] = tuple(
+            tree_of((phrase, True) for phrase in self.asking[name]) for name in ("feeling", "there", "states")
+        )
+        """The words of remarks: how somebody feels, that there is something, and what may be felt."""
+        verb = "".join(self.asking["journey"][:1])
+        self.journey_verbs = frozenset((verb, *self.values.role_words.synonyms.get(verb, ())))
+        """The verbs of a journey: `go from the lab to the hall`."""
         self.purpose = tree_of((phrase, True) for phrase in language["purpose"])
         """Words between a command and what it is for: `go through the hall to get to the lab`."""
         self.continuing = frozenset(
@@ -160,7 +167,8 @@ class Lexicon:
 
         def made() -> Lexicon:
             pairs = {kind: [(self._bare(name), name) for name in listed] for kind, listed in names.items()}
-            pairs = with_plurals(self._with_colors(pairs), self._endings)
+            colors = self._colors(pairs)
+            pairs = with_plurals({kind: [*own, *colors.get(kind, ())] for kind, own in pairs.items()}, self._endings)
             values = self.values.with_names(pairs, features)
             words = (word for pair in chain(*pairs.values()) for word in pair[0].lower().split())
             written = self.orthography.with_words(word for word in words if not word.isascii())
@@ -169,16 +177,15 @@ class Lexicon:
         known = (*((kind, tuple(listed)) for kind, listed in names.items()), *(features or {}).items())
         return recent(self._with_names, known, made)
 
-    def _with_colors(self, named: dict[str, list[tuple[str, str]]]) -> dict[str, list[tuple[str, str]]]:
+    def _colors(self, named: dict[str, list[tuple[str, str]]]) -> dict[str, list[tuple[str, str]]]:
         """`the green` and `the green one` for the green room, where no other name begins with that color."""
         names = {name.lower() for pairs in named.values() for _, name in pairs}
-        made = dict(named)
+        made = {}
         for kind in (PLACE, "zone"):
             firsts = [(words.lower().partition(" ")[0], name) for words, name in named.get(kind, ()) if " " in words]
             colors = [(color, name) for color, name in firsts if self.values.takes_word("color", color)]
             own = [pair for pair in colors if sum(f"{name} ".startswith(f"{pair[0]} ") for name in names) == 1]
-            own += [(f"{color} {one}", name) for color, name in own for one in sorted(self.values.ones)]
-            made |= {kind: [*named[kind], *own]} if own else {}
+            made[kind] = own + [(f"{color} {one}", name) for color, name in own for one in sorted(self.values.ones)]
         return made
 
     def _bare(self, words: str) -> str:

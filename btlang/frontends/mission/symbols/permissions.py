@@ -20,11 +20,11 @@ class Permissions:
     def __init__(self, text: Words, vocabulary: Lexicon) -> None:
         self.ends: dict[int, int] = {}
         self.problems: list[Diagnostic] = []
-        self._trie, self._context = vocabulary.trie, vocabulary.context.with_references()
         self._allowing = tree_of((phrase, True) for phrase in vocabulary.roles["may"])
         self._staying = tree_of((phrase, True) for phrase in vocabulary.roles["or_stay"])
         if text.distinct.isdisjoint((*self._allowing, *self._staying)):
             return
+        self._trie, self._context = vocabulary.trie, vocabulary.context.with_references()
         self._asking = frozenset(word for role in ("if", "once") for word in _firsts(vocabulary, role))
         self._joining = {word for role in ("then", "and") for word in _firsts(vocabulary, role)}
         self._fronts = self._asking | self._joining

@@ -39,7 +39,7 @@ class Calls:
     """Makes tokens of the phrases of one text; what is wrong with their values becomes `problems`."""
 
     def __init__(self, text: Words, vocabulary: Lexicon, context: ReadingContext, problems: list[Diagnostic]) -> None:
-        self._text, self._vocabulary, self._context, self._problems = text, vocabulary, context, problems
+        self._text, self._vocabulary, self._context, self.problems = text, vocabulary, context, problems
         self._owners = not text.distinct.isdisjoint(vocabulary.values.names_tree(OWNER))
 
     def token(self, match: Match, at: int) -> Token:
@@ -50,7 +50,7 @@ class Calls:
             self._note_owners(value)
         twice = two_goals(match, at, text, self._vocabulary) if len(values) > 1 else None
         if twice is not None:
-            self._problems.append(twice)
+            self.problems.append(twice)
         start, end = text.starts[at], text.ends[match.last - 1]
         if values and values[-1].first == match.last:  # the article was the value: `print a`
             end = text.articles[match.last][1]
@@ -92,7 +92,7 @@ class Calls:
         for first, last in known.adjectives.nobody_known(self._text, value.first, value.last, known.names_tree):
             if self._text.words[first] not in said:
                 span = self._text.span(first, last)
-                self._problems.append(diagnostic("BT177", span, words=span.text))
+                self.problems.append(diagnostic("BT177", span, words=span.text))
 
     def _called(self, entry: Entry, match: Match, at: int) -> Called | Listed:
         """The entry with its arguments, or with several of them where one slot holds a list."""
@@ -115,7 +115,7 @@ class Calls:
         if not lists:
             return Called(entry, self.arguments(entry, match.values))
         if len(lists) > 1:
-            self._problems.append(
+            self.problems.append(
                 diagnostic("BT034", self._text.span(at, match.last), words=self._text.span(at, match.last).text)
             )
         value = match.values[lists[0]]
@@ -136,7 +136,7 @@ class Calls:
         set_to = f"{self._vocabulary.word('set')} first {self._vocabulary.word('set_to')} {words}"
         reason = f"it needs a {double.type} that is chosen before"
         span = self._text.span(at, match.last)
-        self._problems.append(
+        self.problems.append(
             diagnostic(
                 "BT152", span, words=span.text, reason=reason, advice=f"Write it in two lines, the first: {set_to}"
             )
@@ -159,7 +159,7 @@ class Calls:
         if self._context.types[value.type].kind == "names" and text[:1] in ("", "("):
             from btlang.frontends.mission.explanations import nameless  # most values have names
 
-            self._problems.append(nameless.explained(self._text, value, self._vocabulary, self._context))
+            self.problems.append(nameless.explained(self._text, value, self._vocabulary, self._context))
         if "{" not in text or self._context.types[value.type].kind != "text":
             return text
         text = renamed(text, lambda name: key_of(self._vocabulary.orthography.words(name)))
@@ -172,4 +172,4 @@ class Calls:
     def _unknown_value(self, span: Span, key: str) -> None:
         from btlang.frontends.mission.explanations.unknown import unknown_value
 
-        self._problems.append(unknown_value(span, key, self._context.known or ()))
+        self.problems.append(unknown_value(span, key, self._context.known or ()))

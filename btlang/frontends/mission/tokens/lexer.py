@@ -81,9 +81,7 @@ class Lexer:
             self.text, self.vocabulary, self.names.definitions.trie, self.context, self._calls, self.tokens
         )
         self._order = OrderWords(self.text, self.vocabulary, self.context, self._calls, self._partial, self.tokens)
-        self._requests = Requests(
-            self.text, self.vocabulary, self.context, self._calls, self._partial, self.tokens, self.problems
-        )
+        self._requests = Requests(self.text, self.vocabulary, self.context, self._calls, self._partial, self.tokens)
         self._remarks = Remarks(self.text, self.vocabulary, self.context)
         endings = tuple(self.vocabulary.doing)
         behind = ("called", "with", "giving")

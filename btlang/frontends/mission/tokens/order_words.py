@@ -6,38 +6,19 @@ An arrival goes on as `then` would. A journey behind `on the way to` or `from` b
 from __future__ import annotations
 
 from btlang.frontends.mission.token import RULES, Called, Listed, Token, constraint_of
-from btlang.frontends.mission.tokens.calls import Calls
-from btlang.frontends.mission.tokens.partial_commands import PartialCommands
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.silent_words import BEGINS
-from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.capabilities import MOVES
-from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
 
 _JOINTS = frozenset(("and", "comma", "then"))
 _LINE_STARTS = frozenset(("newline", "semi", "dedent"))
 _FORMS = frozenset((*RULES, "if", "unless", "while", "until", "otherwise", "if_doing", "if_works"))
-_ENDS = (END_OF_STATEMENT, END_OF_TEXT, ")")
 
 
-class OrderWords:
-    """Those of one text, while its `tokens` are read; `read` returns the word at which to go on, 0 where it is none."""
-
-    def __init__(
-        self,
-        text: Words,
-        vocabulary: Lexicon,
-        context: ReadingContext,
-        calls: Calls,
-        partial: PartialCommands,
-        tokens: list[Token],
-    ) -> None:
-        self._text, self._vocabulary, self._context, self._calls = text, vocabulary, context, calls
-        self._partial, self._tokens = partial, tokens
-        verb = "".join(vocabulary.asking["journey"][:1])
-        self._verbs = frozenset((verb, *vocabulary.values.role_words.synonyms.get(verb, ())))
+class OrderWords(SentenceReader):
+    """Those of one text."""
 
     def read(self, match: Match, at: int) -> int:
         """Reads the words of one of these roles, where they say something."""
@@ -49,9 +30,6 @@ class OrderWords:
         if role == "on_way":
             return self._on_way(at, match.last)
         return self._arrival(match, at)
-
-    def _is_end(self, at: int) -> bool:
-        return self._text.words[at] in _ENDS
 
     def _journey(self) -> Token | None:
         """The latest command that drives."""
@@ -98,17 +76,17 @@ class OrderWords:
         tokens, words = self._tokens, self._text.words
         if tokens and tokens[-1].kind not in (*BEGINS, *_JOINTS):
             return 0
-        journey = self._partial.with_front(at, end, self._vocabulary.asking["journey"])
+        journey = self._with_front(at, end, "journey")
         if journey is None or self._is_end(journey.last) or any("{" in value.text for value in journey.values):
             return 0  # `from your room` isn't where it starts
         behind = journey.last + (words[journey.last] == ",")
-        self._add(journey, at)
+        self._partial.append(journey, at)
         tokens.append(Token("then", self._text.ends[journey.last - 1], self._text.ends[journey.last - 1]))
         return behind
 
     def start_of_leg(self, at: int) -> int:
         """`go from the lab to the hall`, by the verb at a word."""
-        if self._text.words[at] not in self._verbs:
+        if self._text.words[at] not in self._vocabulary.journey_verbs:
             return 0
         match = longest(self._vocabulary.trie, self._text, at + 1, self._context)
         return self._start(at, match.last) if match is not None and match.meaning.role == "start_at" else 0
@@ -118,10 +96,10 @@ class OrderWords:
         tokens = self._tokens
         if len(tokens) < 2 or tokens[-1].kind not in ("until", "before") or constraint_of(tokens[-2]) is None:
             return 0
-        journey = self._partial.with_front(at, at, self._vocabulary.asking["journey"])
+        journey = self._with_front(at, at, "journey")
         if journey is None:
             return 0
-        self._add(journey, at)
+        self._partial.append(journey, at)
         return journey.last
 
     def _on_way(self, at: int, end: int) -> int:
@@ -144,13 +122,13 @@ class OrderWords:
     def _on_way_to(self, at: int, end: int) -> int:
         """What is done on the way to a place: a journey with it, behind it for a task, constrained by it."""
         tokens, text = self._tokens, self._text
-        journey = self._partial.with_front(at, end, self._vocabulary.asking["journey"])
+        journey = self._with_front(at, end, "journey")
         if journey is None:
             return 0
         if tokens and tokens[-1].kind in ("command", "name"):
             joint = "and" if constraint_of(tokens[-1]) is not None else self._joint(tokens[-1])
             tokens.append(Token(joint, text.starts[at], text.ends[end - 1]))
-            self._add(journey, at)
+            self._partial.append(journey, at)
             return journey.last
         behind = journey.last + (text.words[journey.last] == ",")
         match = longest(self._vocabulary.trie, text, behind, self._context)
@@ -160,10 +138,10 @@ class OrderWords:
         joint = "and" if constraint_of(following) is not None else self._joint(following)
         if joint == "then":  # a task is done first
             tokens.append(Token("before", text.starts[at], text.ends[end - 1]))
-            self._add(journey, at)
+            self._partial.append(journey, at)
             tokens.append(Token("comma", text.starts[journey.last], text.starts[journey.last]))
         else:
-            self._add(journey, at)
+            self._partial.append(journey, at)
             tokens.append(Token(joint, text.ends[journey.last - 1], text.ends[journey.last - 1]))
         return behind
 
@@ -172,10 +150,6 @@ class OrderWords:
         value = token.value
         goes_along = isinstance(value, Called | Listed) and value.entry.accompaniment
         return "meanwhile" if goes_along else "then"
-
-    def _add(self, journey: Match, at: int) -> None:
-        self._tokens.append(self._calls.token(journey, at))
-        self._calls.note(journey)
 
 
 def _leads_to(journey: Token, place: str) -> bool:

@@ -10,6 +10,7 @@ from collections.abc import Container, Iterator, Mapping, Sequence
 
 from btlang.frontends.mission.token import Token, constraint_of
 from btlang.frontends.mission.tokens.calls import Calls
+from btlang.frontends.mission.tokens.silent_words import LINES
 from btlang.text.words import END_OF_TEXT, Words
 from btlang.vocabulary.entry import MANNER, THEME, VIA
 from btlang.vocabulary.lexicon import Lexicon
@@ -24,7 +25,6 @@ JOINTS = frozenset(("then", "and", "or", "comma", "otherwise"))
 """Behind these a command may leave out words of the one before it."""
 _COMMANDS = frozenset(("command", "name"))
 _DOING = frozenset(("command", "name", "wait", "wait_until", "wait_for", "wait_up_to"))
-_ENDS = frozenset(("newline", "semi", "indent", "dedent", "define"))
 _EITHER_END = (["for", "or"], ["up_to", "or"])  # `for 10 s or 2 m` says two ends of one command, not two commands
 _MOST_WORDS = 60
 _LONGEST_VERB = 4  # words
@@ -97,14 +97,18 @@ class PartialCommands:
         match = self.doing(at)
         if match is None:
             return 0
-        self._tokens.append(self._token_of(match, at))
+        self.append(match, at)
         return match.last
+
+    def append(self, match: Match, at: int) -> None:
+        """Adds a command that was found so."""
+        self._tokens.append(self._token_of(match, at))
 
     def add_third(self, at: int, other: Match | None) -> int:
         """A command in the third person: `the robot goes to the lab, then waves`."""
         tokens, text = self._tokens, self._text
         if tokens and tokens[-1].kind in JOINTS:
-            before = next((token for token in reversed(tokens) if token.kind in _DOING or token.kind in _ENDS), None)
+            before = _command_before(tokens)
             if before is None or before.role != "third":
                 return 0
         elif at == 0 or text.words[at - 1] not in self._vocabulary.asking["subject"]:
@@ -189,8 +193,13 @@ def may_be_doing(tokens: Sequence[Token]) -> bool:
         return bool(tokens)
     if tokens[-1].kind not in JOINTS:
         return False
-    before = (token for token in reversed(tokens) if token.kind in _DOING or token.kind in _ENDS)
-    return next((token.role == "doing" for token in before), False)
+    before = _command_before(tokens)
+    return before is not None and before.role == "doing"
+
+
+def _command_before(tokens: Sequence[Token]) -> Token | None:
+    """The latest command of the line, or what the line begins with."""
+    return next((token for token in reversed(tokens) if token.kind in _DOING or token.kind in LINES), None)
 
 
 def enlist(tokens: list[Token], command: Token) -> None:

@@ -9,7 +9,7 @@ from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import COUNT, Parts, choice_of
-from btlang.vocabulary.word_tree import find, tree_of
+from btlang.vocabulary.word_tree import find
 
 _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ",")
 _KINDS = ("object", "person")
@@ -20,14 +20,9 @@ class Remarks:
 
     def __init__(self, text: Words, vocabulary: Lexicon, context: ReadingContext) -> None:
         self._text, self._vocabulary, self._context = text, vocabulary, context
-        asking = vocabulary.asking
-        self._feeling, self._there, self._states = (
-            tree_of((phrase, True) for phrase in asking[name]) for name in ("feeling", "there", "states")
-        )
-        self._very = frozenset(asking["very"])
-        self._be = frozenset(asking["asking_be"])
-        starts = {*self._feeling, *self._there}
-        self.is_possible = not text.distinct.isdisjoint({*starts, *self._be})
+        self._feeling, self._there, self._states = vocabulary.remarks
+        self._very, self._be = vocabulary.asking["very"], vocabulary.asking["asking_be"]
+        self.is_possible = not text.distinct.isdisjoint((*self._feeling, *self._there, *self._be))
         """Whether there may be any."""
 
     def end(self, at: int) -> int:

@@ -5,41 +5,26 @@ Each becomes the commands that answer it: what is asked is measured, and said.
 
 from __future__ import annotations
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Remembered, Token
-from btlang.frontends.mission.tokens.calls import Calls
-from btlang.frontends.mission.tokens.partial_commands import PartialCommands
-from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.entry import COUNT, SAY, Entry
-from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import free_key
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import TEXT
 from btlang.vocabulary.values import key_of
 
 _MOST_WORDS = 8  # of the subject of a question
 _BEHIND = ("politeness", "then", "and")
-_ENDS = (END_OF_STATEMENT, END_OF_TEXT, ",", ")")
 
 
-class Requests:
-    """Those of one text, while its `tokens` are read; the functions return the word at which to go on, 0 for none."""
+class Requests(SentenceReader):
+    """Those of one text."""
 
-    def __init__(
-        self,
-        text: Words,
-        vocabulary: Lexicon,
-        context: ReadingContext,
-        calls: Calls,
-        partial: PartialCommands,
-        tokens: list[Token],
-        problems: list[Diagnostic],
-    ) -> None:
-        self._text, self._vocabulary, self._context, self._calls = text, vocabulary, context, calls
-        self._partial, self._tokens, self._problems = partial, tokens, problems
-        self._saying = vocabulary.entry(SAY)
+    @property
+    def _saying(self) -> Entry | None:
+        return self._vocabulary.entry(SAY)
 
     def question(self, match: Match | None, role: str, at: int) -> int:
         """A question at the start of a statement."""
@@ -49,10 +34,12 @@ class Requests:
         return read(at, match.last) if match is not None and read is not None else self._whether(at)
 
     def value_in(self, match: Match, at: int, command: Token) -> int:
-        """`say the battery`, `say how many people there are`: an article or a question word asks for a value."""
-        entry = match.meaning.entry
-        value = match.values[-1] if match.values else None
-        if value is None or value.type != TEXT or entry is None or not entry.accompaniment or entry.sort != "action":
+        """`say the battery`, `say how many people there are`: an article or a question word asks for a value.
+
+        The last value of the phrase is a text.
+        """
+        entry, value = match.meaning.entry, match.values[-1]
+        if entry is None or not entry.accompaniment or entry.sort != "action":
             return 0
         text, first = self._text, value.first
         asked = longest(self._vocabulary.trie, text, first, self._context)
@@ -70,7 +57,9 @@ class Requests:
         if measured is None:
             span = text.span(first, match.last)
             quoted = f'{text.span(at, first).text} "{span.text}"'
-            self._problems.append(diagnostic("BT157", span, words=span.text, values=self._values(), quoted=quoted))
+            self._calls.problems.append(
+                diagnostic("BT157", span, words=span.text, values=self._values(), quoted=quoted)
+            )
             return 0
         self._say(at, measured, command, value.name)
         return measured.last
@@ -96,7 +85,7 @@ class Requests:
 
     def _where(self, at: int, end: int) -> int:
         """`where is the cup?`: looks for it and says where it is."""
-        search = self._partial.with_front(at, end, self._vocabulary.asking["search"])
+        search = self._with_front(at, end, "search")
         if search is None or not self._ends(search.last):
             return 0
         measured = self._partial.with_front(
@@ -104,8 +93,7 @@ class Requests:
         )
         if measured is None or measured.last != search.last:
             return 0
-        self._tokens.append(self._calls.token(search, at))
-        self._calls.note(search)
+        self._partial.append(search, at)
         self._then(at)
         self._say(at, measured)
         return search.last
@@ -117,7 +105,7 @@ class Requests:
 
     def _counted(self, at: int) -> Match | None:
         """The command that counts what words name, with the words that may stand behind that."""
-        counted = self._partial.with_front(at - 1, at, self._vocabulary.asking["counting"])
+        counted = self._with_front(at - 1, at, "counting")
         if counted is None:
             return None
         behind = longest(self._vocabulary.trie, self._text, counted.last, self._context)
@@ -186,7 +174,7 @@ class Requests:
 
     def _ends(self, at: int) -> bool:
         """Whether a question may end before a word."""
-        if self._text.words[at] in _ENDS:
+        if self._is_end(at) or self._text.words[at] == ",":
             return True
         match = longest(self._vocabulary.trie, self._text, at, self._context)
         return match is not None and match.meaning.role in _BEHIND

@@ -12,7 +12,8 @@ from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import find
 
-_LINES = frozenset(("newline", "semi", "indent", "dedent", "define"))
+LINES = frozenset(("newline", "semi", "indent", "dedent", "define"))
+"""Behind these kinds of tokens a statement begins, out of brackets."""
 MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 """The raw kinds of marks."""
 BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon", "comma", "then"))
@@ -21,7 +22,7 @@ BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "co
 
 def begins(tokens: Sequence[Token]) -> bool:
     """Whether a statement begins at the word behind these tokens, out of brackets."""
-    return not tokens or tokens[-1].kind in _LINES
+    return not tokens or tokens[-1].kind in LINES
 
 
 def begins_item(tokens: Sequence[Token]) -> bool:
