@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import atexit
 import gc
+import getpass
 import os
 import re
 import signal
 import socket
 import sys
-from contextlib import suppress
+import tempfile
+import time
+from collections.abc import Generator, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from types import ModuleType
+from typing import IO
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -37,18 +42,62 @@ for number, usual in (
     if signal.getsignal(number) == signal.SIG_IGN:  # as with `nohup ... &`: what tests start would inherit that
         signal.signal(number, usual)
 
-REAL_TIME = ("tests/ros/", "tests/terminal/", "tests/web/")
-"""Folders of tests in which several processes must be quick enough for one another."""
-_QUICK = 2
-"""The workers that have these. With more of them at a time some come too late, and with one its tests are left over."""
+OVER_DDS = ("tests/ros/", "tests/diagnostics/test_pages.py::test_examples[BT107]")
+"""Tests of programs that find one another over DDS, each of which must be quick enough for the others."""
+_FOLDERS = ("components", "devices", "lies", "server", "speech", "task", "terminal", "web")
+IN_REAL_TIME = (*OVER_DDS, *(f"tests/{folder}/" for folder in _FOLDERS))
+"""Tests whose processes wait for one another, and for the clock: what only computes gives way to them."""
+_AT_ONCE = 2
+"""The tests of OVER_DDS that run at a time. With more some come too late."""
+_WORKER = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
+_GIVING_WAY = 15
+"""The niceness of a test that only computes."""
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """`-m long` is known before the tests are read, and the workers that have those in REAL_TIME go first."""
+    """`-m long` is known before the tests are read."""
     if config.option.markexpr == "long":
         os.environ[LONG] = "1"
-    if int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")) >= _QUICK:
-        os.nice(10)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
+    """A test over DDS waits until few others run, and one that only computes gives way to those that can't wait."""
+    _give_way(not item.nodeid.startswith(IN_REAL_TIME))
+    if not item.nodeid.startswith(OVER_DDS):
+        return (yield)
+    with _turn():
+        return (yield)
+
+
+def _give_way(only_computes: bool) -> None:
+    """Sets how nice this process and those that it starts are. Who isn't root can't become less nice again."""
+    if hasattr(os, "geteuid") and os.geteuid() == 0:
+        os.setpriority(os.PRIO_PROCESS, 0, _GIVING_WAY if only_computes else 0)
+    elif hasattr(os, "nice") and _WORKER >= _AT_ONCE and os.nice(0) == 0:
+        os.nice(_GIVING_WAY)
+
+
+@contextmanager
+def _turn() -> Iterator[None]:
+    """One of the turns that tests over DDS take, of all runs of the suite on this machine."""
+    with ExitStack() as stack:
+        paths = [Path(tempfile.gettempdir(), f"btlang-tests-{getpass.getuser()}-{turn}") for turn in range(_AT_ONCE)]
+        files = [stack.enter_context(path.open("w")) for path in paths]
+        while not any(map(_locked, files)):
+            time.sleep(0.05)
+        yield
+
+
+def _locked(file: IO[str]) -> bool:
+    """Whether the file is this process's alone from now on, until it is closed."""
+    import fcntl  # which Windows hasn't, where no test over DDS runs
+
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
 
 
 def pytest_xdist_auto_num_workers() -> int | None:
@@ -57,13 +106,13 @@ def pytest_xdist_auto_num_workers() -> int | None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Each worker first gets as many tests of the list as the others, in a row: some begin with those in REAL_TIME."""
+    """Each worker first gets as many tests of the list as the others, in a row: some begin with those over DDS."""
     workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
-    real_time = [item for item in items if item.nodeid.startswith(REAL_TIME)]
-    others = [item for item in items if not item.nodeid.startswith(REAL_TIME)]
-    share, half = len(items) // workers, len(real_time) // min(_QUICK, workers)
+    over_dds = [item for item in items if item.nodeid.startswith(OVER_DDS)]
+    others = [item for item in items if not item.nodeid.startswith(OVER_DDS)]
+    share, half = len(items) // workers, len(over_dds) // min(_AT_ONCE, workers)
     between = max(0, share - half)
-    items[:] = [*real_time[:half], *others[:between], *real_time[half:], *others[between:]]
+    items[:] = [*over_dds[:half], *others[:between], *over_dds[half:], *others[between:]]
 
 
 def pytest_collection_finish() -> None:
@@ -123,6 +172,8 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
         patch.setitem(sys.modules, "rclpy", ModuleType("rclpy") if code == "BT110" else None)  # BT100
         return
     pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+    if code == "BT107":
+        return
     patch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")
     for waited in ("_DISCOVERY", "_AGAIN"):
         patch.setattr(f"btlang.ros.connection.{waited}", 0.5)  # seconds: it finds nobody

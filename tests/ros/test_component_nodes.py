@@ -189,4 +189,6 @@ def test_it_belongs_to_any_robot(tmp_path: Path, over: str, start_sim: Any) -> N
     robot = connector(robot_file(tmp_path, table(STARTED, parameters="{ force = 0.1 }")), over, **options)
     text = "clench then turn left 20 degrees"
     with btlang.Session(robot) as session:
-        assert session.run(mission(tmp_path, text), time_limit=60.0).outcome.succeeded  # type: ignore[union-attr]
+        outcome = session.run(mission(tmp_path, text), time_limit=60.0).outcome
+        assert outcome is not None
+        assert outcome.succeeded, outcome.failure

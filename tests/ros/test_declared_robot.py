@@ -51,7 +51,7 @@ def test_odometry_that_falls_silent(robot: Robot) -> None:
     peer.kill()
     robot.tick(lambda: False)
     assert engine.failure is not None
-    assert engine.failure.reason.startswith("nothing has arrived on /odom for 1.")
+    assert engine.failure.reason.startswith(_silent("/odom"))
 
 
 def test_nobody_gives_odometry(robot: Robot) -> None:
@@ -70,6 +70,11 @@ def test_senses(robot: Robot) -> None:
     assert robot.run("check the battery is above 30%", SENSES) == "battery is 25%"
 
 
+def _silent(topic: str) -> tuple[str, str]:
+    """How the reasons begin when a publisher was killed: DDS may notice that before the last reading is too old."""
+    return f"nobody publishes {topic}", f"nothing has arrived on {topic} for 1."
+
+
 def test_a_topic_that_falls_silent(robot: Robot) -> None:
     peer = robot.peer("robot", "battery")
     robot.load("check battery is below 26%", SENSES)
@@ -77,10 +82,7 @@ def test_a_topic_that_falls_silent(robot: Robot) -> None:
     robot.load("repeat until not battery is below 26%: wait 0.1 s", SENSES)
     peer.kill()
     assert robot.tick(lambda: False) == FAILURE  # what is not known is not false, so "not" does not make it true
-    assert robot.run("check battery is below 26%", SENSES) in (
-        "nobody publishes /battery_state",
-        *(f"nothing has arrived on /battery_state for 1.{tenth} s" for tenth in range(10)),
-    )
+    assert robot.run("check battery is below 26%", SENSES).startswith(_silent("/battery_state"))
 
 
 def test_a_topic_of_another_type(robot: Robot) -> None:
