@@ -84,6 +84,8 @@ class Lexicon:
             for kind, words, name in file.names:
                 if self.types[kind].kind == "names":
                     self.values.add_name(kind, self._bare(words), name)
+        nouns = chain(*(language["nouns"].get(kind, (kind,)) for kind in (PLACE, "zone")))
+        self._heads = sorted({*self.values.ones, *nouns})
         own = {kind: [(name, name) for name in self.values.listed(kind)] for kind in WORLD if kind in self.types}
         for kind, pairs in self._colors(own).items():
             for color, name in pairs:
@@ -178,14 +180,14 @@ class Lexicon:
         return recent(self._with_names, known, made)
 
     def _colors(self, named: dict[str, list[tuple[str, str]]]) -> dict[str, list[tuple[str, str]]]:
-        """`the green` and `the green one` for the green room, where no other name begins with that color."""
+        """`the green`, `the green one` and `the green area` for the green room, where no other name has that color."""
         names = {name.lower() for pairs in named.values() for _, name in pairs}
         made = {}
         for kind in (PLACE, "zone"):
             firsts = [(words.lower().partition(" ")[0], name) for words, name in named.get(kind, ()) if " " in words]
             colors = [(color, name) for color, name in firsts if self.values.takes_word("color", color)]
             own = [pair for pair in colors if sum(f"{name} ".startswith(f"{pair[0]} ") for name in names) == 1]
-            made[kind] = own + [(f"{color} {one}", name) for color, name in own for one in sorted(self.values.ones)]
+            made[kind] = own + [(f"{color} {one}", name) for color, name in own for one in self._heads]
         return made
 
     def _bare(self, words: str) -> str:

@@ -89,6 +89,9 @@ class ReadingContext:
         if found is None and text.words[at] in self.pronouns and self.types[kind].kind == "names":
             found = self._referred(kind, text.words[at], at)
         chosen = self._chosen(kind, text, at) if text.words[at] in self.starts else None
+        if kind in WORLD and not text.distinct.isdisjoint(self.joiners):
+            shared = self.values.shared_heads.read(kind, text, at)
+            found = shared if shared is not None and (found is None or shared[1] > found[1]) else found
         if found is None and kind in WORLD:
             named = self._named_after(kind, text, at) if text.words[at] in self.before else None
             if named is None and not self.values.ones.isdisjoint(text.distinct):

@@ -20,6 +20,7 @@ from btlang.vocabulary.measures import Measures, too_small
 from btlang.vocabulary.nouns import Description, Features, Noun, noun_phrases
 from btlang.vocabulary.references import ALL, COUNT, DENIED, RELATIONS, Choice, Parts, choice_of
 from btlang.vocabulary.role_words import role_words
+from btlang.vocabulary.shared_heads import SharedHeads
 from btlang.vocabulary.value_type import PLACE, ValueType, format_number
 from btlang.vocabulary.word_tree import END, WordTree, find, insert, tree_of
 
@@ -57,6 +58,8 @@ class Values(Measures):
         """Words in the place of a noun that was said before: `the blue one`."""
         self.likenesses = Likenesses({}, self.listed)
         self.antecedents = Antecedents(self.ones, self.names_tree, self.likenesses)
+        self.shared_heads = SharedHeads(self.names_tree, self.joiners, language["plural_endings"])
+        self._plural_endings = language["plural_endings"]
         self._spoken: dict[tuple[str, str], str] = {}
         self._exceptions = tree_of((phrase, True) for phrase in language["roles"].get("except", ()))
         self._openers: dict[str, frozenset[str]] | None = None
@@ -85,6 +88,7 @@ class Values(Measures):
         made._names = {**self._names, **{kind: loads(dumps(self._names[kind])) for kind in changed}}
         made.likenesses = Likenesses(self.likenesses.features if features is None else features, made.listed)
         made.antecedents = Antecedents(self.ones, made.names_tree, made.likenesses)
+        made.shared_heads = SharedHeads(made.names_tree, self.joiners, self._plural_endings)
         made._spoken = dict(self._spoken)
         for kind, pairs in names.items():
             for words, name in pairs:
