@@ -27,7 +27,7 @@ _MARGIN = re.compile(rf"[ \t\r]*{_ITEM}")
 # Blanks in front of a word belong to its match, which halves the number of matches.
 _PIECE = re.compile(
     rf"""[^\S\n]*(?:([a-zA-Z]++(?![\w/'{_MARKS_ABOVE}-])  # as below, in half the time
-                    |[^\W\d_]+/[^\W\d_]+(?!\w)|[^\W\d](?:[\w{_MARKS_ABOVE}'-]*[\w{_MARKS_ABOVE}])?)  # word
+                    |(?<=[ \t])'[a-z]{{1,2}}(?![\w'-]|[^'\n]*')|[^\W\d_]+/[^\W\d_]+(?!\w)|[^\W\d](?:[\w{_MARKS_ABOVE}'-]*[\w{_MARKS_ABOVE}])?)  # word
     |(\d+:\d+|-?\d+(?:\.\d+)?(?:[eE][+-]?\d+(?!\w))?)                  # number
     |([,:()%°{{}}])                                                    # mark
     |(\n[ \t\r]*{_ITEM})                                               # line
@@ -49,7 +49,7 @@ class Orthography(Record):
 
     `spellings` are words that are read as another one: contractions (Spanish `al` as `a`), and words that are written
     without their accents, where no other word is written so. `contracted` are words with an apostrophe that may be
-    written as two (`don t`, `do n't`), by the second and the first of these.
+    written as two (`don t`, `do n't`, `you 've`), by the second and the first of these.
     """
 
     articles: frozenset[str] = frozenset()
@@ -69,7 +69,8 @@ class Orthography(Record):
         made: dict[str, dict[str, str]] = {}
         for word in words:
             front, _, tail = word.partition("'")
-            made.setdefault(tail, {})[front] = word
+            for written in (tail, f"'{tail}"):
+                made.setdefault(written, {})[front] = word
             if word.endswith("n't"):
                 made.setdefault("n't", {})[word.removesuffix("n't")] = word
         return self.replace(contracted=made)  # type: ignore[no-any-return]

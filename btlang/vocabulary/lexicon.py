@@ -75,7 +75,8 @@ class Lexicon:
                 ]
         self.articles = frozenset(language["articles"])
         self.orthography = Orthography(self.articles, language["decimal_comma"], language["contractions"])
-        said = chain(*language["roles"].values(), *language["negations"].values(), language["relative_denials"])
+        said = chain(*language["roles"].values(), *language["negations"].values(), *language["asking"].values())
+        said = chain(said, language["relatives"], language["relative_denials"])
         contracted = {word for phrase in said for word in phrase.split() if re.fullmatch(r"[a-z]+'[a-z]+", word)}
         self.orthography = self.orthography.with_contractions(contracted)
         self._with_names: dict[tuple[object, ...], Lexicon] = {}
@@ -107,6 +108,8 @@ class Lexicon:
             tree_of((phrase, True) for phrase in self.asking[name]) for name in ("feeling", "there", "states")
         )
         """The words of remarks: how somebody feels, that there is something, and what may be felt."""
+        self.been = tree_of((" ".join(map(str, form)), True) for said in self.asking["been"] for form in forms(said))
+        """The words of a journey that is behind somebody: `have been in`."""
         verb = "".join(self.asking["journey"][:1])
         self.journey_verbs = frozenset((verb, *self.values.role_words.synonyms.get(verb, ())))
         """The verbs of a journey: `go from the lab to the hall`."""

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.text.words import Words, statements
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.pattern import forms
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import find, tree_of
 
@@ -25,7 +26,7 @@ class Permissions:
         if text.distinct.isdisjoint((*self._allowing, *self._staying)):
             return
         self._trie, self._context = vocabulary.trie, vocabulary.context.with_references()
-        self._asking = frozenset(word for role in ("if", "once") for word in _firsts(vocabulary, role))
+        self._asking = frozenset(word for role in ("if", "once", "arrival_at") for word in _firsts(vocabulary, role))
         self._joining = {word for role in ("then", "and") for word in _firsts(vocabulary, role)}
         self._fronts = self._asking | self._joining
         self._either = frozenset(_firsts(vocabulary, "or"))
@@ -72,9 +73,7 @@ class Permissions:
             at -= 1
         if at == first or words[at - 1] == "," or words[at - 1] in self._joining:
             return True
-        asking = [place for place in range(first, at - 1) if words[place] in self._asking]
-        read = (longest(self._trie, text, place + 1, self._context) for place in asking)
-        return any(said is not None and said.last == at and said.meaning.role == "condition" for said in read)
+        return self._asked(text, first, at) < at
 
     def _begin(self, text: Words, first: int, at: int) -> int:
         """Where the part begins that permits: behind the latest comma or `and then` before it, or the statement."""
@@ -92,9 +91,9 @@ class Permissions:
     def _asked(self, text: Words, first: int, at: int) -> int:
         """The word behind which the condition begins that ends at a place: `and if you are in the lab then you may`."""
         for place in range(at - 1, first - 1, -1):
-            if text.words[place] in self._asking:
-                read = longest(self._trie, text, place + 1, self._context)
-                if read is not None and read.last == at and read.meaning.role == "condition":
+            for start, role in ((place + 1, "condition"), (place, "arrival_at")):
+                read = longest(self._trie, text, start, self._context) if text.words[place] in self._asking else None
+                if read is not None and read.last == at and read.meaning.role == role:
                     return place
         return at
 
@@ -104,5 +103,6 @@ class Permissions:
 
 
 def _firsts(vocabulary: Lexicon, role: str) -> Iterator[str]:
+    """The first words of what says a role."""
     for phrase in vocabulary.roles[role]:
-        yield phrase.split()[0].strip("[]")
+        yield from (str(form[0]) for form in forms(phrase, vocabulary.articles))

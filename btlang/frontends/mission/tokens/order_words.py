@@ -11,6 +11,7 @@ from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
+from btlang.vocabulary.word_tree import find
 
 _JOINTS = frozenset(("and", "comma", "then"))
 _LINE_STARTS = frozenset(("newline", "semi", "dedent"))
@@ -92,11 +93,12 @@ class OrderWords(SentenceReader):
         return self._start(at, match.last) if match is not None and match.meaning.role == "start_at" else 0
 
     def end_by_place(self, at: int) -> int:
-        """`avoid the hall until the lab`: a constraint that a journey ends."""
+        """`avoid the hall until the lab`, `until you have been in the lab`: a constraint that a journey ends."""
         tokens = self._tokens
         if len(tokens) < 2 or tokens[-1].kind not in ("until", "before") or constraint_of(tokens[-2]) is None:
             return 0
-        journey = self._with_front(at, at, "journey")
+        been = find(self._vocabulary.been, self._text.words, at)
+        journey = self._with_front(at, been[1] if been is not None else at, "journey")
         if journey is None:
             return 0
         self._partial.append(journey, at)
