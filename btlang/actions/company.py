@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from math import dist, inf
-from typing import Protocol
+from typing import Any, Protocol
 
 from btlang.actions.gestures import Aiming, wave
 from btlang.actions.manner import paced
@@ -50,6 +50,10 @@ class Guiding(Leading, Following, Presenting, Protocol):
 
 class Greeting(Navigation, Presenting, Aiming, Protocol):
     """It goes to people, waves and speaks."""
+
+
+class Telling(Navigation, Presenting, Protocol):
+    """It goes to people and speaks."""
 
 
 def speaker(robot: Meeting) -> str | None:
@@ -227,6 +231,12 @@ def greet(robot: Greeting, person: str, text: str | None = None) -> Steps:
     yield from travel(robot, person)
     yield from wave(robot, person)
     yield from say(robot, text or f"Hello, {person}!")
+
+
+def tell(robot: Telling, person: str, text: str, kept: dict[str, Any] | None = None) -> Steps:
+    """Drives to a person and says the text."""
+    yield from travel(robot, person)
+    yield from say(robot, text, kept)
 
 
 def wait_for_person(robot: Perception, person: str, duration: float | None = None) -> Steps:

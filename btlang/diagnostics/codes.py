@@ -181,6 +181,7 @@ _ALL = (
          "Write for example: go to the lobby. When you arrive, wave"),
     Code("BT157", "'{words}' isn't a value that can be said.",
          "Values are: {values}\nTo say the words, put them in quotes: {quoted}"),
+    Code("BT159", "It isn't clear what is to be said: '{word}' {reason}.", "Put it in quotes, for example: {example}"),
     Code("BT158", "'{words}' only says something, so nothing is done about it.", "", "note", "remark"),
     Code("BT160", "'{words}' {problem}.", "Write for example: {example}"),
     Code("BT170", "'{words}' starts again each time it has ended.",

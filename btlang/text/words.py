@@ -27,7 +27,8 @@ _MARGIN = re.compile(rf"[ \t\r]*{_ITEM}")
 # Blanks in front of a word belong to its match, which halves the number of matches.
 _PIECE = re.compile(
     rf"""[^\S\n]*(?:([a-zA-Z]++(?![\w/'{_MARKS_ABOVE}-])  # as below, in half the time
-                    |(?<=[ \t])'[a-z]{{1,2}}(?![\w'-]|[^'\n]*')|[^\W\d_]+/[^\W\d_]+(?!\w)|[^\W\d](?:[\w{_MARKS_ABOVE}'-]*[\w{_MARKS_ABOVE}])?)  # word
+                    |(?<=[ \t])'[a-z]{{1,2}}(?![\w'-]|[^'\n]*')     # `you 've`
+                    |[^\W\d_]+/[^\W\d_]+(?!\w)|[^\W\d](?:[\w{_MARKS_ABOVE}'-]*[\w{_MARKS_ABOVE}])?)  # word
     |(\d+:\d+|-?\d+(?:\.\d+)?(?:[eE][+-]?\d+(?!\w))?)                  # number
     |([,:()%°{{}}])                                                    # mark
     |(\n[ \t\r]*{_ITEM})                                               # line

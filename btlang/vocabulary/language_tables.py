@@ -87,7 +87,7 @@ WORD_LISTS = frozenset((
     "articles", "politeness", "unit_joiner", "one_each", "every_second", "quantifiers",
     "halting", "asked_once", "relatives",
     "relative_denials", "particles", "fillers", "speaker", "subjects", "purpose", "determiners", "denials",
-    "possessive_endings", "ones", "directions",
+    "possessive_endings", "ones", "directions", "clause_openers", "clause_words", "sayings", "of_persons",
 ))  # fmt: skip
 
 
@@ -153,6 +153,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "meanings": (_between, "one of " + ", ".join(CONNECTIVES)),
     "nodes": (_is_text, "the words of a node"),
     "contractions": (_is_text, "a word"),
+    "direct": (_is_text, "the first words of a question"),
     "counts": (_rounds, "a whole number from 1 on, or -1 for endless"),
     "numbers": (_number, "a number"),
     "multipliers": (_number, "a number"),
@@ -215,10 +216,11 @@ _LANGUAGE: dict[str, Any] = {
     "articles": [], "politeness": [], "unit_joiner": [], "one_each": [], "every_second": [],
     "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},
     "determiners": [], "denials": [], "possessive_endings": [], "ones": [], "directions": [],
+    "clause_openers": [], "clause_words": [], "sayings": [], "of_persons": [],
     "possessives": {"speaker": [], "others": []},
     "prepositions": {}, "synonyms": {}, "particles": [], "fillers": [], "speaker": [], "subjects": [], "purpose": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {}, "doing": {},
-    "third_person": {},
+    "third_person": {}, "direct": {},
     "negative_subjects": {}, "plurals": {}, "asking": {}, "plural_endings": {}, "nouns": {}, "everyone": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {}, "times": {},
     "parts_of_day": {},

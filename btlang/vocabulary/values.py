@@ -21,6 +21,7 @@ from btlang.vocabulary.nouns import Description, Features, Noun, noun_phrases
 from btlang.vocabulary.references import ALL, COUNT, DENIED, RELATIONS, Choice, Parts, choice_of
 from btlang.vocabulary.role_words import role_words
 from btlang.vocabulary.shared_heads import SharedHeads
+from btlang.vocabulary.texts import Texts
 from btlang.vocabulary.value_type import PLACE, ValueType, format_number
 from btlang.vocabulary.word_tree import END, WordTree, find, insert, tree_of
 
@@ -38,8 +39,6 @@ class Values(Measures):
     def __init__(self, types: Mapping[str, ValueType], language: Mapping[str, Any], nouns: Iterable[Noun] = ()) -> None:
         super().__init__(types, language)
         self._orthography = Orthography(frozenset(language["articles"]))
-        # words that an article before them makes no text: `print a then wave`
-        self._connectives = frozenset(phrase for phrases in language["roles"].values() for phrase in phrases)
         joining = (phrase for role in ("and", "or", "nor") for phrase in language["roles"].get(role, ()))
         self.joiners = frozenset((",", *(phrase.split()[0] for phrase in joining)))
         """The first words of what stands between the values of a list."""
@@ -59,6 +58,7 @@ class Values(Measures):
         self.likenesses = Likenesses({}, self.listed)
         self.antecedents = Antecedents(self.ones, self.names_tree, self.likenesses)
         self.shared_heads = SharedHeads(self.names_tree, self.joiners, language["plural_endings"])
+        self.texts = Texts(language)
         self._plural_endings = language["plural_endings"]
         self._spoken: dict[tuple[str, str], str] = {}
         self._exceptions = tree_of((phrase, True) for phrase in language["roles"].get("except", ()))
@@ -351,7 +351,9 @@ class Values(Measures):
             return END in self._names[kind].get(word, {})
         if value_type.kind == "time":
             return isinstance(self._times.get(word, {}).get(END), str)
-        return value_type.kind == "text" or (value_type.kind == "number" and word in self._numbers)
+        if value_type.kind == "text":
+            return not self.texts.opens(word)
+        return value_type.kind == "number" and word in self._numbers
 
     def read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """The port text of a value of the type and where it ends, or None if there is none."""
@@ -373,18 +375,7 @@ class Values(Measures):
             return found
         if value_type.kind == "time":
             return self.time_of_day(text, at)
-        return self._text(text, at)
-
-    def _text(self, text: Words, at: int) -> tuple[str, int] | None:
-        word = text.words[at]
-        if word[0] == '"':
-            return word[1:], at + 1
-        bare = word[0].isalnum() or (word[0] == "-" and len(word) > 1)
-        ends_here = not bare or word in self._connectives
-        if at in text.articles and ends_here:  # the article is all that there is: `print a`
-            start, end = text.articles[at]
-            return text.source.text[start:end], at
-        return (text.source.text[text.starts[at] : text.ends[at]], at + 1) if bare else None
+        return self.texts.read(text, at)
 
     def _quoted_name(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         word = text.words[at]

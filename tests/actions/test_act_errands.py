@@ -1,6 +1,7 @@
 """Bringing, coming back, following, guiding, searching and counting: what happens, and how each of them fails."""
 
 from contextlib import closing
+from math import dist
 
 import pytest
 
@@ -171,6 +172,14 @@ def test_greet(bench):
     b = bench(load_world())
     b.run(company.greet, person="Alice")
     assert ("say", {"text": "Hello, Alice!"}) in b.events
+
+
+def test_tell(bench):
+    b = bench(load_world())
+    b.run(company.tell, person="Alice", text="dinner is ready")
+    assert ("say", {"text": "dinner is ready"}) in b.events
+    there = b.robot.locate("Alice")
+    assert dist((b.robot.pose.x, b.robot.pose.y), there) < 2.0
 
 
 def test_wait_for_who_comes(bench):

@@ -29,6 +29,7 @@ ROOT = Path(__file__).parents[2]
 WORDS = world_vocabulary()
 UNKNOWABLE = {
     "BT044": "`ball` alone is a thing, behind `count` a kind of things",
+    "BT052": "what comes before goes on for ever",
     "BT068": "a condition behind `when` is checked once",
     "BT171": "what follows `as soon as` waits, too",
     "BT172": "of several statements `start over` repeats all",

@@ -51,6 +51,7 @@ ROWS = {
     "Where a condition ends": "conditions", "Names of conditions": "definitions",
     # requests.md
     **dict.fromkeys(("Requests", "Questions", "Values in speech", "Remarks"), "requests"),
+    "Messages to people": "messages",
     # joining.md
     "After a command": "postfix", "and": "connectives", "At the same time": "connectives",
     "One if the other fails": "connectives",

@@ -71,7 +71,7 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
             made[key] = {name: list(map(_pattern, patterns)) for name, patterns in value.items()}
         elif key in ("nouns", "everyone", "relations", "prepositions", "asking"):
             made[key] = {kind: list(map(invented, words)) for kind, words in value.items()}
-        elif key == "plural_endings":
+        elif key in ("plural_endings", "direct"):
             made[key] = {invented(ending): invented(other) for ending, other in value.items()}
         elif key == "nodes":
             made[key] = {node_id: _pattern(words) for node_id, words in value.items()}

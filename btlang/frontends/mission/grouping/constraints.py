@@ -41,6 +41,9 @@ def taken(scan: Scan, token: Token) -> bool:
     behind = _behind_joint(scan)
     if not behind:
         return False
+    if scan.raw[behind - 1].kind in _UNTIL and scan.raw[behind + 1].kind not in ENDS:
+        _enclose(scan, behind)  # `avoid the hall until going to the lab, then go to the hall`
+        return True
     entry.constraints.append(constraint)
     scan.at = behind
     return True
@@ -73,6 +76,14 @@ def _unjoin(scan: Scan) -> None:
     entry.commas = [comma for comma in entry.commas if comma is not joint]
     entry.joints = [other for other in entry.joints if other is not joint]
     entry.last = entry.commas[-1] if entry.commas else entry.joints[-1] if entry.joints else None
+
+
+def _enclose(scan: Scan, command: int) -> None:
+    """Puts the constraint that comes and the command that ends it into brackets."""
+    joint, last, start = scan.raw[command - 1], scan.raw[command].end, scan.raw[scan.at].start
+    scan.raw[command + 1 : command + 1] = [Token("close", last, last)]
+    scan.raw[scan.at + 1 : command] = [Token("and", joint.start, joint.end)]
+    scan.raw[scan.at : scan.at] = [Token("open", start, start)]
 
 
 def _behind_joint(scan: Scan) -> int:

@@ -19,6 +19,7 @@ from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.pattern import Part, Slot, name_form
 from btlang.vocabulary.trie import TrieNode, add, longest
+from btlang.vocabulary.value_type import TEXT
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import END, SLOTS, find
 
@@ -256,8 +257,8 @@ def _defining_word(phrases: Phrases, first: int, last: int) -> int | None:
 
 
 def _says(match: Match, text: Words, first: int, choices: list[str]) -> bool:
-    """Whether a phrase holds one of some words itself, not in a value."""
-    values = {word for value in match.values for word in range(value.first, value.last)}
+    """Whether a phrase holds one of some words itself or in a clause, not in another value."""
+    values = {word for value in match.values if value.type != TEXT for word in range(value.first, value.last)}
     return any(text.words[at] in choices for at in range(first, match.last) if at not in values)
 
 

@@ -28,7 +28,6 @@ from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import TEXT
 from btlang.vocabulary.word_tree import SLOTS
 
 _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
@@ -279,8 +278,7 @@ class Lexer:
                         origin = (token, *origin[1:]) if shared and origin else (token, at, match, root)
                 else:
                     said = calls.token(match, at)
-                    has_text = match.values and match.values[-1].type == TEXT
-                    end = self._requests.value_in(match, at, said) if has_text else 0
+                    end = self._requests.value_in(match, at, said) if match.values and match.meaning.entry else 0
                     if end:
                         at = end
                         continue

@@ -10,12 +10,18 @@ from btlang.frontends.mission.token import Called, Remembered, Token
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.entry import COUNT, SAY, Entry
-from btlang.vocabulary.match import Match
+from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.references import free_key
 from btlang.vocabulary.trie import longest
+from btlang.vocabulary.value_type import TEXT
 from btlang.vocabulary.values import key_of
+from btlang.vocabulary.word_tree import find
 
 _MOST_WORDS = 8  # of the subject of a question
+_SOMEBODY = "may be somebody else for whoever hears it"
+_NEXT = "may be a part of it, or go on with the mission"
+_NO_QUESTION = "begins no question that I know"
+_PERSON = "is a person, and the question is missing"
 _BEHIND = ("politeness", "then", "and")
 
 
@@ -34,35 +40,63 @@ class Requests(SentenceReader):
         return read(at, match.last) if match is not None and read is not None else self._whether(at)
 
     def value_in(self, match: Match, at: int, command: Token) -> int:
-        """`say the battery`, `say how many people there are`: an article or a question word asks for a value.
-
-        The last value of the phrase is a text.
-        """
-        entry, value = match.meaning.entry, match.values[-1]
-        if entry is None or not entry.accompaniment or entry.sort != "action":
+        """`say the battery`, `say how many people there are`: an article or a question word asks for a value."""
+        entry = match.meaning.entry
+        value = next((value for value in match.values if value.type == TEXT), None)
+        if value is None or entry is None or entry.sort != "action":
             return 0
+        if "ears" in entry.needs:
+            self._ask(entry, value, command)
+            return 0
+        if self._is_clause(value):
+            self._doubt(entry, self._vocabulary.values.texts.doubt(self._text, value.first, value.last))
         text, first = self._text, value.first
         asked = longest(self._vocabulary.trie, text, first, self._context)
         if asked is not None and asked.meaning.role == "ask_how_many":
             counted = self._counted(asked.last)
             return self._say_count(at, counted, command, value.name) if counted is not None else 0
-        if first not in text.articles or first == match.last or text.words[first][0] == '"':
+        if first not in text.articles or value.last != first + 1 or text.words[first][0] == '"':
             return 0
+        is_last = value.last == match.last
         known = self._context.named(text, first)
         measured = self._measured(first)
         if known is not None and known[0] is not None and (measured is None or known[1] >= measured.last):
             self._set_text(command, value.name, f"{{{known[0].key}}}")
             self._tokens.append(command)
-            return known[1]
-        if measured is None:
-            span = text.span(first, match.last)
+            return known[1] if is_last else match.last
+        if measured is None or not (is_last or measured.last == value.last):
+            span = text.span(first, value.last)
             quoted = f'{text.span(at, first).text} "{span.text}"'
             self._calls.problems.append(
                 diagnostic("BT157", span, words=span.text, values=self._values(), quoted=quoted)
             )
             return 0
         self._say(at, measured, command, value.name)
-        return measured.last
+        return measured.last if is_last else match.last
+
+    def _ask(self, entry: Entry, value: SlotValue, command: Token) -> None:
+        """`ask Bob if he is hungry`: the question that the clause stands for."""
+        values, text, at = self._vocabulary.values, self._text, value.first
+        if not self._is_clause(value):
+            if at not in text.articles and find(values.names_tree("person"), text.words, at) is not None:
+                self._doubt(entry, at, _PERSON)
+            return
+        question = values.texts.direct(text, at, value.last)
+        if question is not None:
+            self._set_text(command, value.name, question)
+        elif not self._doubt(entry, values.texts.doubt(text, at + 1, value.last)):
+            self._doubt(entry, at, _NO_QUESTION)
+
+    def _is_clause(self, value: SlotValue) -> bool:
+        return value.last > value.first + 1 and self._vocabulary.values.texts.opens(self._text.words[value.first - 1])
+
+    def _doubt(self, entry: Entry, at: int, reason: str = "") -> bool:
+        """Says that a word of a text without quotes may mean something else (BT159), if it is one."""
+        if at:
+            is_person = self._text.words[at] in self._vocabulary.values.texts.of_persons
+            reason, span = reason or (_SOMEBODY if is_person else _NEXT), self._text.span(at, at + 1)
+            self._calls.problems.append(diagnostic("BT159", span, word=span.text, reason=reason, example=entry.example))
+        return at > 0
 
     def _values(self) -> str:
         """What can be said so, for a message."""
