@@ -244,6 +244,8 @@ def split(source: Source, orthography: Orthography) -> Words:
             result.open_quotes.append(Span(source, start, end))
             word = '"' + source.text[start + 1 : end].rstrip()
         elif kind == _OTHER:
+            if word == "'" and words and text[start - 1] == "s":
+                continue  # `the nurses' station`
             bad = result.unreadable
             if bad and bad[-1].end == start:
                 bad[-1] = Span(source, bad[-1].start, end)

@@ -87,7 +87,7 @@ WORD_LISTS = frozenset((
     "articles", "politeness", "unit_joiner", "one_each", "every_second", "quantifiers",
     "halting", "asked_once", "relatives",
     "relative_denials", "particles", "fillers", "speaker", "subjects", "purpose", "determiners", "denials",
-    "possessive_endings", "ones", "directions", "clause_openers", "clause_words", "sayings", "of_persons",
+    "possessive_endings", "ones", "directions", "clause_openers", "clause_words", "sayings", "of_persons", "colored",
 ))  # fmt: skip
 
 
@@ -216,7 +216,7 @@ _LANGUAGE: dict[str, Any] = {
     "articles": [], "politeness": [], "unit_joiner": [], "one_each": [], "every_second": [],
     "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},
     "determiners": [], "denials": [], "possessive_endings": [], "ones": [], "directions": [],
-    "clause_openers": [], "clause_words": [], "sayings": [], "of_persons": [],
+    "clause_openers": [], "clause_words": [], "sayings": [], "of_persons": [], "colored": [],
     "possessives": {"speaker": [], "others": []},
     "prepositions": {}, "synonyms": {}, "particles": [], "fillers": [], "speaker": [], "subjects": [], "purpose": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {}, "doing": {},

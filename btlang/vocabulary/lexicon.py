@@ -340,8 +340,9 @@ class Lexicon:
                 for word in words:
                     node = node.setdefault(self.orthography.spellings.get(word, word), {})
                 frames = node.setdefault(VERBS, [])
-                if not any(frame.entry.id == entry.id and frame.roles == roles for frame in frames):
-                    frames.append(Frame(entry, roles, particle))
+                made = Frame(entry, roles, particle)
+                if made not in frames:
+                    frames.append(made)
 
     def _add_entry(self, given: Entry) -> None:
         entry = self._declared(given) if given.sort else self._phrases_of(given)

@@ -5,7 +5,7 @@ A node is a dict: word -> node, `END` -> meaning, `SLOTS` -> list of (slot name,
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
 from btlang.text.words import Words
@@ -14,6 +14,7 @@ from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.pattern import Form, Slot
 from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.references import RELATIONS, choice_of
 from btlang.vocabulary.value_type import TEXT, WORLD, ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import fill
@@ -129,16 +130,31 @@ def longest(
         if not paths:
             break
         node, i, found = paths.pop()
-    if verbs and (best is None or not context.values.role_words.ends_at(words, best_last)):
+    holds_place = any(map(_is_related, best_values)) if verbs else False
+    if verbs and (best is None or holds_place or _may_be_longer(words, best_last, context)):
         for node, i in verbs:
             match = _filled(root, node, text, i, context, names)
-            if match is not None and (best is None or match.last > best_last):
+            says_more = match is not None and holds_place and len(match.values) > len(best_values)
+            if match is not None and (
+                best is None or match.last > best_last or (says_more and match.last == best_last)
+            ):
                 best, best_last, best_values = match.meaning, match.last, match.values
     if words[at] in context.manners:
         match = _after_manner(root, text, at, context, names)
         if match is not None and match.last > best_last:
             return match
     return Match(best, best_last, best_values) if best is not None else None
+
+
+def _is_related(value: SlotValue) -> bool:
+    """Whether what describes a thing could be a role of the verb: `drop the cup in the lab`."""
+    choice = choice_of(value.text) if "|" in value.text else None
+    return choice is not None and not RELATIONS.keys().isdisjoint(dict(choice.parts))
+
+
+def _may_be_longer(words: Sequence[str], at: int, context: ReadingContext) -> bool:
+    """Whether a verb with roles may go on at a word: also behind a comma with an adverb, `go to the lab, slowly`."""
+    return not context.values.role_words.ends_at(words, at) or (words[at] == "," and words[at + 1] in context.manners)
 
 
 def _filled(

@@ -59,6 +59,7 @@ class Values(Measures):
         self.antecedents = Antecedents(self.ones, self.names_tree, self.likenesses)
         self.shared_heads = SharedHeads(self.names_tree, self.joiners, language["plural_endings"])
         self.texts = Texts(language)
+        self._colored: list[str] = language["colored"]
         self._plural_endings = language["plural_endings"]
         self._spoken: dict[tuple[str, str], str] = {}
         self._exceptions = tree_of((phrase, True) for phrase in language["roles"].get("except", ()))
@@ -71,9 +72,9 @@ class Values(Measures):
 
     def add_name(self, kind: str, words: str, name: str) -> None:
         """Lets the words stand for a name of a type."""
-        insert(self._names[kind], self._as_read(words), name)
-        if OF.get(kind) in self._names:
-            for denied in self.adjectives.denied(words):
+        for said in (words, *(f"{words} {head}" for head in self._colored)) if kind == "color" else (words,):
+            insert(self._names[kind], self._as_read(said), name)
+            for denied in self.adjectives.denied(said) if OF.get(kind) in self._names else ():
                 insert(self._names[OF[kind]], self._as_read(denied), name)
         self._listed.setdefault(kind, {})[name] = None
         self._spoken.setdefault((kind, name), words)
@@ -331,7 +332,8 @@ class Values(Measures):
         if named is not None and (found is None or named[1] >= found[1]):
             return "not_kind", named[0], named[1]
         if found is None:
-            return None
+            color = find(self.names_tree("color"), text.words, at)
+            return ("not_color", *color) if color is not None else None  # `each cup except the red`
         if parts.keys() == {"kind"}:
             return "not_kind", parts["kind"], found[1]
         if parts.pop("kind", None) not in (None, dict(meant.parts).get("kind")):

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from btlang.record import Record
-from btlang.text.words import Words
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.entry import GOAL, MANNER, PATH, RECIPIENT, THEME, UNMARKED, Entry, Meaning, Role
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.role_words import RoleWords
@@ -120,9 +120,9 @@ class _Filling:
         if word in self._words.fillers and word != frame.particle:
             for role, after in self._introduced(at + 1, filled):
                 self._take(role, after, filled, has_particle)
-        if word == ",":  # `go to the lab, travelling through the hall`
+        if word == ",":  # `go to the lab, travelling through the hall`, `go to the lab, slowly`
             for role, after in self._introduced(at + 1, filled):
-                if role.name == PATH and after > at + 2:
+                if (role.name == PATH and after > at + 2) or (role.name == MANNER and self._ends_with(role, after)):
                     self._take(role, after, filled, has_particle)
         for role, after in self._introduced(at, filled):
             self._take(role, after, filled, has_particle)
@@ -144,6 +144,11 @@ class _Filling:
             for phrase in role.words:
                 if words[at] == phrase[0] and tuple(words[at : at + len(phrase)]) == phrase:
                     yield role, at + len(phrase)
+
+    def _ends_with(self, role: Role, at: int) -> bool:
+        """Whether a value of a role ends the statement."""
+        value = self._context.read(role.type, self._text, at)
+        return value is not None and self._text.words[value[1]] in (END_OF_STATEMENT, END_OF_TEXT, ")")
 
     def _take(self, role: Role, at: int, filled: Mapping[str, SlotValue | None], has_particle: bool) -> None:
         text, context = self._text, self._context

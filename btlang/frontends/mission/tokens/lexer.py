@@ -233,6 +233,7 @@ class Lexer:
                     or self._order.start_of_leg(at)
                     or self._order.end_by_place(at)
                     or self._partial.add_left_out(at)
+                    or self._partial.add_without_theme(at)
                 )
                 if end:
                     at = end

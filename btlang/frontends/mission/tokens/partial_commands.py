@@ -8,7 +8,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Container, Iterator, Mapping, Sequence
 
-from btlang.frontends.mission.token import Token, constraint_of
+from btlang.frontends.mission.token import Listed, Token, constraint_of
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.silent_words import LINES
 from btlang.text.words import END_OF_TEXT, Words
@@ -17,7 +17,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.value_type import WORLD
+from btlang.vocabulary.value_type import OBJECT, WORLD
 
 BEFORE_DOING = frozenset(("before", "after", "while", "until", "never", "followed_by"))
 """The kinds of tokens behind which a command may have the form of its verb: `after waving`."""
@@ -130,6 +130,20 @@ class PartialCommands:
         self._said[token.start] = read[1]
         enlist(self._tokens, token)
         return read[0].last
+
+    def add_without_theme(self, at: int) -> int:
+        """A command about the thing of the one before, which it leaves out: `pick up the cup and put in the box`."""
+        before = said_before(self._tokens)
+        is_list = before is not None and isinstance(before.value, Listed)
+        if before is None or is_list or OBJECT not in self._context.latest:
+            return 0  # of a list it would be the last thing alone
+        for pronoun, types in self._context.pronouns.items():
+            match = self.with_front(at, at + 1, (self._text.words[at], pronoun)) if OBJECT in types else None
+            theme = _theme(match) if match is not None else None
+            if match is not None and theme is not None and theme.first == at:
+                self._tokens.append(self._token_of(match, at))
+                return match.last
+        return 0
 
     def add_sharing(self, at: int, match: Match | None) -> int:
         """A command whose theme is said behind the next one, which means the same thing: `find and bring the cup`."""

@@ -60,6 +60,11 @@ def without_meaning(
         if follows is not None and follows.meaning.role == "command":
             tokens.pop()  # `make sure that you wave`
             return at + 1
+    if before.kind == "while" and text.words[at] in vocabulary.subjects:
+        follows = longest(vocabulary.trie, text, at + 1, context)
+        if follows is not None and follows.meaning.role == "command":
+            before.kind = "while_doing"  # `while you wave`
+            return at + 1
     if before.kind in ("until", "before") and text.words[at] in vocabulary.subjects:
         return at + 1
     if role == "ordinal" and match is not None and before.kind in ("command", "but"):
