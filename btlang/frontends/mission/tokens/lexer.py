@@ -231,7 +231,7 @@ class Lexer:
                 end = (
                     without_meaning(tokens, text, match, role, at, self.vocabulary, self.context)
                     or self._order.start_of_leg(at)
-                    or self._order.end_by_place(at)
+                    or self._order.journey_of_constraint(at)
                     or self._partial.add_left_out(at)
                     or self._partial.add_without_theme(at)
                 )
@@ -283,7 +283,7 @@ class Lexer:
                     if end:
                         at = end
                         continue
-                    if words[at] in self._before_doing and constraint_of(said) is not None:
+                    if (word in self._before_doing or word in verb_forms) and constraint_of(said) is not None:
                         said.role = "fronted"
                     tokens.append(said)
                     if len(tokens) > 1 and tokens[-2].kind == "while" and constraint_of(tokens[-1]) is not None:

@@ -92,12 +92,22 @@ class OrderWords(SentenceReader):
         match = longest(self._vocabulary.trie, self._text, at + 1, self._context)
         return self._start(at, match.last) if match is not None and match.meaning.role == "start_at" else 0
 
-    def end_by_place(self, at: int) -> int:
-        """`avoid the hall until the lab`, `until you have been in the lab`: a constraint that a journey ends."""
-        tokens = self._tokens
+    def journey_of_constraint(self, at: int) -> int:
+        """`avoid the hall until the lab`, `until you have been in the lab`: a constraint that a journey ends.
+
+        `don't go through the hall towards the lab` is one for a journey.
+        """
+        tokens, text = self._tokens, self._text
+        if tokens and text.words[at] in self._vocabulary.asking["towards"] and constraint_of(tokens[-1]) is not None:
+            journey = self._with_front(at, at + 1, "journey")
+            if journey is None:
+                return 0
+            tokens.append(Token("and", text.starts[at], text.ends[at]))
+            self._partial.append(journey, at)
+            return journey.last
         if len(tokens) < 2 or tokens[-1].kind not in ("until", "before") or constraint_of(tokens[-2]) is None:
             return 0
-        been = find(self._vocabulary.been, self._text.words, at)
+        been = find(self._vocabulary.been, text.words, at)
         journey = self._with_front(at, been[1] if been is not None else at, "journey")
         if journey is None:
             return 0
