@@ -38,9 +38,16 @@ class Adjectives:
         self._determiners = tree_of((phrase, "") for phrase in language["determiners"])
         self.denials: tuple[str, ...] = tuple(language["denials"])
         """The words before an adjective that deny it; one that ends in a hyphen is a part of the word."""
+        self._colored: list[str] = language["colored"]
         self._speaker: list[str] = language["possessives"]["speaker"]
         self._others: list[str] = language["possessives"]["others"]
         self._endings: list[str] = language["possessive_endings"]
+
+    def ways(self, kind: str, words: str) -> Iterator[str]:
+        """The ways to say a name of a type: `red colored` for a color."""
+        yield words
+        for head in self._colored if kind == "color" else ():
+            yield f"{words} {head}"
 
     def denied(self, words: str) -> Iterator[str]:
         """The ways to deny an adjective: `non-red`."""

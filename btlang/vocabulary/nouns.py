@@ -203,11 +203,11 @@ def with_plurals(
 ) -> dict[str, list[tuple[str, str]]]:
     """Names of types, each with its words, and those in the plural for types that have one."""
     kinds = [(kind, many) for kind, many in _PLURALS.items() if kind in names]
-    plurals = {many: [(_plural(words, endings), name) for words, name in names[kind]] for kind, many in kinds}
+    plurals = {many: [(plural(words, endings), name) for words, name in names[kind]] for kind, many in kinds}
     return {**names, **{many: plurals[many] + names[kind] for kind, many in kinds}}
 
 
-def _plural(words: str, endings: Mapping[str, str]) -> str:
+def plural(words: str, endings: Mapping[str, str]) -> str:
     """By the endings of the language, the longest that fits: `box` as `boxes`."""
     best = max((ending for ending in endings if words.endswith(ending)), key=len, default=None)
     return words if best is None else words.removesuffix(best) + endings[best]

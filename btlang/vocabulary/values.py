@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from marshal import dumps, loads  # a copy of a trie, at a tenth of the time that importing `copy` takes
 
 from btlang.text.source import Source
@@ -57,28 +58,32 @@ class Values(Measures):
         """Words in the place of a noun that was said before: `the blue one`."""
         self.likenesses = Likenesses({}, self.listed)
         self.antecedents = Antecedents(self.ones, self.names_tree, self.likenesses)
-        self.shared_heads = SharedHeads(self.names_tree, self.joiners, language["plural_endings"])
         self.texts = Texts(language)
-        self._colored: list[str] = language["colored"]
         self._plural_endings = language["plural_endings"]
         self._spoken: dict[tuple[str, str], str] = {}
         self._exceptions = tree_of((phrase, True) for phrase in language["roles"].get("except", ()))
-        self._openers: dict[str, frozenset[str]] | None = None
-        self._choice_starts: frozenset[str] | None = None
-        self._adjective_starts: frozenset[str] | None = None
-        self._group_starts: frozenset[str] | None = None
+        self._openers: dict[str, frozenset[str]] | None
+        self._choice_starts: frozenset[str] | None
+        self._adjective_starts: frozenset[str] | None
+        self._group_starts: frozenset[str] | None
+        self._forget()
         self._both = frozenset(language["roles"].get("both", ()))
         self._joining = frozenset((*language["roles"].get("and", ()), *language["roles"].get("or", ())))
 
     def add_name(self, kind: str, words: str, name: str) -> None:
         """Lets the words stand for a name of a type."""
-        for said in (words, *(f"{words} {head}" for head in self._colored)) if kind == "color" else (words,):
+        for said in self.adjectives.ways(kind, words):
             insert(self._names[kind], self._as_read(said), name)
             for denied in self.adjectives.denied(said) if OF.get(kind) in self._names else ():
                 insert(self._names[OF[kind]], self._as_read(denied), name)
         self._listed.setdefault(kind, {})[name] = None
         self._spoken.setdefault((kind, name), words)
+        self._forget()
+
+    def _forget(self) -> None:
+        """Lets what was learnt from the names be learnt again: there are others now."""
         self._openers = self._choice_starts = self._group_starts = self._adjective_starts = None
+        self.shared_heads = SharedHeads(self.names_tree, self.joiners, self._plural_endings)
 
     def with_names(self, names: Mapping[str, Iterable[tuple[str, str]]], features: Features | None = None) -> Values:
         """The same with further names of types, each with its words, and what those of a world are like."""
@@ -89,7 +94,7 @@ class Values(Measures):
         made._names = {**self._names, **{kind: loads(dumps(self._names[kind])) for kind in changed}}
         made.likenesses = Likenesses(self.likenesses.features if features is None else features, made.listed)
         made.antecedents = Antecedents(self.ones, made.names_tree, made.likenesses)
-        made.shared_heads = SharedHeads(made.names_tree, self.joiners, self._plural_endings)
+        made._forget()
         made._spoken = dict(self._spoken)
         for kind, pairs in names.items():
             for words, name in pairs:
@@ -119,10 +124,10 @@ class Values(Measures):
         A type that is not in it may begin at any.
         """
         if self._openers is None:
-            numbers = self._number_starts
+            numbers, firsts = self._number_starts, self.shared_heads.plural_firsts
             quantities = numbers | self._joiner | self._units.keys() | self._every_second
             self._openers = {
-                kind: frozenset((*tree, *self.pronouns, *self.choice_starts, *self.group_starts))
+                kind: frozenset(chain(tree, self.pronouns, self.choice_starts, self.group_starts, firsts(kind)))
                 for kind, tree in self._names.items()
             }
             if PLACE in self._openers:
