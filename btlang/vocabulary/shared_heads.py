@@ -11,9 +11,11 @@ from btlang.vocabulary.word_tree import END, WordTree, find
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from typing import Any
 
 _LONGEST_FRONT = 2  # words
 _LONGEST_NAME = 4  # words
+_MOST_ITEMS = 16  # of a list whose last one ends them all
 
 
 class SharedHeads:
@@ -28,24 +30,31 @@ class SharedHeads:
 
     def read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """The name of which only some words stand at a word, and where these end: `first` before `and third floor`."""
-        words, tree = text.words, self._names(kind)
+        memo: dict[tuple[int, str], Any] = text.memo.setdefault(self, {})
+        if (at, kind) not in memo:
+            memo[at, kind] = self._read(kind, text, at)
+        return memo[at, kind]  # type: ignore[no-any-return]
+
+    def _read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
+        words = text.words
         if at and words[at - 1] in self._joiners:
-            found = self._plural(kind, words, at) or self._behind(kind, words, at)
+            found = self._plural(kind, words, at) or self._behind(kind, text, at)
             if found is not None:
                 return found
-        return self._front(kind, words, at) if words[at] in tree else self._several(kind, words, at)
+        if words[at] in self._names(kind):
+            return self._front(kind, words, at, _MOST_ITEMS)
+        return self._several(kind, words, at)
 
-    def _front(self, kind: str, words: Sequence[str], at: int) -> tuple[str, int] | None:
-        """The name that words before a joining word begin, and a later item of the list ends."""
-        for end in range(at + 1, min(at + 1 + _LONGEST_FRONT, len(words))):
-            if words[end] in self._joiners:
-                break
-        else:
+    def _front(self, kind: str, words: Sequence[str], at: int, most: int) -> tuple[str, int] | None:
+        """The name that words before a joining word begin, and one of the next items of the list ends."""
+        ends = range(at + 1, min(at + 1 + _LONGEST_FRONT, len(words)))
+        end = next((end for end in ends if words[end] in self._joiners), 0)
+        if not end or not most:
             return None
         item, tree = end, self._names(kind)
         while words[item] in self._joiners:
             item += 1
-        found = self._plural(kind, words, item) or find(tree, words, item) or self._front(kind, words, item)
+        found = self._plural(kind, words, item) or find(tree, words, item) or self._front(kind, words, item, most - 1)
         name = found[0].lower().split() if found is not None else []
         made = (_name(tree, [*words[at:end], *name[first:]]) for first in range(1, len(name)))
         return next(((each, end) for each in made if each is not None), None)
@@ -59,20 +68,22 @@ class SharedHeads:
         ends_item = found is not None and found[1] > 1 and words[at + found[1]] in self._joiners
         return (found[0], at + found[1]) if found is not None and ends_item else None
 
-    def _behind(self, kind: str, words: Sequence[str], at: int) -> tuple[str, int] | None:
+    def _behind(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """The name whose first words are those of the item before: `landmark one and two`."""
-        tree, end = self._names(kind), at
+        words, tree, end = text.words, self._names(kind), at
         if words[at] not in self._plurals(kind)[1].values():
             return None
         while end and words[end - 1] in self._joiners:
             end -= 1
         for first in range(end - 1, max(end - _LONGEST_NAME, 0) - 1, -1):
-            before = find(tree, words, first) or self._several(kind, words, first)
-            if before is None and first and words[first - 1] in self._joiners:
-                before = self._behind(kind, words, first)
+            is_item = first > 0 and words[first - 1] in self._joiners
+            before = find(tree, words, first) or (self.read(kind, text, first) if is_item else None)
+            before = before or self._several(kind, words, first)
             if before is not None and before[1] == end and " " in before[0]:
                 made = _name(tree, [*before[0].lower().split()[:-1], words[at]])
                 return (made, at + 1) if made is not None else None
+            if is_item:
+                break
         return None
 
     def _plural(self, kind: str, words: Sequence[str], at: int) -> tuple[str, int] | None:
