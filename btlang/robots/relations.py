@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import dist
 
-from btlang.robots.geometry import Point, Pose
+from btlang.robots.geometry import Point, Pose, wrap
 from btlang.robots.likeness import Parts
 from btlang.robots.robot import RobotError
 from btlang.robots.world import World, WorldObject, said
-from btlang.vocabulary.references import DENIED, RELATIONS
+from btlang.vocabulary.references import DENIED, RELATIONS, SELF
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 NEAR = 2.0
 """Metres within which something is near, beside, behind, left or right of another thing."""
+_SIDES = {"in_front_of": 0.0, "left_of": 90.0, "behind": 180.0, "right_of": -90.0}
+"""The bearings of the sides of the robot, in degrees to the left."""
+_HALF_SIDE = 60.0  # degrees: what is ahead to the left is on both of these sides
 _ON_THING = 0.5
 _AT_PLACE = 4.0
 _TOGETHER = frozenset(("on", "inside", "at", "off", "part_of"))
@@ -100,7 +103,7 @@ class Relations:
             world = self._world
             known = [place.name for place in world.places] + list(self._things)
             known += [*(door.name for door in world.doors), *(zone.name for zone in world.zones)]
-            names = [name for name in dict.fromkeys(known) if name.lower() == head.lower()]
+            names = [SELF] if head == SELF else [name for name in dict.fromkeys(known) if name.lower() == head.lower()]
         like = without_relations(likes)
         for name in names:
             thing = self._things.get(name)
@@ -112,6 +115,8 @@ class Relations:
         """Whether one named thing stands so to another. Raises RobotError for what a map can't tell."""
         if relation in ("under", "above"):
             raise RobotError(f"I can't tell what is {relation} {said(other)}")
+        if other == SELF:
+            return _is_beside(relation, self._point(name), pose)
         zone = next((zone for zone in self._world.zones if zone.name == other), None)
         one, point = self._point(name), self._point(other)
         if one is None or name == other:
@@ -148,6 +153,15 @@ class Relations:
             return self._where(name)
         except RobotError:
             return None
+
+
+def _is_beside(relation: str, point: Point | None, pose: Pose) -> bool:
+    """Whether a point is on that side of the robot, or near it."""
+    if point is None:
+        return False
+    if relation in ("near", "beside"):
+        return dist(point, (pose.x, pose.y)) <= NEAR
+    return abs(wrap(pose.bearing_to(point) - _SIDES[relation])) <= _HALF_SIDE
 
 
 def _is_on_side(relation: str, one: Point, point: Point, pose: Pose) -> bool:

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping
 from btlang.text.words import Words
 from btlang.vocabulary.adjectives import Adjectives
 from btlang.vocabulary.pattern import forms
-from btlang.vocabulary.references import ADJECTIVES, DENIED, RELATIONS, Parts
+from btlang.vocabulary.references import ADJECTIVES, DENIED, RELATIONS, SELF, Parts
 from btlang.vocabulary.word_tree import WordTree, find, tree_of
 
 TYPE_CHECKING = False
@@ -38,13 +38,19 @@ class Modifiers:
     def __init__(self, language: Mapping[str, Any]) -> None:
         self._words: Mapping[str, list[str]] = language["relations"]
         self._relations = tree_of((phrase, name) for name, phrases in self._words.items() for phrase in phrases)
+        articles = frozenset(language["articles"])
+        self._to_self = {
+            name: [" ".join(map(str, form)) for phrase in phrases for form in reversed(forms(phrase, articles))]
+            for name, phrases in language["relations_to_self"].items()
+        }
+        self._self_relations = tree_of((phrase, name) for name, phrases in self._to_self.items() for phrase in phrases)
         self._relatives: list[str] = language["relatives"]
         self._denials = [" ".join(map(str, form)) for phrase in language["relative_denials"] for form in forms(phrase)]
         self.adjectives = Adjectives(language)
         clauses = (*((phrase, True) for phrase in self._relatives), *((phrase, False) for phrase in self._denials))
         self._clauses = tree_of(clauses)
         self._either = frozenset(language["roles"].get("or", ()))
-        self.starts = frozenset((*self._relations, *self._clauses))
+        self.starts = frozenset((*self._relations, *self._clauses, *self._self_relations))
         """The words with which something behind a head may begin."""
 
     @property
@@ -58,7 +64,7 @@ class Modifiers:
 
     def words(self) -> Iterator[str]:
         """Every word of it."""
-        for phrases in (*self._words.values(), self._relatives, self._denials):
+        for phrases in (*self._words.values(), *self._to_self.values(), self._relatives, self._denials):
             for phrase in phrases:
                 yield from phrase.split()
 
@@ -100,7 +106,9 @@ class Modifiers:
         """The words of the filters that stand behind a head, "" where there are none."""
         words: list[str] = []
         for name, value in parts:
-            if name in RELATIONS:
+            if name in RELATIONS and value == SELF:
+                words.append(self._to_self[name][0])
+            elif name in RELATIONS:
                 words.append(f"{self._words[name][0]} {self._said_thing(value, spoken)}")
             elif name in DENIED:
                 kind = DENIED[name]
@@ -131,6 +139,9 @@ class Modifiers:
         return " ".join((*before, self.said_before(tuple(likes), spoken), said)).strip()
 
     def _related(self, kind: str, text: Words, at: int, names: Names, depth: int) -> Iterator[tuple[Parts, int]]:
+        to_self = find(self._self_relations, text.words, at)
+        if to_self is not None and kind in RELATIONS[to_self[0]] and depth == 1:
+            yield ((to_self[0], SELF),), to_self[1]
         found = find(self._relations, text.words, at)
         if found is not None and kind in RELATIONS[found[0]]:
             for value, end in self._thing(text, found[1], names, depth):

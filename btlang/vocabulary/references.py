@@ -32,6 +32,8 @@ RELATIONS: dict[str, tuple[str, ...]] = {
     "part_of": ("object", "place"),
 }  # fmt: skip
 """How a thing may stand to another one that describes it, each with the types of things of which that can be said."""
+SELF = "robot"
+"""The robot itself, as what a relation leads to: the counter on its left."""
 DENIED = {"not_color": "color", "not_kind": "kind", "not_size": "size", "not_state": "state"}
 """What a thing is said not to be, each with the type of the value; several values stand between semicolons."""
 _NO_PARTS = ("type", "how", "output")  # the other ports of a choice

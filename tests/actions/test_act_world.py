@@ -8,7 +8,7 @@ from btlang.actions import gestures, manipulation, motion, navigation, power, se
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.robot import RobotError
-from btlang.robots.world import Fault, Person, Place, World
+from btlang.robots.world import Fault, Person, Place, World, WorldObject
 from btlang.robots.world_file import load_world
 
 
@@ -69,6 +69,19 @@ def test_the_nearest_is_chosen_and_not_what_the_hand_holds(bench):
     b.run(navigation.choose, type="object", how="nearest", output=found.append)
     assert found[2] != found[1]
     assert ("choose", {"type": "object", "how": "nearest", "name": found[1]}) in b.events
+
+
+@pytest.mark.parametrize(("heading", "sides"), [
+    (0.0, {"in_front_of": "east", "left_of": "north", "behind": "west", "right_of": "south"}),
+    (90.0, {"in_front_of": "north", "left_of": "west", "behind": "south", "right_of": "east"}),
+])  # fmt: skip
+def test_sides_are_those_of_the_robot(bench, heading, sides):
+    objects = {"east": (8.0, 5.0), "north": (5.0, 8.0), "west": (2.0, 5.0), "south": (5.0, 2.0)}
+    things = tuple(WorldObject(name, *point, 0.1) for name, point in objects.items())
+    b = bench(load_world().replace(objects=things, start=Pose(5.0, 5.0, heading), people=(), walls=()))
+    for relation, name in sides.items():
+        assert tuple(b.robot.described("object", {relation: "robot"})) == (name,)
+    assert not b.robot.described("object", {"near": "robot"})
 
 
 def test_random_choices_follow_from_the_seed(bench):

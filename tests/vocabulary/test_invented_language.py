@@ -69,7 +69,7 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
             made[key] = list(map(invented, value))
         elif key in ("roles", "comparisons"):
             made[key] = {name: list(map(_pattern, patterns)) for name, patterns in value.items()}
-        elif key in ("nouns", "everyone", "relations", "prepositions", "asking"):
+        elif key in ("nouns", "everyone", "relations", "relations_to_self", "prepositions", "asking"):
             made[key] = {kind: list(map(invented, words)) for kind, words in value.items()}
         elif key in ("plural_endings", "direct"):
             made[key] = {invented(ending): invented(other) for ending, other in value.items()}
