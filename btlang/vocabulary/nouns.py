@@ -87,17 +87,18 @@ class Nouns:
 
     def longest(
         self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits, before: Set[str]
-    ) -> tuple[Description, int] | None:
-        """The longest noun phrase at a word whose type and parts fit, and where it ends; of equally long ones the one
-        that says most. Adjectives begin at the words `before`.
+    ) -> dict[str, tuple[Description, int]]:
+        """The longest noun phrase at a word whose type and parts fit, and where it ends, by its type ("" for any).
+
+        Of equally long ones it is the one that says most. Adjectives begin at the words `before`.
         """
         return self._longest(self.tree, text, at, names, fits, before)
 
     def plural(
         self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits, before: Set[str]
-    ) -> tuple[Description, int] | None:
-        """The longest one in the plural."""
-        return self._longest(self.plurals, text, at, names, fits, before) or self.noun(text, at, names, fits, before)
+    ) -> dict[str, tuple[Description, int]]:
+        """The same in the plural."""
+        return self._longest(self.plurals, text, at, names, fits, before)
 
     def _longest(
         self,
@@ -107,16 +108,19 @@ class Nouns:
         names: Callable[[str], WordTree],
         fits: Fits,
         before: Set[str],
-    ) -> tuple[Description, int] | None:
-        best: tuple[Description, int] | None = None
+    ) -> dict[str, tuple[Description, int]]:
+        best: dict[str, tuple[Description, int]] = {}
+        says: dict[str, tuple[int, bool, int]] = {}
         paths: list[tuple[WordTree, int, Parts, bool]] = [(tree, at, (), False)]
         while paths:
             node, i, parts, is_open = paths.pop()
             word = text.words[i]
-            if not is_open and END in node and (best is None or (i, *_says(parts)) > (best[1], *_says(best[0].parts))):
-                way = next((way for way in node[END] if fits(way[0], parts)), None)
-                if way is not None:
-                    best = Description(way[0], way[1], tuple(sorted(parts))), i
+            if not is_open and END in node:
+                own = (i, *_says(parts))
+                for kind, how in (way for way in node[END] if fits(way[0], parts)):
+                    for each in ("", kind):
+                        if each not in says or own > says[each]:
+                            says[each], best[each] = own, (Description(kind, how, tuple(sorted(parts))), i)
             for name, of, child in node.get(SLOTS, ()):
                 value = find(names(of), text.words, i) if not is_open or name in _HEADS else None
                 if value is not None and all(name != known for known, _ in parts):
@@ -135,20 +139,14 @@ class Nouns:
         """Adds a word for a type: `places`."""
         insert(self._types, words.split(), kind)
 
+    def type_at(self, text: Words, at: int) -> tuple[str, int] | None:
+        """The type for which a word begins that stands for all of it, and where that ends: `places`."""
+        return find(self._types, text.words, at)
+
     def is_type(self, kind: str, text: Words, at: int) -> bool:
         """Whether a word for a type begins at a word."""
-        found = find(self._types, text.words, at)
+        found = self.type_at(text, at)
         return found is not None and found[0] == kind
-
-    def noun(
-        self, text: Words, at: int, names: Callable[[str], WordTree], fits: Fits, before: Set[str]
-    ) -> tuple[Description, int] | None:
-        """All names that a noun such as `places` or `red cup` is for, and where it ends."""
-        kind = find(self._types, text.words, at)
-        found = self.longest(text, at, names, fits, before)
-        if kind is not None and fits(kind[0], ()) and (found is None or (found[1] <= kind[1] and not found[0].parts)):
-            return Description(kind[0], ALL), kind[1]
-        return (found[0].replace(how=ALL), found[1]) if found is not None and found[0].parts else None
 
     def starts(self, names: Callable[[str], WordTree]) -> frozenset[str]:
         """The words at which a noun phrase may begin."""

@@ -89,7 +89,7 @@ class ReadingContext:
         if found is None and text.words[at] in self.pronouns and self.types[kind].kind == "names":
             found = self._referred(kind, text.words[at], at)
         chosen = self._chosen(kind, text, at) if text.words[at] in self.starts else None
-        if kind in WORLD and not text.distinct.isdisjoint(self.joiners):
+        if kind in WORLD and not self.joiners.isdisjoint(text.words[max(at - 1, 0) : at + 4]):
             shared = self.values.shared_heads.read(kind, text, at)
             found = shared if shared is not None and (found is None or shared[1] > found[1]) else found
         if found is None and kind in WORLD:

@@ -6,7 +6,7 @@ A value becomes the text of a port, in the unit whose factor is 1: `half a meter
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from marshal import dumps, loads  # a copy of a trie, at a tenth of the time that importing `copy` takes
 
@@ -18,6 +18,7 @@ from btlang.vocabulary.descriptions import NAME, Modifiers
 from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.likenesses import Likenesses
 from btlang.vocabulary.measures import Measures, too_small
+from btlang.vocabulary.noun_reader import NounReader
 from btlang.vocabulary.nouns import Description, Features, Noun, noun_phrases
 from btlang.vocabulary.references import ALL, COUNT, DENIED, RELATIONS, Choice, Parts, choice_of
 from btlang.vocabulary.role_words import role_words
@@ -64,7 +65,6 @@ class Values(Measures):
         self._exceptions = tree_of((phrase, True) for phrase in language["roles"].get("except", ()))
         self._openers: dict[str, frozenset[str]] | None
         self._choice_starts: frozenset[str] | None
-        self._adjective_starts: frozenset[str] | None
         self._group_starts: frozenset[str] | None
         self._forget()
         self._both = frozenset(language["roles"].get("both", ()))
@@ -82,8 +82,9 @@ class Values(Measures):
 
     def _forget(self) -> None:
         """Lets what was learnt from the names be learnt again: there are others now."""
-        self._openers = self._choice_starts = self._group_starts = self._adjective_starts = None
+        self._openers = self._choice_starts = self._group_starts = None
         self.shared_heads = SharedHeads(self.names_tree, self.joiners, self._plural_endings)
+        self._described = NounReader(self.phrases, self.names_tree, self.likenesses)
 
     def with_names(self, names: Mapping[str, Iterable[tuple[str, str]]], features: Features | None = None) -> Values:
         """The same with further names of types, each with its words, and what those of a world are like."""
@@ -171,7 +172,7 @@ class Values(Measures):
 
     def noun(self, text: Words, at: int) -> tuple[Description, int] | None:
         """All names that a noun such as `places` or `red cup` is for, and where it ends."""
-        return self.phrases.noun(text, at, self.names_tree, self._fits(""), self.adjective_starts)
+        return self._described.all(text, at)
 
     @property
     def choice_starts(self) -> frozenset[str]:
@@ -188,9 +189,7 @@ class Values(Measures):
     @property
     def adjective_starts(self) -> frozenset[str]:
         """The words at which what stands before a head may begin: `my`, `big`."""
-        if self._adjective_starts is None:
-            self._adjective_starts = self.adjectives.starts(self.names_tree, self.likenesses.is_ever_told)
-        return self._adjective_starts
+        return self._described.adjective_starts
 
     def choice(self, text: Words, at: int, kind: str = "") -> tuple[Description, int] | None:
         """Of words such as `every place` and `the red cup` which names they are for, and where they end."""
@@ -198,8 +197,7 @@ class Values(Measures):
             return None
         memo: dict[tuple[int, str], Any] = text.memo.setdefault(self, {})
         if (at, kind) not in memo:
-            found = self.phrases.longest(text, at, self.names_tree, self._fits(kind), self.adjective_starts)
-            memo[at, kind] = self._resolved(found, text, at)
+            memo[at, kind] = self._resolved(self._described.one(text, at, kind), text, at)
         return memo[at, kind]  # type: ignore[no-any-return]
 
     def _resolved(self, found: tuple[Description, int] | None, text: Words, at: int) -> tuple[Description, int] | None:
@@ -210,10 +208,6 @@ class Values(Measures):
         if end == at + 1 and not meant.parts and self.phrases.is_type(meant.type, text, at):
             return found if at in text.articles else None  # `an object`
         return self.antecedents.resolved(found, text, at)
-
-    def _fits(self, wanted: str) -> Callable[[str, Parts], bool]:
-        """Whether a description is of the wanted type, "" for any, and can be judged."""
-        return lambda kind, parts: wanted in ("", kind) and self.likenesses.fits(kind, parts)
 
     def begins_noun(self, kind: str, text: Words, at: int) -> bool:
         """Whether a name or a noun of a type begins at a word."""
@@ -290,8 +284,7 @@ class Values(Measures):
                     return  # `2 m`
             elif not is_bare and text.words[at] not in self.group_starts:
                 return  # as nearly always
-            found = self.phrases.plural(text, start, self.names_tree, self._fits(kind), self.adjective_starts)
-            found = self._resolved(found, text, start)
+            found = self._resolved(self._described.several(text, start, kind), text, start)
             is_plural = text.words[at] in self.group_starts and (one is None or found is None or one[1] < found[1])
             if found is None or not (count or is_bare or is_plural):
                 return  # `cup` and `sheep` are no plurals
@@ -328,9 +321,7 @@ class Values(Measures):
 
     def _left_out_one(self, meant: Description, text: Words, at: int) -> tuple[str, str, int] | None:
         kind = meant.type
-        found = self.phrases.plural(text, at, self.names_tree, self._fits(kind), self.adjective_starts) or self.choice(
-            text, at, kind
-        )
+        found = self._described.several(text, at, kind) or self.choice(text, at, kind)
         found = self._resolved(found, text, at)
         parts = dict(found[0].parts) if found is not None else {}
         named = find(self._names[kind], text.words, at)

@@ -43,7 +43,7 @@ class Requests(SentenceReader):
         """`say the battery`, `say how many people there are`: an article or a question word asks for a value."""
         entry = match.meaning.entry
         value = next((value for value in match.values if value.type == TEXT), None)
-        if value is None or entry is None or entry.sort != "action":
+        if value is None or entry is None or entry.sort != "action" or self._text.words[value.first][0] == '"':
             return 0
         if "ears" in entry.needs:
             self._ask(entry, value, command)
@@ -55,7 +55,7 @@ class Requests(SentenceReader):
         if asked is not None and asked.meaning.role == "ask_how_many":
             counted = self._counted(asked.last)
             return self._say_count(at, counted, command, value.name) if counted is not None else 0
-        if first not in text.articles or value.last != first + 1 or text.words[first][0] == '"':
+        if first not in text.articles or value.last != first + 1:
             return 0
         is_last = value.last == match.last
         known = self._context.named(text, first)
