@@ -45,7 +45,7 @@ def test_politeness_changes_nothing(text: str) -> None:
         ("turn left 45 derees", "turn left 45 degrees"),
         ("move forward 3 meeters", "move forward 3 meters"),
         ("go home", None),
-        ("say 'hello world' to Bob", None),
+        ("say 'hello world' at Bob", None),
     ],
 )
 def test_fixes_change_something(broken: str, mended: str | None) -> None:

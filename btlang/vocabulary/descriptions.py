@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 
 from btlang.text.words import Words
 from btlang.vocabulary.adjectives import Adjectives
-from btlang.vocabulary.pattern import forms
+from btlang.vocabulary.pattern import ways
 from btlang.vocabulary.references import ADJECTIVES, DENIED, RELATIONS, SELF, Parts
 from btlang.vocabulary.word_tree import WordTree, find, tree_of
 
@@ -40,12 +40,11 @@ class Modifiers:
         self._relations = tree_of((phrase, name) for name, phrases in self._words.items() for phrase in phrases)
         articles = frozenset(language["articles"])
         self._to_self = {
-            name: [" ".join(map(str, form)) for phrase in phrases for form in reversed(forms(phrase, articles))]
-            for name, phrases in language["relations_to_self"].items()
+            name: sorted(ways(phrases, articles), key=len) for name, phrases in language["relations_to_self"].items()
         }
         self._self_relations = tree_of((phrase, name) for name, phrases in self._to_self.items() for phrase in phrases)
         self._relatives: list[str] = language["relatives"]
-        self._denials = [" ".join(map(str, form)) for phrase in language["relative_denials"] for form in forms(phrase)]
+        self._denials = list(ways(language["relative_denials"]))
         self.adjectives = Adjectives(language)
         clauses = (*((phrase, True) for phrase in self._relatives), *((phrase, False) for phrase in self._denials))
         self._clauses = tree_of(clauses)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from btlang.vocabulary.entry import COMPARISONS, About
-from btlang.vocabulary.pattern import PatternError, Slot, forms
+from btlang.vocabulary.pattern import PatternError, Slot, forms, ways
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -95,6 +95,10 @@ def _words(value: object) -> bool:
     return isinstance(value, list) and all(isinstance(item, str) and item for item in value)
 
 
+def _patterns(value: object) -> bool:
+    return _words(value) and all(any(ways([pattern])) for pattern in value)  # type: ignore[attr-defined]
+
+
 def _role(value: object) -> bool:
     """Its phrases, or a table of those that are added to it and taken from it."""
     if isinstance(value, dict):
@@ -141,11 +145,11 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "third_person": (_endings, "a list of endings"),
     "negative_subjects": (_words, "a list of words"),
     "plurals": (_words, "a list of words"),
-    "asking": (_words, "a list of words"),
+    "asking": (_patterns, "a list of patterns"),
     "nouns": (_words, "a list of words"),
     "plural_endings": (_is_text, "an ending"),
     "relations": (_words, "a list of phrases"),
-    "relations_to_self": (_words, "a list of phrases"),
+    "relations_to_self": (_patterns, "a list of patterns"),
     "possessives": (_words, "a list of words"),
     "prepositions": (_words, "a list of phrases"),
     "synonyms": (_words, "a list of verbs"),
@@ -154,7 +158,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "meanings": (_between, "one of " + ", ".join(CONNECTIVES)),
     "nodes": (_is_text, "the words of a node"),
     "contractions": (_is_text, "a word"),
-    "direct": (_is_text, "the first words of a question"),
+    "direct": (_patterns, "a list of patterns"),
     "counts": (_rounds, "a whole number from 1 on, or -1 for endless"),
     "numbers": (_number, "a number"),
     "multipliers": (_number, "a number"),

@@ -25,7 +25,7 @@ from btlang.vocabulary.language_tables import (
     merged,
 )
 from btlang.vocabulary.nouns import Features, with_plurals
-from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants
+from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants, ways
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import TrieNode, add, collisions
 from btlang.vocabulary.value_type import PLACE, WORLD, ValueType
@@ -108,7 +108,7 @@ class Lexicon:
             tree_of((phrase, True) for phrase in self.asking[name]) for name in ("feeling", "there", "states")
         )
         """The words of remarks: how somebody feels, that there is something, and what may be felt."""
-        self.been = tree_of((" ".join(map(str, form)), True) for said in self.asking["been"] for form in forms(said))
+        self.been = tree_of((words, True) for words in ways(self.asking["been"]))
         """The words of a journey that is behind somebody: `have been in`."""
         verb = "".join(self.asking["journey"][:1])
         self.journey_verbs = frozenset((verb, *self.values.role_words.synonyms.get(verb, ())))

@@ -8,6 +8,7 @@ Written by us because the `cucumber-expressions` package only matches whole stri
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from functools import lru_cache
 from itertools import product
 
@@ -15,7 +16,7 @@ from btlang.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     Table = Mapping[str, Sequence[str]]
 
@@ -74,6 +75,13 @@ def forms(pattern: str, articles: frozenset[str] = frozenset()) -> tuple[Form, .
     if not found or () in ways[0]:
         raise PatternError(f"the phrase '{pattern}' has no required word")
     return tuple(found)
+
+
+def ways(patterns: Iterable[str], articles: frozenset[str] = frozenset()) -> Iterator[str]:
+    """Every way to say patterns, in words; none of a pattern that is no pattern."""
+    for pattern in patterns:
+        with suppress(PatternError):
+            yield from map(spelled, forms(pattern, articles))
 
 
 def spelled(form: Form) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
-from btlang.vocabulary.pattern import forms
+from btlang.vocabulary.pattern import ways
 from btlang.vocabulary.word_tree import WordTree, find, tree_of
 
 TYPE_CHECKING = False
@@ -33,15 +33,13 @@ class Texts:
         articles, roles = frozenset(language["articles"]), language["roles"]
 
         def words_of(role: str) -> WordTree:
-            said = (form for phrase in roles.get(role, ()) for form in forms(phrase, articles))
-            return tree_of((" ".join(map(str, form)), True) for form in said)
+            return tree_of((words, True) for words in ways(roles.get(role, ()), articles))
 
         self._clause_words = frozenset(language["clause_words"])
         self._openers = frozenset(language["clause_openers"])
         self._sayings = tree_of((phrase, True) for phrase in language["sayings"])
         self._then = words_of("then")
-        questions = ((form, said) for phrase, said in language["direct"].items() for form in forms(phrase))
-        self._direct = tree_of((" ".join(map(str, form)), said) for form, said in questions)
+        self._direct = tree_of((words, said) for said, clauses in language["direct"].items() for words in ways(clauses))
         self.of_persons = frozenset(language["of_persons"])
         """Words for persons that are others for whoever hears them."""
         self._joining = set().union(*map(words_of, _JOINING))

@@ -71,11 +71,11 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
             made[key] = {name: list(map(_pattern, patterns)) for name, patterns in value.items()}
         elif key in ("nouns", "everyone", "relations", "relations_to_self", "prepositions", "asking"):
             made[key] = {kind: list(map(invented, words)) for kind, words in value.items()}
-        elif key in ("plural_endings", "direct"):
+        elif key == "plural_endings":
             made[key] = {invented(ending): invented(other) for ending, other in value.items()}
         elif key == "nodes":
             made[key] = {node_id: _pattern(words) for node_id, words in value.items()}
-        elif key in ("negations", "negative_subjects", "plurals", "doing", "third_person", "synonyms"):
+        elif key in ("negations", "negative_subjects", "plurals", "doing", "third_person", "synonyms", "direct"):
             made[key] = {invented(word): list(map(invented, words)) for word, words in value.items()}
         elif key in ("counts", "numbers", "multipliers", "fractions", "times", "pronouns", "meanings"):
             made[key] = {invented(word): meaning for word, meaning in value.items()}

@@ -167,7 +167,7 @@ def test_help_on_a_phrase_tells_all() -> None:
     expected = """\
 charge [to {percent}]
     Docks and waits until the battery is full or reaches the percentage.
-    also: charge/recharge [to {percent}]
+    also: charge/recharge [up] [to {percent}]
           charge/recharge battery [to {percent}]
     {percent}: a number and one of %; 100% if left out
     needs: base

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.text.words import Words, statements
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.pattern import forms
+from btlang.vocabulary.pattern import ways
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import find, tree_of
 
@@ -104,5 +104,4 @@ class Permissions:
 
 def _firsts(vocabulary: Lexicon, role: str) -> Iterator[str]:
     """The first words of what says a role."""
-    for phrase in vocabulary.roles[role]:
-        yield from (str(form[0]) for form in forms(phrase, vocabulary.articles))
+    return (words.split()[0] for words in ways(vocabulary.roles[role], vocabulary.articles))
