@@ -52,6 +52,8 @@ class Event(Record):
 
     tag: ClassVar[str] = ""
     """The name of its class in logs; "" for a change of status."""
+    alarms: ClassVar[bool] = False
+    """Whether something is wrong: the page says so in another colour."""
     t: float
     run: str
     number: int
@@ -164,6 +166,7 @@ class Bumped(Event):
     """The robot touches something, "" if it doesn't know what."""
 
     tag = "bump"
+    alarms = True
     into: str
 
 
@@ -171,6 +174,7 @@ class Stuck(Event):
     """The wheels turn, but the robot doesn't move."""
 
     tag = "stuck"
+    alarms = True
 
 
 class Stopped(Event):
@@ -199,6 +203,7 @@ class Dropped(Event):
     """Something fell out of a hand."""
 
     tag = "drop"
+    alarms = True
     hand: str
     name: str | None
 
@@ -226,6 +231,7 @@ class BatteryEmpty(Event):
     """The battery is empty."""
 
     tag = "battery"
+    alarms = True
     percent: float
 
 
@@ -233,6 +239,7 @@ class FaultInjected(Event):
     """A fault of the world file begins."""
 
     tag = "fault"
+    alarms = True
     kind: str
     text: str
 
@@ -426,12 +433,14 @@ class Warned(Notice):
     """A warning that doesn't end the mission."""
 
     tag = "warning"
+    alarms = True
 
 
 class Troubled(Notice):
     """Something went wrong outside the mission, such as a command that didn't halt."""
 
     tag = "error"
+    alarms = True
 
 
 class RobotEvent(Event):

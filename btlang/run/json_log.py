@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from btlang.engine.status import NAMES
 from btlang.run.events import LOGGED, Event, StatusesChanged
+from btlang.run.field_types import field_type
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -84,8 +85,11 @@ def described(kind: type[Event]) -> dict[str, Any]:
         if name in Event.fields or name in _NOT_WRITTEN:
             continue
         more = _NODE if described is _NODE else {name: described}
+        if name not in kind.field_defaults:
+            required += more
+        elif described is not _NODE:  # a field that isn't there has its default
+            more = {name: {**described, "default": kind.field_defaults[name]}}
         properties |= more
-        required += () if name in kind.field_defaults else more
     no_event = {} if kind.tag else {"not": {"required": ["event"]}}
     text = " ".join((kind.__doc__ or "").split())
     return {"title": kind.__name__, "description": text, "properties": properties, "required": required, **no_event}
@@ -96,25 +100,16 @@ _NODE = {
     "name": {"type": "string"},
     "ports": {"type": "object", "additionalProperties": {"type": "string"}},
 }
-_TYPES: dict[str, dict[str, Any]] = {
-    "str": {"type": "string"},
-    "int": {"type": "integer"},
-    "int | None": {"type": ["integer", "null"]},
-    "float": {"type": "number"},
-    "str | None": {"type": ["string", "null"]},
-    "bool": {"type": "boolean"},
-    "bool | None": {"type": ["boolean", "null"]},
-    "Mapping[str, float]": {"type": "object", "additionalProperties": {"type": "number"}},
-    "Mapping[str, Any]": {"type": "object"},
-    "Node": _NODE,
-    "Node | None": _NODE,
-}
-"""By the annotations of the fields."""
 
 
 def _types(kind: type[Event]) -> dict[str, dict[str, Any]]:
     annotations: dict[str, str] = {}
     for base in reversed(kind.__mro__):
         annotations |= vars(base).get("__annotations__", {})
-    statuses = {"enum": list(NAMES)}
-    return {name: statuses if name in _STATUSES else _TYPES[annotations[name]] for name in kind.fields}
+    return {name: _type(name, annotations[name]) for name in kind.fields}
+
+
+def _type(name: str, annotation: str) -> dict[str, Any]:
+    if name in _STATUSES:
+        return {"enum": list(NAMES)}
+    return _NODE if annotation in ("Node", "Node | None") else field_type(annotation)[1]

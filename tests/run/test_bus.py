@@ -6,7 +6,6 @@ import io
 import json
 import threading
 import time
-from pathlib import Path
 
 import pytest
 
@@ -16,8 +15,6 @@ from btlang.run.bus import BLOCK, DROP_OLDEST, INLINE, NEWEST, Bus
 from btlang.run.events import LOGGED, Ended, Event, Printed, Said, StatusesChanged
 from btlang.run.json_log import JsonLog, as_json, schema
 from btlang.run.recent import RecentEvents
-
-SCHEMA = Path(btlang.__file__).parent / "run" / "events.schema.json"
 
 
 class Slow:
@@ -162,10 +159,6 @@ def test_an_emergency_stop_of_a_session_ends_a_run_that_is_prepared_too() -> Non
         after = session.run(btlang.parse_tree("wave"), speed="max")
         assert after.outcome is not None
         assert after.outcome.succeeded
-
-
-def test_the_published_schema_is_that_of_the_classes() -> None:
-    assert json.loads(SCHEMA.read_text(encoding="utf-8")) == schema()
 
 
 def test_every_line_of_a_log_fits_the_schema() -> None:
