@@ -8,17 +8,31 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from btlang.run import json_log
 from btlang.run.events import LOGGED, Event
+from btlang.run.field_types import field_type
+from btlang.run.json_log import described
 from btlang.task import command_schema
 
 ROOT = Path(__file__).parent.parent
 _TYPES = {"string": "string", "integer": "number", "number": "number", "boolean": "boolean", "null": "null"}
 
 
+def log_schema() -> dict[str, Any]:
+    """The JSON schema (draft 2020-12) of a line of a log, made from the classes of events."""
+    common = {name: field_type(Event.__annotations__[name])[1] for name in Event.fields}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "An event of a run of btlang",
+        "type": "object",
+        "properties": common,
+        "required": list(common),
+        "oneOf": [described(kind) for kind in LOGGED],
+    }
+
+
 def events_schema() -> str:
-    """The JSON schema of the lines of logs, a line for each class of events."""
-    schema = json_log.schema()
+    """The same as text, with a line for each class of events."""
+    schema = log_schema()
     kinds = ",\n".join(f"  {json.dumps(kind)}" for kind in schema.pop("oneOf"))
     return json.dumps(schema, indent=1).removesuffix("\n}") + f',\n "oneOf": [\n{kinds}\n ]\n}}\n'
 
@@ -31,8 +45,8 @@ def commands_schema() -> str:
 def events_module() -> str:
     """The TypeScript types of events, the defaults of their fields, and which of them say that something is wrong."""
     kinds = [kind for kind in LOGGED if kind.tag]
-    common = " ".join(_fields(json_log.schema()))
-    each = "\n".join(f"  | {{ {' '.join(_fields(json_log.described(kind)))} }} // {kind.__name__}" for kind in kinds)
+    common = " ".join(_fields(log_schema()))
+    each = "\n".join(f"  | {{ {' '.join(_fields(described(kind)))} }} // {kind.__name__}" for kind in kinds)
     defaults = "\n".join(f"  {kind.tag}: {json.dumps(found)}," for kind in kinds if (found := _defaults(kind)))
     alarms = ", ".join(f'"{kind.tag}"' for kind in kinds if kind.alarms)
     return f"""\
@@ -75,7 +89,7 @@ def _type(schema: dict[str, Any]) -> str:
 
 
 def _defaults(kind: type[Event]) -> dict[str, Any]:
-    properties = json_log.described(kind)["properties"]
+    properties = described(kind)["properties"]
     return {name: schema["default"] for name, schema in properties.items() if "default" in schema}
 
 

@@ -1,4 +1,4 @@
-"""A log for programs: one line of JSON for each event. `schema` describes the lines."""
+"""A log for programs: one line of JSON for each event. `described` gives the schema of one."""
 
 from __future__ import annotations
 
@@ -61,20 +61,6 @@ def as_json(event: Event, label: Callable[[Node], str]) -> dict[str, Any]:
             written[name] = NAMES[value] if name in _STATUSES else value
     written |= {name: getattr(event, name) for name in Event.fields}
     return {name: round(value, 6) if isinstance(value, float) else value for name, value in written.items()}
-
-
-def schema() -> dict[str, Any]:
-    """The JSON schema (draft 2020-12) of a line, made from the classes of events."""
-    kinds = [described(kind) for kind in LOGGED]
-    common = {name: _types(Event)[name] for name in Event.fields}
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "An event of a run of btlang",
-        "type": "object",
-        "properties": common,
-        "required": list(common),
-        "oneOf": kinds,
-    }
 
 
 def described(kind: type[Event]) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from btlang.run.bus import INLINE
 from btlang.run.events import LOGGED, Arrived, DoorMoved, Ended, Event, PeriodPassed, StatusesChanged, Stopped
 from btlang.run.json_log import as_json
 from btlang.run.known_nodes import KnownNodes
-from btlang.run.robot_state import RobotState, Whereabouts, asked, rounded_scan
+from btlang.run.robot_state import RobotState, asked, rounded_scan
 from btlang.run.snapshot import Doing
 from btlang.session import Run
 from btlang.task.allowance import Allowance
@@ -184,38 +184,39 @@ class Feed:
         while watcher.events:
             watched, event = watcher.events.popleft()
             yield {"type": "event", "task": watched.task, "event": as_json(event, watched.mission.label)}
-        robot = {**self._robot(), **_state(self._state)}
-        if robot != watcher.robot:
-            watcher.robot = robot
-            yield {"type": "robot", **robot}
-        if self._parts != watcher.parts:
-            watcher.parts = self._parts
-            yield {"type": "components", **self._parts}
-        if self._map is not None and watcher.world is not self._map.world:
-            watcher.world = self._map.world
-            yield {"type": "map", **watcher.world.as_map()}
-        things = () if self._state is None else self._state.things
-        if things != watcher.things:
-            watcher.things = things
-            yield {"type": "things", "things": things}
-        if (question := self._question()) != watcher.question:
-            watcher.question = question
-            yield {"type": "asking", "text": question}
-        if self._scan != watcher.scan:
-            watcher.scan = self._scan
-            yield {"type": "scan", "ranges": self._scan, "pose": self._scanned_from}
-        if self._way != watcher.way:
-            watcher.way = self._way
-            yield {"type": "way", "points": self._way}
-        if (doing := self._doing) != watcher.doing:
-            watcher.doing = doing
-            yield {"type": "doing", **doing.as_dict()}
-        if (joints := self._body.joints) != watcher.joints:
-            watcher.joints = joints
-            yield {"type": "joints", "positions": joints}
-        if (speech := self._body.speech) != watcher.speech:
-            watcher.speech = speech
-            yield {"type": "speech", **dict(zip(("text", "start", "end"), speech, strict=True))}
+        for message in self._states():
+            kind = message["type"]
+            if message != watcher.states.get(kind):
+                watcher.states[kind] = message
+                yield message
+
+    def _states(self) -> Iterator[dict[str, Any]]:
+        """The messages of which only the newest counts, as they are now."""
+        text, start, end = self._body.speech
+        yield {"type": "robot", **self._robot(), **_state(self._state)}
+        yield {"type": "components", **self._parts}
+        if self._map is not None:
+            yield {"type": "map", **self._map.written}
+        yield {"type": "things", "things": () if self._state is None else self._state.things}
+        yield {"type": "asking", "text": self._question()}
+        yield {"type": "scan", "ranges": self._scan, "pose": self._scanned_from if self._scan else None}
+        yield {"type": "way", "points": self._way}
+        yield {"type": "doing", **self._doing.as_dict()}
+        yield {"type": "joints", "positions": self._body.joints}
+        yield {"type": "speech", "text": text, "start": start, "end": end}
+
+
+_SILENT: tuple[dict[str, Any], ...] = (
+    {"type": "components", "components": [], "devices": []},
+    {"type": "things", "things": ()},
+    {"type": "asking", "text": ""},
+    {"type": "scan", "ranges": [], "pose": None},
+    {"type": "way", "points": []},
+    {"type": "doing", **Doing().as_dict()},
+    {"type": "joints", "positions": []},
+    {"type": "speech", "text": "", "start": 0, "end": 0},
+)
+"""What somebody takes for granted to whom nothing else was said."""
 
 
 class _Watcher:
@@ -226,16 +227,7 @@ class _Watcher:
         self.news = threading.Event()
         self.runs: deque[_Watched] = deque(maxlen=_MOST_RUNS)
         self.events: deque[tuple[_Watched, Event]] = deque(maxlen=_MOST_EVENTS)
-        self.robot: dict[str, Any] = {}
-        self.parts: dict[str, Any] = {"components": [], "devices": []}
-        self.world: World | None = None
-        self.things: tuple[Whereabouts, ...] = ()
-        self.question = ""
-        self.scan: list[float | None] = []
-        self.way: list[list[float]] = []
-        self.joints: list[float | None] = []
-        self.speech = ("", 0, 0)
-        self.doing = Doing()
+        self.states = {message["type"]: message for message in _SILENT}
         self.run = ""
         self.known = KnownNodes(0)
 

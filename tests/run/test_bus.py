@@ -13,8 +13,9 @@ import btlang
 from btlang.run import bus as buses
 from btlang.run.bus import BLOCK, DROP_OLDEST, INLINE, NEWEST, Bus
 from btlang.run.events import LOGGED, Ended, Event, Printed, Said, StatusesChanged
-from btlang.run.json_log import JsonLog, as_json, schema
+from btlang.run.json_log import JsonLog, as_json
 from btlang.run.recent import RecentEvents
+from tests.generate import log_schema
 
 
 class Slow:
@@ -166,7 +167,7 @@ def test_every_line_of_a_log_fits_the_schema() -> None:
     output = io.StringIO()
     mission = btlang.parse_tree("say hi, print ho, grasp the cup if possible, move forward 9 m then fail")
     mission.run(speed="max", sinks=[JsonLog(output, mission.label)], time_limit=30)
-    validator = jsonschema.Draft202012Validator(schema())
+    validator = jsonschema.Draft202012Validator(log_schema())
     lines = [json.loads(line) for line in output.getvalue().splitlines()]
     assert len(lines) > 10
     for line in lines:
@@ -175,7 +176,7 @@ def test_every_line_of_a_log_fits_the_schema() -> None:
 
 @pytest.mark.parametrize("kind", LOGGED, ids=lambda kind: kind.__name__)
 def test_every_event_has_its_place_in_the_schema(kind: type[Event]) -> None:
-    [described] = [one for one in schema()["oneOf"] if one["title"] == kind.__name__]
+    [described] = [one for one in log_schema()["oneOf"] if one["title"] == kind.__name__]
     assert described["description"]
     event = kind(1.0, "r", 0, 2.0, *["x"] * (len(kind.fields) - len(Event.fields) - len(kind.field_defaults)))
     if kind.__name__ != "StatusChanged":
