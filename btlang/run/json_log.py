@@ -8,6 +8,7 @@ from collections.abc import Callable
 from btlang.engine.status import NAMES
 from btlang.run.events import LOGGED, Event, StatusesChanged
 from btlang.run.field_types import field_type
+from btlang.text.json_text import shallow
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
 _NOT_WRITTEN = ("index",)
 _STATUSES = ("status", "before")
+_OPEN = ("data",)  # of which robots of others decide what is in it
 
 
 class JsonLog:
@@ -58,7 +60,7 @@ def as_json(event: Event, label: Callable[[Node], str]) -> dict[str, Any]:
         if isinstance(value, Node):
             written |= {"id": value.id, "name": label(value), "ports": dict(value.ports)}
         else:
-            written[name] = NAMES[value] if name in _STATUSES else value
+            written[name] = NAMES[value] if name in _STATUSES else shallow(value) if name in _OPEN else value
     written |= {name: getattr(event, name) for name in Event.fields}
     return {name: round(value, 6) if isinstance(value, float) else value for name, value in written.items()}
 

@@ -1,4 +1,4 @@
-"""Delays after wrong passwords, by account and by address."""
+"""Delays after wrong passwords, by account, and by address."""
 
 from __future__ import annotations
 
@@ -39,9 +39,17 @@ class Throttle:
         while len(self._wrong) > _MOST_KNOWN:
             self._wrong.popitem(last=False)
 
-    def right(self, key: str) -> None:
-        """Somebody was right: counting starts again."""
+    def right(self, key: str) -> int:
+        """Somebody was right: counting starts again. Returns how many were wrong."""
+        count, _ = self._known(key)
         self._wrong.pop(key, None)
+        return count
+
+    def forgive(self, key: str, count: int) -> None:
+        """So many wrong ones count no more."""
+        if key in self._wrong:
+            known, last = self._wrong[key]
+            self._wrong[key] = (max(0, known - count), last)
 
     def _known(self, key: str) -> tuple[int, float]:
         count, last = self._wrong.get(key, (0, 0.0))
