@@ -48,7 +48,7 @@ class Access:
         self, accounts: Accounts, key: str, cookie: str = COOKIE, clock: Callable[[], float] = time.monotonic
     ) -> None:
         self.accounts, self.cookie, self._clock = accounts, cookie, clock
-        self._known: dict[str, tuple[Identity | None, float]] = {}
+        self._known: dict[str, tuple[Identity, float]] = {}
         self._verifier = Verifier()
         self._signer = Signer(key, salt="csrf")
         self._by_account, self._by_address, self._by_both = Throttle(clock), Throttle(clock), Throttle(clock)
@@ -120,9 +120,9 @@ class Access:
         self._verifier.close()
 
     async def _identity(self, secret: str) -> Identity | None:
-        known, until = self._known.get(secret, (None, 0.0))
-        if known is not None and self._clock() < until:
-            return known
+        known = self._known.get(secret)
+        if known is not None and self._clock() < known[1]:
+            return known[0]
         found = await asyncio.to_thread(self.accounts.identity, secret) if secret and is_whole(secret) else None
         if len(self._known) >= _MOST_KNOWN:
             self._known.clear()

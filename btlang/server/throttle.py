@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import OrderedDict
 from collections.abc import Callable
+from math import inf
 
 FREE = 5
 """Wrong passwords that cost nothing: people mistype."""
@@ -52,5 +53,5 @@ class Throttle:
             self._wrong[key] = (max(0, known - count), last)
 
     def _known(self, key: str) -> tuple[int, float]:
-        count, last = self._wrong.get(key, (0, 0.0))
-        return (count, last) if count and self._clock() - last < _FORGOTTEN else (0, 0.0)
+        count, last = self._wrong.get(key, (0, -inf))
+        return (count, last) if self._clock() - last < _FORGOTTEN else (0, last)

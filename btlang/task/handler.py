@@ -122,9 +122,7 @@ class Handler:
         return task
 
     def _log(self, command: Command, person: str, answer: Answer) -> None:
-        with suppress(
-            MissionError, NestedTooDeep
-        ):  # then it was refused for the same, or needs no store
+        with suppress(MissionError, NestedTooDeep):  # then it was refused for the same, or needs no store
             details = dump_json(messages.as_json(command), str, ensure_ascii=False)
             self._store.log(Act(self._now(), person, command.tag, details, answer.text))
 

@@ -16,7 +16,7 @@ from btlang.server.access import COOKIE, CSRF, Access, AccessError, address_of, 
 from btlang.server.accounts import Accounts, Identity
 from btlang.server.passwords import hashed
 from btlang.server.roles import Role
-from btlang.server.throttle import FREE
+from btlang.server.throttle import FREE, Throttle
 from tests.server.doors import PASSWORD
 
 HERE, THERE = "10.0.0.1", "10.0.0.2"
@@ -214,6 +214,50 @@ def test_those_who_are_known_fill_no_memory(guard: Guard, monkeypatch: pytest.Mo
     for number in range(20):
         refusal(lambda number=number: guard.identify(authorization=f"Bearer btl_{number}"))
     assert len(guard.access._known) <= 3
+
+
+def test_its_threads_end(guard: Guard) -> None:
+    guard.log_in("bo")
+    guard.access.close()
+    with pytest.raises(RuntimeError, match="after shutdown"):
+        guard.log_in("bo")
+
+
+def wrong(throttle: Throttle, key: str, times: int = 1) -> Throttle:
+    for _ in range(times):
+        throttle.wrong(key)
+    return throttle
+
+
+def test_wrong_passwords_are_forgotten_after_a_quarter_of_an_hour() -> None:
+    now = [0.0]
+    throttle = wrong(Throttle(lambda: now[0]), "ann", FREE)
+    now[0] = 899.9
+    assert wrong(throttle, "ann").wait("ann") == pytest.approx(2.0)
+    now[0] += 899.9
+    assert throttle.right("ann") == FREE + 1
+    assert throttle.right("ann") == 0
+    wrong(throttle, "ann", FREE)
+    now[0] += 900.0
+    assert wrong(throttle, "ann").wait("ann") == 0.0
+    assert throttle.right("ann") == 1
+
+
+def test_of_too_many_the_least_recent_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("btlang.server.throttle._MOST_KNOWN", 2)
+    throttle = Throttle(lambda: 0.0)
+    for key in ("ann", "bo", "ann", "ed"):
+        throttle.wrong(key)
+    assert [throttle.right(key) for key in ("ann", "bo", "ed")] == [2, 0, 1]
+
+
+def test_some_wrong_passwords_are_forgiven() -> None:
+    throttle = wrong(Throttle(lambda: 0.0), "here", FREE + 2)
+    throttle.forgive("here", 2)
+    assert throttle.wait("here") == 1.0
+    throttle.forgive("here", FREE + 9)
+    throttle.forgive("there", 3)
+    assert [throttle.right("here"), throttle.right("there")] == [0, 0]
 
 
 def test_where_somebody_is() -> None:
