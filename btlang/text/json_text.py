@@ -6,11 +6,12 @@ import re
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
     from typing import Any
 
 DEEPEST = 100
 """Brackets in each other."""
+_DEEP = "(nested too deep)"
 _MARKS = re.compile(r'"(?:[^"\\]|\\.)*+"?|[\[{]|[\]}]', re.DOTALL)  # a text that does not end is read once, too
 
 
@@ -54,6 +55,8 @@ def is_deep(value: Any) -> bool:
     return True
 
 
-def shallow(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return values by name, with a text in place of each that is nested too deep."""
-    return {name: "(nested too deep)" if is_deep([[value]]) else value for name, value in values.items()}
+def shallow(values: Any) -> Any:
+    """Return values by name, or another value, with a text in place of what is nested too deep."""
+    if isinstance(values, dict):
+        return {name: _DEEP if is_deep([[value]]) else value for name, value in values.items()}
+    return _DEEP if is_deep(values) else values
