@@ -164,7 +164,7 @@ class Session:
         """Ends the current run, brings the robot to rest and disconnects. May be called twice."""
         if self.current is not None and self.current.is_under_way:
             self.current.stop()
-            self.current.join()
+            self.current.wait(threading.TIMEOUT_MAX)
         self.connection.close()
 
     def __enter__(self) -> Session:
@@ -259,21 +259,16 @@ class Run:
         def wait(self, seconds: float) -> Outcome | None: ...
 
     def wait(self, seconds: float | None = None) -> Outcome | None:
-        """Wait for the outcome, or return None after that many seconds. Raises the exception that ended the run.
-
-        Without `seconds` it raises RuntimeError for a run that `start` didn't start and that isn't over.
+        """Wait for the outcome, or return None after that many seconds. Raises what ended the run, and RuntimeError
+        without `seconds` if `start` wasn't called.
         """
-        self.join(seconds)
-        if seconds is None and self.outcome is None:
-            raise RuntimeError("only a run that was started can be waited for")
-        return self.outcome
-
-    def join(self, seconds: float | None = None) -> None:
-        """Wait like `wait`, if `start` has started a thread."""
         if self._thread is not None:
             self._thread.join(seconds)
         if self._error is not None:
             raise self._error
+        if seconds is None and self.outcome is None:
+            raise RuntimeError("only a run that was started can be waited for")
+        return self.outcome
 
     def tick(self) -> int:
         """Ticks once and advances the world by one period; returns the status (see btlang.engine.status)."""

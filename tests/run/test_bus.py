@@ -136,6 +136,18 @@ def test_a_session_runs_many_missions_and_late_joiners_see_the_state() -> None:
     assert [(c.path, c.before, c.status) for c in changes if c.path == "/0"] == [("/0", 4, 2), ("/0", 2, 1)]
 
 
+def test_only_a_run_that_was_started_can_be_waited_for() -> None:
+    with btlang.Session() as session:
+        run = session.prepare(btlang.parse_tree("wait 1 s"), speed=1)
+        with pytest.raises(RuntimeError, match="was started"):
+            run.wait()
+        assert run.wait(0.01) is None
+        run.start()
+        assert run.wait(0.01) is None
+        assert run.wait().succeeded
+        assert run.wait(0.01) is run.outcome
+
+
 def test_of_a_long_run_only_the_latest_events_are_kept() -> None:
     with btlang.Session() as session:
         nodes = session.prepare(btlang.parse_tree("wave")).nodes
