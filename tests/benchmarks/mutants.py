@@ -25,7 +25,7 @@ from queue import Queue
 
 ROOT = Path(__file__).parents[2]
 _ACCESS = ["tests/server/test_access.py", "tests/server/test_attacks.py::test_wrong_passwords_cost_time"]
-_GUARD = ["tests/robots/motion/test_guard.py", "tests/robots/motion/test_guard_corridor.py"]
+_GUARD = [f"tests/robots/motion/test_guard{part}.py" for part in ("", "_corridor", "_limits")]
 MODULES = {
     "access": ("btlang/server/access.py", _ACCESS),
     "throttle": ("btlang/server/throttle.py", _ACCESS),
