@@ -41,7 +41,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import TracebackType
-    from typing import Any, Protocol
+    from typing import Any, Protocol, overload
 
     from btlang.engine.instance import Hooks
     from btlang.robots.body import Body
@@ -164,7 +164,7 @@ class Session:
         """Ends the current run, brings the robot to rest and disconnects. May be called twice."""
         if self.current is not None and self.current.is_under_way:
             self.current.stop()
-            self.current.wait()
+            self.current.wait(threading.TIMEOUT_MAX)
         self.connection.close()
 
     def __enter__(self) -> Session:
@@ -250,12 +250,24 @@ class Run:
         self._thread = threading.Thread(target=self._work, name="btlang run", daemon=True)
         self._thread.start()
 
+    if TYPE_CHECKING:
+
+        @overload
+        def wait(self, seconds: None = None) -> Outcome: ...
+
+        @overload
+        def wait(self, seconds: float) -> Outcome | None: ...
+
     def wait(self, seconds: float | None = None) -> Outcome | None:
-        """Waits for the outcome, or returns None after that many seconds. Raises the exception that ended the run."""
+        """Wait for the outcome, or return None after that many seconds. Raises what ended the run, and RuntimeError
+        without `seconds` if `start` wasn't called.
+        """
         if self._thread is not None:
             self._thread.join(seconds)
         if self._error is not None:
             raise self._error
+        if seconds is None and self.outcome is None:
+            raise RuntimeError("only a run that was started can be waited for")
         return self.outcome
 
     def tick(self) -> int:

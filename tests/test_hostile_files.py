@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import sys
 from pathlib import Path
@@ -10,8 +11,15 @@ import pytest
 
 import btlang
 from btlang.cli import main
+from btlang.components.plain import packed
 from btlang.maps.data_text import ForeignFileError, read_data
-from btlang.text.json_text import load_json
+from btlang.recording.channels import messages
+from btlang.run.events import RobotEvent, Sampled
+from btlang.run.json_log import JsonLog
+from btlang.run.robot_state import Movements
+from btlang.task.store import open_store
+from btlang.task.task import MissionText, Task
+from btlang.text.json_text import dump_json, is_deep, load_json
 from btlang.text.source import Source
 
 WORLD = (Path(btlang.__file__).parent / "robots" / "worlds" / "default.toml").read_text(encoding="utf-8")
@@ -100,6 +108,50 @@ def test_what_is_said_of_a_deep_tree_grows_with_it_and_not_with_its_square(
         return len(capsys.readouterr().out)
 
     assert length(10_000) < 6 * length(2_000)
+
+
+def test_deep_values_are_not_written_where_a_deep_tree_has_raised_the_limit_of_recursion(tmp_path: Path) -> None:
+    """Python's writer of JSON recurses in C, and would crash."""
+    deep: list[object] = []
+    for _ in range(200_000):
+        deep = [deep]
+    twice: list[object] = []
+    for _ in range(60):  # a text of 2 to the power of 60 brackets
+        twice = [twice, twice]
+    inside: list[object] = []
+    inside.append(inside)
+    log = io.StringIO()
+    before = sys.getrecursionlimit()
+    sys.setrecursionlimit(1_000_000)
+    try:
+        event = RobotEvent(0.0, "r", 0, 0.0, "odd", {"deep": deep, "inside": inside, "flat": [1, {"a": (2,)}]})
+        JsonLog(log, str)(event)
+        [(_, written)] = messages(Sampled(0.0, "r", 0, 0.0, {"deep": deep, "n": [1]}), 0, str, Movements())
+        for value in (deep, {"a": {"b": deep}}, inside):
+            with pytest.raises(ValueError, match="nested too deep"):
+                dump_json(value)
+            with pytest.raises(TypeError, match="nested too deeply"):
+                packed(value)
+        with (
+            open_store(str(tmp_path / "tasks.db")) as store,
+            pytest.raises(btlang.MissionError, match="nested so deep"),
+        ):
+            store.add(Task(0, MissionText("wave", values={"x": deep}), "ann", 0.0))
+        with btlang.Session() as session:
+            run = session.prepare(btlang.parse_tree("wave"), values={"x": deep})
+            with pytest.raises(btlang.MissionError, match="nested too deep"):
+                run.save()
+    finally:
+        sys.setrecursionlimit(before)
+    assert json.loads(log.getvalue())["data"] == {
+        "deep": "(nested too deep)", "inside": "(nested too deep)", "flat": [1, {"a": [2]}],
+    }  # fmt: skip
+    assert isinstance(written, dict)
+    assert written["values"] == {"deep": "(nested too deep)", "n": [1]}
+    assert not is_deep(twice)
+    for brackets in (100, 101):
+        text = "[" * brackets + "]" * brackets
+        assert is_deep(json.loads(text)) == (brackets > 100)
 
 
 def test_nested_json_where_a_deep_tree_has_raised_the_limit_of_recursion() -> None:

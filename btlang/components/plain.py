@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import json
 from collections.abc import Mapping
 
 from btlang.devices import kinds
@@ -11,7 +10,7 @@ from btlang.devices.kinds import Command, Reading
 from btlang.engine.leaves.leaf import ActionFailed, Unknown, reason_of
 from btlang.record import Record
 from btlang.robots.geometry import Pose
-from btlang.text.json_text import load_json
+from btlang.text.json_text import dump_json, load_json
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -28,8 +27,8 @@ _RECORD, _BYTES = "record", "bytes"
 def packed(message: object) -> bytes:
     """A message as bytes. Raises TypeError for values that are neither plain data nor a pose, reading or command."""
     try:
-        return json.dumps(message, default=_other, separators=(",", ":")).encode()
-    except (ValueError, RecursionError):
+        return dump_json(message, _other, separators=(",", ":")).encode()
+    except ValueError:
         raise TypeError("a value that is in itself, or nested too deeply, can't be handed to another process") from None
 
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 FORMAT = 1
 """Of what is saved; it grows when a node remembers something else."""
+_DEEPEST = 40  # lists in each other, each of which is one in an object: see btlang.text.json_text.DEEPEST
 _PLAIN = (bool, int, float, str, type(None))
 
 
@@ -122,12 +123,14 @@ def _unfault(chain: Sequence[Any], instances: Sequence[NodeInstance]) -> Fault |
     return fault
 
 
-def _kept(value: Any) -> Any:
+def _kept(value: Any, depth: int = 0) -> Any:
     """Raises SaveError for what JSON can't hold."""
+    if depth > _DEEPEST:
+        raise SaveError("a value that is nested too deep can't be saved")
     if isinstance(value, _PLAIN):
         return value
     if isinstance(value, list | tuple | deque):
-        return {type(value).__name__: [_kept(each) for each in value]}
+        return {type(value).__name__: [_kept(each, depth + 1) for each in value]}
     raise SaveError(f"a value of the kind {type(value).__name__} can't be saved")
 
 

@@ -23,6 +23,7 @@ from btlang.run.events import (
 )
 from btlang.run.json_log import as_json, described
 from btlang.run.robot_state import Movements
+from btlang.text.json_text import shallow
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -94,7 +95,7 @@ def messages(
         yield from _period(event, nanoseconds)
     elif isinstance(event, Sampled):
         if event.values:
-            yield VALUES, _common(event) | {"values": event.values}
+            yield VALUES, _common(event) | {"values": shallow(event.values)}
         if event.scan:
             yield SCAN, _scan(event, nanoseconds)
     elif type(event) in EVENTS:

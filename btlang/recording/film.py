@@ -14,13 +14,14 @@ from btlang.robots.world_problem import read_world
 from btlang.run.bus import BLOCK
 from btlang.run.events import LOGGED, Event, PeriodPassed, Sampled, StatusesChanged
 from btlang.run.json_log import as_json
+from btlang.run.known_nodes import KnownNodes
 from btlang.run.robot_state import Movements, rounded_scan
+from btlang.run.shape import Shape
+from btlang.run.snapshot import State
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
-
-    from btlang.tree.node import Node
 
 MOST_CHANGES = 200_000
 """Of statuses in a film; a longer run ends there."""
@@ -39,9 +40,12 @@ class Film:
         self._mission, self._about = mission, about or {}
         self._nodes = RecordedNodes(*outline(mission.tree))
         self._story = Story(mission, self._nodes, self._about)
+        indices = range(self._nodes.size)
+        self._state = State(Shape([self._nodes.parent(at) for at in indices]), [self._nodes.node(at) for at in indices])
+        self._known = KnownNodes(self._nodes.size)
         self._statuses: list[list[float | int]] = []
         self._words: list[list[Any]] = []
-        self._valued: dict[int, Node] = {}
+        self._doing: list[list[Any]] = []
         self._robot: list[list[Any]] = []
         self._things: list[list[Any]] = []
         self._movements, self._next_look = Movements(), 0.0
@@ -63,12 +67,15 @@ class Film:
         if self.is_cut:
             return
         self._story.take((event,))
+        self._state.take(event)
         self._end = max(self._end, event.t)
         if isinstance(event, StatusesChanged):
-            pairs = [number for index, status, _, _ in event.changes for number in (index, status)]
-            self._statuses.append([round(event.t, 3), *pairs])
-            self._count += len(pairs) // 2
-            self._take_words(event)
+            changes = self._known.new_statuses(bytes(self._state.statuses))
+            if changes:
+                self._statuses.append([round(event.t, 3), *(number for change in changes for number in change)])
+            self._count += len(changes)
+            words = self._known.new_words(event.values_now(), self._mission.label)
+            self._words += [[round(event.t, 3), *each] for each in words]
         elif isinstance(event, PeriodPassed):
             self._take_state(event)
             if event.t >= self._next_look - 1e-9:
@@ -79,15 +86,11 @@ class Film:
             self._scans.append([round(event.t, 3), rounded_scan(event.scan)])
         elif isinstance(event, LOGGED):
             self._events.append(as_json(event, self._mission.label))
+            doing = [*self._state.doing.as_dict().values()]
+            if not self._doing or self._doing[-1][1:] != doing:
+                self._doing.append([round(event.t, 3), *doing])
         full = self._count > MOST_CHANGES or len(self._events) > _MOST_EVENTS
         self.is_cut = full or len(self._robot) > _MOST_STATES or len(self._things) > _MOST_PLACES
-
-    def _take_words(self, event: StatusesChanged) -> None:
-        for index, node in event.values_now().items():
-            known = self._valued.get(index)
-            if known is None or known.ports != node.ports:
-                self._words.append([round(event.t, 3), index, self._mission.label(node)])
-            self._valued[index] = node
 
     def _take_state(self, event: PeriodPassed) -> None:
         state = event.state
@@ -108,7 +111,8 @@ class Film:
           and the characters of the text that say it (None for none); `prepared` are those whose children but the
           last only compute values for that one; `names`: those of statuses;
         - `words`: time, node and what it says with the values of its keys, where these are new;
-        - `statuses`: a time in seconds, then node and status (a number of `names`) in turn;
+        - `statuses`: a time in seconds, then node and status (a number of `names`) in turn, as a live view has them;
+        - `doing`: time, task (0), where it is going, what it said and heard last, where one of these is new;
         - `robot`: time, x, y (metres), heading (degrees), battery (percent), what the left and the right hand hold;
         - `things`: time, name, x, y (metres, None where it isn't there) and whether the robot sees it, where one of
           these is new; of people who walk and of what the robot doesn't know by its world;
@@ -138,6 +142,7 @@ class Film:
             "nodes": listed,
             "words": self._words,
             "statuses": self._statuses,
+            "doing": self._doing,
             "robot": self._robot,
             "things": self._things,
             "scans": self._scans,

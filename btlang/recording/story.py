@@ -46,7 +46,7 @@ class Story:
             elif isinstance(event, FaultInjected | Notice | PartChanged) and event.text:
                 self._note(event.t, -1, f"{event.tag}: {event.text}")
             elif isinstance(event, InTheWorld):
-                self._note(event.t, -1, f"{event.verb} {event.words}")
+                self._note(event.t, -1, event.words)
             elif isinstance(event, Ended):
                 self._ended = event
         return self

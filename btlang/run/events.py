@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from time import time
 
@@ -45,6 +46,10 @@ if TYPE_CHECKING:
         def stop(self) -> object: ...
 
 
+_FIELD = re.compile(r"\[([^\]]*)\]|\{(\w+):?([^}]*)\}")
+_NAME = re.compile(r"\{(\w+)")
+
+
 class Event(Record):
     """The fields of all events: `t` in seconds of mission time, `run` the id of the run, `number` from 0 on without
     gaps in a run, and `wall` in seconds since 1970.
@@ -52,10 +57,30 @@ class Event(Record):
 
     tag: ClassVar[str] = ""
     """The name of its class in logs; "" for a change of status."""
+    alarms: ClassVar[bool] = False
+    """Whether something is wrong: the page says so in another colour."""
+    line: ClassVar[str] = ""
+    """What people read of it, a verb first. Fields are in braces; what is in brackets needs ones that say something."""
     t: float
     run: str
     number: int
     wall: float
+
+    @property
+    def words(self) -> str:
+        """Its line in plain English, "" if it has none."""
+
+        def fill(found: re.Match[str]) -> str:
+            part, name, form = found.groups()
+            if part is not None:
+                return _FIELD.sub(fill, part) if all(map(is_said, _NAME.findall(part))) else ""
+            value = getattr(self, name)
+            return form.split("|")[not value] if isinstance(value, bool) else format(value, form or "")
+
+        def is_said(name: str) -> bool:
+            return getattr(self, name) not in ("", None, self.field_defaults.get(name))
+
+        return _FIELD.sub(fill, self.line)
 
     @classmethod
     def stamped(cls, t: float, run: str, number: int, /, *data: Any, **more: Any) -> Event:
@@ -126,6 +151,7 @@ class Said(Event):
     """The robot speaks."""
 
     tag = "say"
+    line = 'says "{text}"'
     text: str
 
 
@@ -133,6 +159,7 @@ class Printed(Event):
     """The robot shows a text."""
 
     tag = "print"
+    line = 'prints "{text}"'
     text: str
 
 
@@ -147,6 +174,7 @@ class Chosen(Event):
     """The robot has chosen the nearest or a random name of a type; `seed` is that of the run's random choices."""
 
     tag = "choose"
+    line = "chooses {name} ({how} {type}[; seed {seed}])"
     type: str
     how: str
     name: str
@@ -164,6 +192,8 @@ class Bumped(Event):
     """The robot touches something, "" if it doesn't know what."""
 
     tag = "bump"
+    alarms = True
+    line = "bumps {into}"
     into: str
 
 
@@ -171,6 +201,8 @@ class Stuck(Event):
     """The wheels turn, but the robot doesn't move."""
 
     tag = "stuck"
+    alarms = True
+    line = "stuck"
 
 
 class Stopped(Event):
@@ -199,6 +231,8 @@ class Dropped(Event):
     """Something fell out of a hand."""
 
     tag = "drop"
+    alarms = True
+    line = "drops[ {name}]"
     hand: str
     name: str | None
 
@@ -226,6 +260,7 @@ class BatteryEmpty(Event):
     """The battery is empty."""
 
     tag = "battery"
+    alarms = True
     percent: float
 
 
@@ -233,57 +268,39 @@ class FaultInjected(Event):
     """A fault of the world file begins."""
 
     tag = "fault"
+    alarms = True
+    line = "[fault {text}]"
     kind: str
     text: str
 
 
 class InTheWorld(Event):
-    """What happens between the robot and what is around it; `verb` and `words` say it to people."""
-
-    @property
-    def verb(self) -> str:
-        """What happens: "sees"."""
-        return self.tag if self.tag in ("door", "switch", "picture") else f"{self.tag}s"
-
-    @property
-    def words(self) -> str:
-        """In plain English."""
-        return self.name
-
-    if TYPE_CHECKING:
-        name: str
+    """What happens between the robot and what is around it."""
 
 
 class Heard(InTheWorld):
     """The robot hears what somebody says, "" if it doesn't know who."""
 
     tag = "hear"
+    line = 'hears "{text}"[ from {who}]'
     text: str
     who: str
-
-    @property
-    def words(self) -> str:
-        """In plain English."""
-        return f'"{self.text}" from {self.who}' if self.who else f'"{self.text}"'
 
 
 class Asked(InTheWorld):
     """The robot waits for an answer to a question, by a person or, for "", by anybody."""
 
     tag = "ask"
+    line = 'asks [{who}: ]"{text}"'
     text: str
     who: str
-
-    @property
-    def words(self) -> str:
-        """In plain English."""
-        return f'{self.who}: "{self.text}"' if self.who else f'"{self.text}"'
 
 
 class Seen(InTheWorld):
     """The robot sees somebody or something for the first time."""
 
     tag = "see"
+    line = "sees {name}"
     name: str
 
 
@@ -291,6 +308,7 @@ class Came(InTheWorld):
     """Somebody comes into the world."""
 
     tag = "come"
+    line = "comes {name}"
     name: str
 
 
@@ -298,6 +316,7 @@ class Gone(InTheWorld):
     """Somebody leaves the world."""
 
     tag = "leave"
+    line = "leaves {name}"
     name: str
 
 
@@ -305,58 +324,43 @@ class Called(InTheWorld):
     """The robot calls people for help."""
 
     tag = "call"
+    line = 'calls "{text}"'
     text: str
-
-    @property
-    def words(self) -> str:
-        """In plain English."""
-        return f'"{self.text}"'
 
 
 class DoorMoved(InTheWorld):
     """A door was opened or closed."""
 
     tag = "door"
+    line = "door {name} {open:open|closed}"
     name: str
     open: bool
-
-    @property
-    def words(self) -> str:
-        """In plain English."""
-        return f"{self.name} {'open' if self.open else 'closed'}"
 
 
 class Switched(InTheWorld):
     """The robot has switched something on or off."""
 
     tag = "switch"
+    line = "switch {name} {on:on|off}"
     name: str
     on: bool
-
-    @property
-    def words(self) -> str:
-        """In plain English."""
-        return f"{self.name} {'on' if self.on else 'off'}"
 
 
 class Given(InTheWorld):
     """A hand has given something to a person."""
 
     tag = "give"
+    line = "gives {name} to {who}"
     hand: str
     name: str
     who: str
-
-    @property
-    def words(self) -> str:
-        """In plain English."""
-        return f"{self.name} to {self.who}"
 
 
 class Pictured(InTheWorld):
     """The robot has taken a picture; `name` lists who and what is in it, "" for nothing that the robot knows."""
 
     tag = "picture"
+    line = "picture {name}"
     name: str
 
 
@@ -364,12 +368,8 @@ class LanguageChosen(InTheWorld):
     """From now on the robot speaks in the language `name`, such as "es"."""
 
     tag = "language"
+    line = "speaks {name}"
     name: str
-
-    @property
-    def verb(self) -> str:
-        """What happens."""
-        return "speaks"
 
 
 class StrokePlanned(Event):
@@ -387,17 +387,9 @@ class GestureStarted(InTheWorld):
     """The robot begins a gesture. It takes `slower` times as long as it should, for the limits of the joints."""
 
     tag = "gesture"
+    line = "gestures {name}[ ({slower:g} times as long, for the limits of the joints)]"
     name: str
     slower: float = 1.0
-
-    @property
-    def words(self) -> str:
-        """In plain English."""
-        return (
-            f"{self.name} ({self.slower:g} times as long, for the limits of the joints)"
-            if self.slower > 1.0
-            else self.name
-        )
 
 
 class PartChanged(Event):
@@ -408,6 +400,7 @@ class PartChanged(Event):
     """
 
     tag = "part"
+    line = "[part {text}]"
     kind: str
     name: str
     state: str
@@ -426,12 +419,16 @@ class Warned(Notice):
     """A warning that doesn't end the mission."""
 
     tag = "warning"
+    alarms = True
+    line = "[warning {text}]"
 
 
 class Troubled(Notice):
     """Something went wrong outside the mission, such as a command that didn't halt."""
 
     tag = "error"
+    alarms = True
+    line = "[error {text}]"
 
 
 class RobotEvent(Event):

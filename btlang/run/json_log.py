@@ -1,4 +1,4 @@
-"""A log for programs: one line of JSON for each event. `schema` describes the lines."""
+"""A log for programs: one line of JSON for each event. `described` gives the schema of one."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from collections.abc import Callable
 
 from btlang.engine.status import NAMES
 from btlang.run.events import LOGGED, Event, StatusesChanged
+from btlang.run.field_types import field_type
+from btlang.text.json_text import shallow
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 
 _NOT_WRITTEN = ("index",)
 _STATUSES = ("status", "before")
+_OPEN = ("data",)  # of which robots of others decide what is in it
 
 
 class JsonLog:
@@ -57,23 +60,9 @@ def as_json(event: Event, label: Callable[[Node], str]) -> dict[str, Any]:
         if isinstance(value, Node):
             written |= {"id": value.id, "name": label(value), "ports": dict(value.ports)}
         else:
-            written[name] = NAMES[value] if name in _STATUSES else value
+            written[name] = NAMES[value] if name in _STATUSES else shallow(value) if name in _OPEN else value
     written |= {name: getattr(event, name) for name in Event.fields}
     return {name: round(value, 6) if isinstance(value, float) else value for name, value in written.items()}
-
-
-def schema() -> dict[str, Any]:
-    """The JSON schema (draft 2020-12) of a line, made from the classes of events."""
-    kinds = [described(kind) for kind in LOGGED]
-    common = {name: _types(Event)[name] for name in Event.fields}
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "An event of a run of btlang",
-        "type": "object",
-        "properties": common,
-        "required": list(common),
-        "oneOf": kinds,
-    }
 
 
 def described(kind: type[Event]) -> dict[str, Any]:
@@ -84,8 +73,11 @@ def described(kind: type[Event]) -> dict[str, Any]:
         if name in Event.fields or name in _NOT_WRITTEN:
             continue
         more = _NODE if described is _NODE else {name: described}
+        if name not in kind.field_defaults:
+            required += more
+        elif described is not _NODE:  # a field that isn't there has its default
+            more = {name: {**described, "default": kind.field_defaults[name]}}
         properties |= more
-        required += () if name in kind.field_defaults else more
     no_event = {} if kind.tag else {"not": {"required": ["event"]}}
     text = " ".join((kind.__doc__ or "").split())
     return {"title": kind.__name__, "description": text, "properties": properties, "required": required, **no_event}
@@ -96,25 +88,16 @@ _NODE = {
     "name": {"type": "string"},
     "ports": {"type": "object", "additionalProperties": {"type": "string"}},
 }
-_TYPES: dict[str, dict[str, Any]] = {
-    "str": {"type": "string"},
-    "int": {"type": "integer"},
-    "int | None": {"type": ["integer", "null"]},
-    "float": {"type": "number"},
-    "str | None": {"type": ["string", "null"]},
-    "bool": {"type": "boolean"},
-    "bool | None": {"type": ["boolean", "null"]},
-    "Mapping[str, float]": {"type": "object", "additionalProperties": {"type": "number"}},
-    "Mapping[str, Any]": {"type": "object"},
-    "Node": _NODE,
-    "Node | None": _NODE,
-}
-"""By the annotations of the fields."""
 
 
 def _types(kind: type[Event]) -> dict[str, dict[str, Any]]:
     annotations: dict[str, str] = {}
     for base in reversed(kind.__mro__):
         annotations |= vars(base).get("__annotations__", {})
-    statuses = {"enum": list(NAMES)}
-    return {name: statuses if name in _STATUSES else _TYPES[annotations[name]] for name in kind.fields}
+    return {name: _type(name, annotations[name]) for name in kind.fields}
+
+
+def _type(name: str, annotation: str) -> dict[str, Any]:
+    if name in _STATUSES:
+        return {"enum": list(NAMES)}
+    return _NODE if annotation in ("Node", "Node | None") else field_type(annotation)[1]

@@ -5,21 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED
-from btlang.run.events import (
-    Bumped,
-    Chosen,
-    Dropped,
-    FaultInjected,
-    InTheWorld,
-    Notice,
-    Overrun,
-    PartChanged,
-    Printed,
-    Said,
-    StatusChanged,
-    StatusesChanged,
-    Stuck,
-)
+from btlang.run.events import Overrun, StatusChanged, StatusesChanged
 from btlang.text.escaping import one_line
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
@@ -53,21 +39,9 @@ class Lines:
                     self._action(change, event.valued.get(change.index, change.node))
         elif isinstance(event, Overrun):
             self._overrun(event)
-        elif isinstance(event, Said | Printed):
-            self._line(event.t, f"{event.tag}s", f'"{event.text}"')
-        elif isinstance(event, Chosen):
-            seed = f"; seed {event.seed}" if event.seed is not None else ""
-            self._line(event.t, f"{event.tag}s", f"{event.name} ({event.how} {event.type}{seed})")
-        elif isinstance(event, Bumped):
-            self._line(event.t, "bumps", event.into)
-        elif isinstance(event, Dropped):
-            self._line(event.t, "drops", event.name or "")
-        elif isinstance(event, InTheWorld):
-            self._line(event.t, event.verb, event.words)
-        elif isinstance(event, Stuck):
-            self._line(event.t, event.tag, "")
-        elif isinstance(event, FaultInjected | Notice | PartChanged) and event.text:
-            self._line(event.t, event.tag, event.text)
+        elif words := event.words:
+            word, _, rest = words.partition(" ")
+            self._line(event.t, word, rest)
 
     def _action(self, event: StatusChanged, node: Node) -> None:
         reason = f": {event.reason}" if event.reason else ""

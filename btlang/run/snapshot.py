@@ -9,7 +9,7 @@ from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.engine.status_trace import repeats
 from btlang.record import Record
 from btlang.run.bus import INLINE
-from btlang.run.events import PeriodPassed, Said, StatusesChanged
+from btlang.run.events import Arrived, Ended, Heard, NavigationStarted, PeriodPassed, Said, StatusesChanged, Stopped
 from btlang.run.robot_state import RobotState
 from btlang.run.shape import Shape
 from btlang.run.statuses import Status
@@ -50,6 +50,26 @@ class Snapshot(Record):
     robot: RobotState | None
 
 
+class Doing(Record):
+    """What a robot does, in words: the number of its task (0: none), where it is going, what it said and heard last."""
+
+    task: int = 0
+    goal: str = ""
+    says: str = ""
+    heard: str = ""
+
+    def after(self, event: Event) -> Doing:
+        """Return what it does after an event."""
+        if isinstance(event, Said):
+            return Doing(self.task, self.goal, event.text, self.heard)
+        if isinstance(event, Heard):
+            return Doing(self.task, self.goal, self.says, event.text)
+        if isinstance(event, NavigationStarted | Arrived | Stopped | Ended):
+            task = 0 if isinstance(event, Ended) else self.task
+            return Doing(task, event.name if isinstance(event, NavigationStarted) else "", self.says, self.heard)
+        return self
+
+
 class State:
     """Follows the status changes of a run. `statuses` holds one number for each node, in preorder.
 
@@ -64,7 +84,7 @@ class State:
         self.started: dict[int, float] = {}
         self.ended: dict[int, float] = {}
         self.reasons: dict[int, str] = {}
-        self.said = ""
+        self.doing = Doing()
         self.now = 0.0
         self.ticks = 0
         self.overruns = 0
@@ -90,8 +110,8 @@ class State:
                 self.change(index, status, event.t, reason)
         elif isinstance(event, PeriodPassed):
             self.now, self.ticks, self.overruns, self.robot = event.t, event.ticks, event.overruns, event.state
-        elif isinstance(event, Said):
-            self.said = event.text
+        else:
+            self.doing = self.doing.after(event)
 
     def change(self, index: int, status: int, t: float, reason: str = "") -> None:
         """A node has a new status."""
@@ -206,7 +226,7 @@ class Follower:
             codes = list(state.statuses)
             leaves = [index for index, code in enumerate(codes) if code == RUNNING and state.is_leaf(index)]
             number = latest.number + latest.count - 1
-            run, t, said, robot = latest.run, latest.t, state.said, state.robot
+            run, t, said, robot = latest.run, latest.t, state.doing.says, state.robot
         path = self._engine.path
         reached = {path(index): _status(code) for index, code in enumerate(codes) if code != IDLE}
         running = tuple(label(self._nodes[index]) for index in leaves)

@@ -20,7 +20,7 @@ from btlang.text.escaping import one_line
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
 COOKIE = "__Host-btlang"
 """Its prefix makes browsers take it from this host over TLS alone, and send it nowhere else."""
@@ -44,15 +44,18 @@ class Access:
     may stop the robot at any time.
     """
 
-    def __init__(self, accounts: Accounts, key: str, cookie: str = COOKIE) -> None:
-        self.accounts, self.cookie = accounts, cookie
-        self._known: dict[str, tuple[Identity | None, float]] = {}
+    def __init__(
+        self, accounts: Accounts, key: str, cookie: str = COOKIE, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self.accounts, self.cookie, self._clock = accounts, cookie, clock
+        self._known: dict[str, tuple[Identity, float]] = {}
         self._verifier = Verifier()
         self._signer = Signer(key, salt="csrf")
-        self._by_account, self._by_address = Throttle(), Throttle()
+        self._by_account, self._by_address, self._by_both = Throttle(clock), Throttle(clock), Throttle(clock)
 
     async def log_in(self, name: str, password: str, address: str) -> tuple[Identity, str]:
         """Who it is, and the secret for a cookie. Raises AccessError, an unknown user's after as long as others."""
+        both = f"{address} {name}"
         wait = max(self._by_account.wait(name), self._by_address.wait(address))
         if wait:
             raise AccessError(429, f"Too many wrong passwords. Try again in {wait:.0f} s.", wait)
@@ -64,10 +67,12 @@ class Access:
         if not fits or user is None:
             self._by_account.wrong(name)
             self._by_address.wrong(address)
+            self._by_both.wrong(both)
             await self.note(one_line(name)[:100], address, "log in", "wrong")
             raise AccessError(401, "The name or the password is wrong.")
         self._by_account.right(name)
-        self._by_address.right(address)
+        # what others got wrong at this address counts on: an account of one's own mustn't make guessing free
+        self._by_address.forgive(address, self._by_both.right(both))
         secret = await asyncio.to_thread(self.accounts.log_in, user.name, address)
         await self.note(user.name, address, "log in", "ok")
         identity = await self._identity(secret)
@@ -115,14 +120,14 @@ class Access:
         self._verifier.close()
 
     async def _identity(self, secret: str) -> Identity | None:
-        known, until = self._known.get(secret, (None, 0.0))
-        if known is not None and time.monotonic() < until:
-            return known
+        known = self._known.get(secret)
+        if known is not None and self._clock() < known[1]:
+            return known[0]
         found = await asyncio.to_thread(self.accounts.identity, secret) if secret and is_whole(secret) else None
         if len(self._known) >= _MOST_KNOWN:
             self._known.clear()
         if found is not None:
-            self._known[secret] = found, time.monotonic() + _KNOWN
+            self._known[secret] = found, self._clock() + _KNOWN
         return found
 
     def _is_csrf(self, identity: Identity, given: str) -> bool:

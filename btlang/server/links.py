@@ -9,8 +9,9 @@ from collections.abc import AsyncGenerator, Callable
 from contextlib import aclosing, suppress
 
 from btlang.editing.words import Words
-from btlang.server.outlet import STATES, News, Outlet
+from btlang.server.outlet import News, Outlet
 from btlang.server.reach import LocalSockets
+from btlang.server.robot_view import RobotView
 from btlang.task.messages import Answer, Command, as_json
 from btlang.task.paths import names_up
 
@@ -47,12 +48,7 @@ class RobotLink:
         self._catching_up: dict[Outlet, asyncio.Task[None]] = {}  # those that don't know the latest change yet
         self._paging = asyncio.Lock()  # each is a watcher more for the robot
         self._up = asyncio.Event()
-        self._change: int | None = None
-        self._run: dict[str, Any] | None = None
-        self._statuses: dict[int, str] = {}
-        self._words: dict[int, str] = {}
-        self._t = 0.0
-        self._states: dict[str, dict[str, Any]] = {}
+        self._view = RobotView()
 
     @property
     def is_up(self) -> bool:
@@ -62,11 +58,7 @@ class RobotLink:
     @property
     def latest(self) -> dict[str, Any]:
         """What is known of the robot itself: pose, battery, what keeps it from working."""
-        return self._states.get("robot", {})
-
-    @property
-    def _beginning(self) -> dict[str, Any]:
-        return {"type": "up", "change": self._change}
+        return self._view.states.get("robot", {})
 
     async def send(self, command: Command, person: str) -> Answer:
         """What it answers. Raises ConnectionError if it isn't up, or doesn't answer."""
@@ -102,7 +94,7 @@ class RobotLink:
         """Adds a client that gets the present state, then all updates. One that was here before first gets the changes
         of tasks `after` the last one that it knows.
         """
-        for message in self._snapshot():
+        for message in self._view.messages():
             outlet.put(News(self.name, message))
         self._outlets.add(outlet)
         if after is not None:
@@ -119,7 +111,7 @@ class RobotLink:
         """Reads what happens, until it is cancelled; goes on after the last change when the robot is up again."""
         while True:
             with suppress(*_BROKEN):
-                async with aclosing(self._messages(self._change)) as messages:
+                async with aclosing(self._messages(self._view.change)) as messages:
                     async for message in messages:
                         self._take(message)
             self.leave()
@@ -145,7 +137,7 @@ class RobotLink:
         """Sends a client the changes after one, until it has all that were sent to others."""
         while True:
             await self._up.wait()
-            latest = self._change or 0
+            latest = self._view.change or 0
             if after >= latest:
                 break
             await outlet.wait_for_room()
@@ -164,7 +156,7 @@ class RobotLink:
                 async for message in messages:
                     if message["type"] == "hello":
                         after = int(message["change"])
-                    elif message["type"] != "change" or message["number"] > (self._change or 0):
+                    elif message["type"] != "change" or message["number"] > (self._view.change or 0):
                         return after, True
                     else:
                         after = int(message["number"])
@@ -180,40 +172,17 @@ class RobotLink:
             if not self.is_elsewhere:  # its files are not on this computer
                 self.words = Words(**message.get("words", {}))
                 self.recordings = str(message.get("recordings", ""))
-            self._change = int(message["change"])
+            self._publish({"type": "up", "change": message["change"]})
             self._up.set()
-            self._publish(self._beginning)
-            return
-        if kind == "alive":
-            return
-        if kind == "change":
-            self._change = int(message["number"])
-        elif kind == "run":
-            self._run, self._statuses, self._words = message, {}, {}
-        elif kind == "statuses":
-            self._statuses.update(message["changes"])
-            self._words.update(message.get("words", ()))
-            self._t = message["t"]
-        elif kind in STATES:
-            self._states[kind] = message
-        self._publish(message)
+        elif kind != "alive":
+            self._publish(message)
 
     def _publish(self, message: dict[str, Any]) -> None:
+        self._view.take(message)
         news = News(self.name, message)
         for outlet in self._outlets:
             if message["type"] != "change" or outlet not in self._catching_up:
                 outlet.put(news)
-
-    def _snapshot(self) -> list[dict[str, Any]]:
-        if not self.is_up:
-            return [{"type": "away"}]
-        messages = [self._beginning]
-        if self._run is not None:
-            messages.append(self._run)
-            changes, words = [[*pair] for pair in self._statuses.items()], [[*pair] for pair in self._words.items()]
-            statuses = {"type": "statuses", "run": self._run["run"], "t": self._t, "changes": changes}
-            messages.append({**statuses, "words": words} if words else statuses)
-        return [*messages, *self._states.values()]
 
 
 class Robots:

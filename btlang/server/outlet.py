@@ -8,6 +8,8 @@ from collections import deque
 from collections.abc import Container
 from contextlib import suppress
 
+from btlang.server.robot_view import STATES, merged
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
@@ -16,10 +18,8 @@ _MOST = 2000
 """Messages that may wait, beside statuses. A client that reads so slowly has to subscribe again."""
 _MUCH = 4_000_000
 """Characters of answers and topics that may wait until a client has to read first."""
-STATES = ("asking", "components", "joints", "map", "robot", "scan", "speech", "things", "way")
-"""Kinds of messages of which only the newest one counts."""
 TOPICS = {
-    "tree": ("run", "statuses"), "tasks": ("change",), "events": ("event",), "robot": ("robot", "asking"),
+    "tree": ("run", "statuses"), "tasks": ("change",), "events": ("event",), "robot": ("robot", "asking", "doing"),
     "map": ("map", "things", "scan", "way"), "components": ("components",),
     "body": ("joints", "speech"),
 }  # fmt: skip
@@ -47,11 +47,7 @@ class News:
     def after(self, before: News) -> News:
         """These statuses together with earlier ones of the same run, where these count."""
         if self._merged is None or self._merged[0] is not before:
-            message = {**before.message, **self.message}
-            for pairs in {"changes", "words"} & message.keys():
-                both = dict(before.message.get(pairs, ())) | dict(self.message.get(pairs, ()))
-                message[pairs] = [[*pair] for pair in both.items()]
-            self._merged = before, News(self.robot, message)
+            self._merged = before, News(self.robot, merged(before.message, self.message))
         return self._merged[1]
 
 
@@ -79,8 +75,10 @@ class Outlet:
         elif kind in STATES:
             self._states[news.robot, kind] = news
         else:
-            if kind == "run":  # after the last statuses of the run before
+            if kind in ("run", "away"):  # after the last statuses of the run before
                 self._flush(news.robot)
+            if kind in ("up", "away"):
+                self._settle(news.robot, is_up=kind == "up")
             self._say(news.text)
         self._news.set()
 
@@ -149,6 +147,13 @@ class Outlet:
         before = self._statuses.get(news.robot)
         same = before is not None and before.message["run"] == news.message["run"]
         self._statuses[news.robot] = news.after(before) if before is not None and same else news
+
+    def _settle(self, robot: str, *, is_up: bool) -> None:
+        """States come before the news that their robot is away, and those from before it came up count no more."""
+        for key in [key for key in self._states if key[0] == robot]:
+            state = self._states.pop(key)
+            if not is_up:
+                self._say(state.text)
 
     def _flush(self, robot: str) -> None:
         waiting = self._statuses.pop(robot, None)

@@ -1,10 +1,11 @@
-"""Delays after wrong passwords, by account and by address."""
+"""Delays after wrong passwords, by account, and by address."""
 
 from __future__ import annotations
 
 import time
 from collections import OrderedDict
 from collections.abc import Callable
+from math import inf
 
 FREE = 5
 """Wrong passwords that cost nothing: people mistype."""
@@ -39,10 +40,18 @@ class Throttle:
         while len(self._wrong) > _MOST_KNOWN:
             self._wrong.popitem(last=False)
 
-    def right(self, key: str) -> None:
-        """Somebody was right: counting starts again."""
+    def right(self, key: str) -> int:
+        """Somebody was right: counting starts again. Returns how many were wrong."""
+        count, _ = self._known(key)
         self._wrong.pop(key, None)
+        return count
+
+    def forgive(self, key: str, count: int) -> None:
+        """So many wrong ones count no more."""
+        if key in self._wrong:
+            known, last = self._wrong[key]
+            self._wrong[key] = (max(0, known - count), last)
 
     def _known(self, key: str) -> tuple[int, float]:
-        count, last = self._wrong.get(key, (0, 0.0))
-        return (count, last) if count and self._clock() - last < _FORGOTTEN else (0, 0.0)
+        count, last = self._wrong.get(key, (0, -inf))
+        return (count, last) if self._clock() - last < _FORGOTTEN else (0, last)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.task.field_types import FIELD_TYPES
+from btlang.run.field_types import field_type
 from btlang.task.messages import COMMANDS, Command
 
 TYPE_CHECKING = False
@@ -20,7 +20,7 @@ def schema() -> dict[str, Any]:
 
 
 def _described(kind: type[Command]) -> dict[str, Any]:
-    fields = {field: FIELD_TYPES[kind.__annotations__[field]][1] for field in kind.fields}
+    fields = {field: field_type(kind.__annotations__[field])[1] for field in kind.fields}
     return {
         "title": kind.__name__,
         "description": " ".join((kind.__doc__ or "").split()),

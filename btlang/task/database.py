@@ -12,6 +12,7 @@ from functools import partial
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.text.json_text import NestedTooDeep
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
@@ -74,7 +75,7 @@ class Database(ABC):
     def __init__(self, place: str, errors: tuple[type[Exception], ...]) -> None:
         self.place = place
         """For messages: without a password."""
-        self._errors: tuple[type[Exception], ...] = (*errors, UnicodeEncodeError, OverflowError, RecursionError)
+        self._errors: tuple[type[Exception], ...] = (*errors, UnicodeEncodeError, OverflowError, NestedTooDeep)
         self._idle: list[Any] = []
         self._is_closed = False
         self._process = os.getpid()
@@ -152,7 +153,7 @@ class Database(ABC):
             return store_error(self.place, "it can't keep half a character (a lone surrogate)")
         if isinstance(error, OverflowError):
             return store_error(self.place, "it can't keep a number that is so large")
-        if isinstance(error, RecursionError):
+        if isinstance(error, NestedTooDeep):
             return store_error(self.place, "it can't keep values that are nested so deep")
         assert isinstance(error, Exception)
         return store_error(self.place, self._reason(error))

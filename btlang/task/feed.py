@@ -9,12 +9,14 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import suppress
 
 from btlang.api import Mission
-from btlang.engine.status import IDLE, NAMES
+from btlang.engine.status import NAMES
 from btlang.passes.scripts import is_prepared
 from btlang.run.bus import INLINE
-from btlang.run.events import LOGGED, DoorMoved, Event, PeriodPassed, StatusesChanged
+from btlang.run.events import LOGGED, Arrived, DoorMoved, Ended, Event, PeriodPassed, StatusesChanged, Stopped
 from btlang.run.json_log import as_json
-from btlang.run.robot_state import RobotState, Whereabouts, asked, rounded_scan
+from btlang.run.known_nodes import KnownNodes
+from btlang.run.robot_state import RobotState, asked, rounded_scan
+from btlang.run.snapshot import Doing
 from btlang.session import Run
 from btlang.task.allowance import Allowance
 from btlang.task.body_now import BodyNow
@@ -89,12 +91,14 @@ class Feed:
         self._planned: Sequence[Point] = ()
         self._way: list[list[float]] = []
         self._next_scan = 0.0
+        self._doing = Doing()
         store.listeners.append(self.wake)
 
     def sinks(self, task: Task | None, mission: Mission, run: Run) -> list[Sink]:
         """Those of a run that is about to begin."""
         watched = _Watched(0 if task is None else task.id, mission, run)
         self._current = watched
+        self._doing = Doing(watched.task) if watched.task else self._doing
         for watcher in tuple(self._watchers):
             watcher.runs.append(watched)
         return [_Tap(self, watched)]
@@ -139,8 +143,12 @@ class Feed:
                 self._parts = self._look_at_parts()
         elif isinstance(event, StatusesChanged):
             watched.take(event)
-        elif isinstance(event, DoorMoved) and self._map is not None:
-            self._map.move_door(event)
+        else:
+            self._doing = self._doing.after(event)
+            if isinstance(event, Arrived | Stopped | Ended):
+                self._way = []
+            elif isinstance(event, DoorMoved) and self._map is not None:
+                self._map.move_door(event)
         for watcher in tuple(self._watchers):
             if isinstance(event, LOGGED):
                 watcher.events.append((watched, event))
@@ -176,35 +184,39 @@ class Feed:
         while watcher.events:
             watched, event = watcher.events.popleft()
             yield {"type": "event", "task": watched.task, "event": as_json(event, watched.mission.label)}
-        robot = {**self._robot(), **_state(self._state)}
-        if robot != watcher.robot:
-            watcher.robot = robot
-            yield {"type": "robot", **robot}
-        if self._parts != watcher.parts:
-            watcher.parts = self._parts
-            yield {"type": "components", **self._parts}
-        if self._map is not None and watcher.world is not self._map.world:
-            watcher.world = self._map.world
-            yield {"type": "map", **watcher.world.as_map()}
-        things = () if self._state is None else self._state.things
-        if things != watcher.things:
-            watcher.things = things
-            yield {"type": "things", "things": things}
-        if (question := self._question()) != watcher.question:
-            watcher.question = question
-            yield {"type": "asking", "text": question}
-        if self._scan != watcher.scan:
-            watcher.scan = self._scan
-            yield {"type": "scan", "ranges": self._scan, "pose": self._scanned_from}
-        if self._way != watcher.way:
-            watcher.way = self._way
-            yield {"type": "way", "points": self._way}
-        if (joints := self._body.joints) != watcher.joints:
-            watcher.joints = joints
-            yield {"type": "joints", "positions": joints}
-        if (speech := self._body.speech) != watcher.speech:
-            watcher.speech = speech
-            yield {"type": "speech", **dict(zip(("text", "start", "end"), speech, strict=True))}
+        for message in self._states():
+            kind = message["type"]
+            if message != watcher.states.get(kind):
+                watcher.states[kind] = message
+                yield message
+
+    def _states(self) -> Iterator[dict[str, Any]]:
+        """The messages of which only the newest counts, as they are now."""
+        text, start, end = self._body.speech
+        yield {"type": "robot", **self._robot(), **_state(self._state)}
+        yield {"type": "components", **self._parts}
+        if self._map is not None:
+            yield {"type": "map", **self._map.written}
+        yield {"type": "things", "things": () if self._state is None else self._state.things}
+        yield {"type": "asking", "text": self._question()}
+        yield {"type": "scan", "ranges": self._scan, "pose": self._scanned_from if self._scan else None}
+        yield {"type": "way", "points": self._way}
+        yield {"type": "doing", **self._doing.as_dict()}
+        yield {"type": "joints", "positions": self._body.joints}
+        yield {"type": "speech", "text": text, "start": start, "end": end}
+
+
+_SILENT: tuple[dict[str, Any], ...] = (
+    {"type": "components", "components": [], "devices": []},
+    {"type": "things", "things": ()},
+    {"type": "asking", "text": ""},
+    {"type": "scan", "ranges": [], "pose": None},
+    {"type": "way", "points": []},
+    {"type": "doing", **Doing().as_dict()},
+    {"type": "joints", "positions": []},
+    {"type": "speech", "text": "", "start": 0, "end": 0},
+)
+"""What somebody takes for granted to whom nothing else was said."""
 
 
 class _Watcher:
@@ -215,18 +227,9 @@ class _Watcher:
         self.news = threading.Event()
         self.runs: deque[_Watched] = deque(maxlen=_MOST_RUNS)
         self.events: deque[tuple[_Watched, Event]] = deque(maxlen=_MOST_EVENTS)
-        self.robot: dict[str, Any] = {}
-        self.parts: dict[str, Any] = {"components": [], "devices": []}
-        self.world: World | None = None
-        self.things: tuple[Whereabouts, ...] = ()
-        self.question = ""
-        self.scan: list[float | None] = []
-        self.way: list[list[float]] = []
-        self.joints: list[float | None] = []
-        self.speech = ("", 0, 0)
+        self.states = {message["type"]: message for message in _SILENT}
         self.run = ""
-        self.codes = b""
-        self.valued: dict[int, Node] = {}
+        self.known = KnownNodes(0)
 
 
 class _Tap:
@@ -246,16 +249,15 @@ def _statuses(watcher: _Watcher, watched: _Watched) -> Iterator[dict[str, Any]]:
     """The tree of a run, if it is a new one, and the statuses that are new: those between are left out."""
     run = watched.run
     if watcher.run != run.id:
-        watcher.run, watcher.codes, watcher.valued = run.id, bytes([IDLE]) * run.nodes.size, {}
+        watcher.run, watcher.known = run.id, KnownNodes(run.nodes.size)
         yield {"type": "run", "run": run.id, "task": watched.task, "outline": str(watched.mission), **_tree(watched)}
     changed = watched.changed  # before the statuses, so that none of them is older
-    codes = run.follower.codes() or watcher.codes
-    words = list(_new_words(watcher, watched))
-    if codes != watcher.codes or words:
-        pairs = enumerate(zip(watcher.codes, codes, strict=True))
-        changes = [[index, NAMES[min(after, IDLE)]] for index, (before, after) in pairs if before != after]
-        watcher.codes = codes
-        said = {"words": words} if words else {}
+    codes = run.follower.codes()  # none before the first event
+    found = watcher.known.new_statuses(codes) if codes else []
+    words = watcher.known.new_words(watched.valued.copy(), watched.mission.label)  # a copy: the run goes on
+    if found or words:
+        changes = [[index, NAMES[status]] for index, status in found]
+        said = {"words": [[*pair] for pair in words]} if words else {}
         yield {"type": "statuses", "run": run.id, "t": changed, "changes": changes, **said}
 
 
@@ -264,16 +266,6 @@ def _tree(watched: _Watched) -> dict[str, Any]:
     filled = [nodes.filled(index) for index in range(nodes.size)]
     listed = [[nodes.path(index), node.id, label(node), dict(node.ports)] for index, node in enumerate(filled)]
     return {"nodes": listed, "prepared": [index for index, node in enumerate(filled) if is_prepared(node)]}
-
-
-def _new_words(watcher: _Watcher, watched: _Watched) -> Iterator[list[Any]]:
-    """Numbers and words of the nodes whose keys have other values than somebody knows."""
-    for index, node in watched.valued.copy().items():  # in one step: the run goes on
-        known = watcher.valued.get(index)
-        if known is not node:
-            watcher.valued[index] = node
-            if known is None or known.ports != node.ports:
-                yield [index, watched.mission.label(node)]
 
 
 def _state(state: RobotState | None) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import time
 from collections.abc import Callable, Collection
@@ -40,6 +39,7 @@ from btlang.task.task import ACTIVE, FINAL, WAITING, Act, Ending, MissionText, R
 from btlang.task.voice_handler import VoiceHandler
 from btlang.task.world_handler import WorldHandler
 from btlang.text.escaping import one_line
+from btlang.text.json_text import NestedTooDeep, dump_json
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
@@ -122,8 +122,8 @@ class Handler:
         return task
 
     def _log(self, command: Command, person: str, answer: Answer) -> None:
-        details = json.dumps(messages.as_json(command), ensure_ascii=False, default=str)
-        with suppress(MissionError):  # then the command was refused for the same reason, or needs no store
+        with suppress(MissionError, NestedTooDeep):  # then it was refused for the same, or needs no store
+            details = dump_json(messages.as_json(command), str, ensure_ascii=False)
             self._store.log(Act(self._now(), person, command.tag, details, answer.text))
 
     def _submit(self, command: messages.Submit, person: str) -> Answer:

@@ -21,6 +21,15 @@ class MapNow:
     def __init__(self, world: World) -> None:
         self.world = world
         self._zones, self._version = world.zones, -1
+        self._written: tuple[World, dict[str, Any]] = world, world.as_map()
+
+    @property
+    def written(self) -> dict[str, Any]:
+        """The world as JSON has it; see World.as_map."""
+        world, written = self._written
+        if world is not self.world:
+            world, written = self._written = self.world, self.world.as_map()
+        return written
 
     def look(self, robot: Any) -> None:
         """Takes in which zones are closed. For the thread of the run."""

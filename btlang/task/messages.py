@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.record import Record
-from btlang.task.field_types import FIELD_TYPES
+from btlang.run.field_types import field_type
 from btlang.task.keepable import can_be_kept
 from btlang.task.task import Kind, Missed, Overlap, Restart
 from btlang.text.source import NOWHERE
@@ -379,7 +379,7 @@ def as_json(command: Command) -> dict[str, Any]:
 
 def _checked(kind: type[Command], field: str, value: Any) -> Any:
     annotation = kind.__annotations__[field]
-    expected, described = FIELD_TYPES[annotation]
+    expected, described = field_type(annotation)
     texts = annotation == "tuple[str, ...]"
     if annotation in ("int", "int | None") and isinstance(value, float) and value.is_integer():
         value = int(value)  # JSON knows one kind of number

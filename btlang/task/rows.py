@@ -9,6 +9,7 @@ from functools import cache
 
 from btlang.record import Record
 from btlang.task.task import Kind, Missed, MissionText, Overlap, Restart, State
+from btlang.text.json_text import dump_json
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def to_row(record: Record) -> list[Any]:
 def to_column(value: Any) -> Any:
     """The value of a field, for the table."""
     if isinstance(value, MissionText):
-        return json.dumps({**value.as_dict(), "values": dict(value.values)})
+        return dump_json({**value.as_dict(), "values": dict(value.values)})
     if isinstance(value, tuple):
         return json.dumps(value, indent=0)  # in lines, so that `in_lines` finds one of them
     if isinstance(value, StrEnum):

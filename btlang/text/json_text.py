@@ -1,4 +1,4 @@
-"""Reads JSON from outside: Python's reader recurses in C, and would crash where an engine has raised its limit."""
+"""JSON of unknown depth: Python's own recurses in C, and would crash where an engine has raised its limit."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ if TYPE_CHECKING:
 
 DEEPEST = 100
 """Brackets in each other."""
+_DEEP = "(nested too deep)"
 _MARKS = re.compile(r'"(?:[^"\\]|\\.)*+"?|[\[{]|[\]}]', re.DOTALL)  # a text that does not end is read once, too
 
 
 class NestedTooDeep(ValueError):
-    """A document with more than DEEPEST brackets in each other."""
+    """A document, or a value, with more than DEEPEST brackets in each other."""
 
 
 def load_json(text: str | bytes, object_hook: Callable[[dict[str, Any]], Any] | None = None) -> Any:
@@ -31,3 +32,31 @@ def load_json(text: str | bytes, object_hook: Callable[[dict[str, Any]], Any] | 
         if depth > DEEPEST:
             raise NestedTooDeep("it is nested too deep")
     return json.loads(text, object_hook=object_hook)
+
+
+def dump_json(value: Any, default: Callable[[Any], Any] | None = None, **options: Any) -> str:
+    """As `json.dumps`. Raises NestedTooDeep for what `load_json` wouldn't read."""
+    import json
+
+    if is_deep(value):
+        raise NestedTooDeep("it is nested too deep")
+    return json.dumps(value, default=default, **options)
+
+
+def is_deep(value: Any) -> bool:
+    """Whether JSON would have more than DEEPEST brackets in each other."""
+    outer = [value]
+    for _ in range(DEEPEST + 1):
+        outer = [each for each in outer if isinstance(each, dict | list | tuple)]
+        if not outer:
+            return False
+        inner = (item for each in outer for item in (each.values() if isinstance(each, dict) else each))
+        outer = [*{id(item): item for item in inner}.values()]  # what is twice in a list, and that twice in another ...
+    return True
+
+
+def shallow(values: Any) -> Any:
+    """Return values by name, or another value, with a text in place of what is nested too deep."""
+    if isinstance(values, dict):
+        return {name: _DEEP if is_deep([[value]]) else value for name, value in values.items()}
+    return _DEEP if is_deep(values) else values

@@ -12,9 +12,14 @@ import pytest
 from btlang.api import parse_tree
 from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
+from btlang.engine.compile import outline
+from btlang.engine.status import IDLE
 from btlang.recording.film import Film
 from btlang.recording.open import opened
+from btlang.recording.reader import RecordedNodes
 from btlang.recording.trial import tried
+from btlang.run.events import Event
+from btlang.run.snapshot import Follower
 from btlang.text.source import Source
 from tests.world.worlds import LIVELY
 
@@ -47,6 +52,38 @@ def test_nodes_have_the_words_of_their_round() -> None:
     assert [words for _, node, words in data["words"] if node == says] == ['say "round 1"', 'say "round 2"']
     times = [seconds for seconds, *_ in data["words"]]
     assert times == sorted(times)
+
+
+def test_a_film_shows_what_a_live_view_has_shown() -> None:
+    """What a new round hasn't reached yet is IDLE again, as for those who watched."""
+    mission = parse_tree(
+        "repeat 3 times: (wave then (retry 2 times: (nod then check that the battery is low)) or wait 1 s)"
+    )
+    live: dict[float, list[int]] = {}
+    film, nodes = Film(mission), RecordedNodes(*outline(mission.tree))
+    follower = Follower(nodes)
+
+    def watch(event: Event) -> None:
+        follower(event)
+        film(event)
+        live[round(event.t, 3)] = [min(code, IDLE) for code in follower.codes()]
+
+    mission.run(speed="max", sinks=[watch])
+    data, shown = film.data(), [IDLE] * nodes.size
+    again = 0
+    for t, statuses in live.items():
+        for seconds, *pairs in data["statuses"]:
+            if seconds == t:
+                for index, status in zip(pairs[::2], pairs[1::2], strict=True):
+                    again += status == IDLE
+                    shown[index] = status
+        assert shown == statuses, t
+    assert again > 3
+
+
+def test_a_film_has_what_the_robot_does() -> None:
+    data = tried(parse_tree('say "hello"\ngo to the lab'))
+    assert [row[1:] for row in data["doing"]] == [[0, "", "hello", ""], [0, "lab", "hello", ""], [0, "", "hello", ""]]
 
 
 def test_a_trial() -> None:

@@ -6,7 +6,6 @@ import io
 import json
 import threading
 import time
-from pathlib import Path
 
 import pytest
 
@@ -14,10 +13,9 @@ import btlang
 from btlang.run import bus as buses
 from btlang.run.bus import BLOCK, DROP_OLDEST, INLINE, NEWEST, Bus
 from btlang.run.events import LOGGED, Ended, Event, Printed, Said, StatusesChanged
-from btlang.run.json_log import JsonLog, as_json, schema
+from btlang.run.json_log import JsonLog, as_json
 from btlang.run.recent import RecentEvents
-
-SCHEMA = Path(btlang.__file__).parent / "run" / "events.schema.json"
+from tests.generate import log_schema
 
 
 class Slow:
@@ -138,6 +136,18 @@ def test_a_session_runs_many_missions_and_late_joiners_see_the_state() -> None:
     assert [(c.path, c.before, c.status) for c in changes if c.path == "/0"] == [("/0", 4, 2), ("/0", 2, 1)]
 
 
+def test_only_a_run_that_was_started_can_be_waited_for() -> None:
+    with btlang.Session() as session:
+        run = session.prepare(btlang.parse_tree("wait 1 s"), speed=1)
+        with pytest.raises(RuntimeError, match="was started"):
+            run.wait()
+        assert run.wait(0.01) is None
+        run.start()
+        assert run.wait(0.01) is None
+        assert run.wait().succeeded
+        assert run.wait(0.01) is run.outcome
+
+
 def test_of_a_long_run_only_the_latest_events_are_kept() -> None:
     with btlang.Session() as session:
         nodes = session.prepare(btlang.parse_tree("wave")).nodes
@@ -164,16 +174,12 @@ def test_an_emergency_stop_of_a_session_ends_a_run_that_is_prepared_too() -> Non
         assert after.outcome.succeeded
 
 
-def test_the_published_schema_is_that_of_the_classes() -> None:
-    assert json.loads(SCHEMA.read_text(encoding="utf-8")) == schema()
-
-
 def test_every_line_of_a_log_fits_the_schema() -> None:
     jsonschema = pytest.importorskip("jsonschema")
     output = io.StringIO()
     mission = btlang.parse_tree("say hi, print ho, grasp the cup if possible, move forward 9 m then fail")
     mission.run(speed="max", sinks=[JsonLog(output, mission.label)], time_limit=30)
-    validator = jsonschema.Draft202012Validator(schema())
+    validator = jsonschema.Draft202012Validator(log_schema())
     lines = [json.loads(line) for line in output.getvalue().splitlines()]
     assert len(lines) > 10
     for line in lines:
@@ -182,7 +188,7 @@ def test_every_line_of_a_log_fits_the_schema() -> None:
 
 @pytest.mark.parametrize("kind", LOGGED, ids=lambda kind: kind.__name__)
 def test_every_event_has_its_place_in_the_schema(kind: type[Event]) -> None:
-    [described] = [one for one in schema()["oneOf"] if one["title"] == kind.__name__]
+    [described] = [one for one in log_schema()["oneOf"] if one["title"] == kind.__name__]
     assert described["description"]
     event = kind(1.0, "r", 0, 2.0, *["x"] * (len(kind.fields) - len(Event.fields) - len(kind.field_defaults)))
     if kind.__name__ != "StatusChanged":

@@ -18,7 +18,7 @@ def statuses(run: str, *changes: tuple[int, str], t: float = 1.0, robot: str = "
 
 
 def begun(run: str) -> News:
-    return News("robot", {"type": "run", "run": run})
+    return News("robot", {"type": "run", "run": run, "task": 1})
 
 
 def said(text: str, robot: str = "robot") -> News:

@@ -94,6 +94,18 @@ def test_nodes_have_the_words_of_their_round(tmp_path: Path) -> None:
         assert [words for _, words in found] == ['say "round 1"', 'say "round 2"']
 
 
+def test_who_comes_late_knows_what_the_robot_does(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        number = submit(layer, "say hello then go to the lab then wait 1 s")
+        watcher = Watcher(layer)
+        watcher.wait(lambda message: message["type"] == "doing" and message["goal"] == "lab")
+        late = Watcher(layer).wait(lambda message: message["type"] == "doing")
+        assert {**late, "goal": ""} == {"type": "doing", "task": number, "goal": "", "says": "hello", "heard": ""}
+        watcher.wait(lambda message: message.get("state") == State.COMPLETED)
+        watcher.wait(lambda message: message["type"] == "doing" and not message["task"])
+        assert watcher.of("doing")[-1] == {"type": "doing", "task": 0, "goal": "", "says": "hello", "heard": ""}
+
+
 def test_the_map_and_what_the_scanner_sees(tmp_path: Path) -> None:
     with layer_in(tmp_path) as layer:
         watcher = Watcher(layer)

@@ -170,6 +170,90 @@ def test_why_a_task_waits(store: Store) -> None:
     assert manager.why_waiting(first, NINE, "the robot is paused") == "the robot is paused"
 
 
+@pytest.mark.parametrize(
+    ("state", "fields", "why"),
+    [
+        (State.COMPLETED, {"reason": "done"}, ""),
+        (State.BLOCKED, {"reason": "no hands", "earliest": NINE + 60}, "no hands"),
+        (State.DELAYED, {"token": "t", "reason": "by ann"}, "it was interrupted: by ann"),
+        (State.DELAYED, {"token": "t"}, "it was interrupted"),
+        (State.DELAYED, {"reason": "cut off"}, "the robot is paused"),
+        (State.QUEUED, {"token": "t", "reason": "resumed"}, "the robot is paused"),
+        (State.QUEUED, {"earliest": NINE}, "the robot is paused"),
+    ],
+)
+def test_why_a_task_of_this_state_waits(store: Store, state: State, fields: dict[str, Any], why: str) -> None:
+    task = store.add(Task(0, MissionText("wave"), "ann", NINE, state, **fields))
+    assert Manager(store).why_waiting(task, NINE, "the robot is paused") == why
+
+
+def test_which_task_is_first(store: Store) -> None:
+    manager = Manager(store)
+    assert manager.first(NINE) == 0
+    waiting = store.add(Task(0, MissionText("wave"), "ann", NINE))
+    assert manager.why_waiting(waiting, NINE, first=0) == "it's next"
+    assert manager.why_waiting(waiting, NINE, first=waiting.id + 7) == f"task {waiting.id + 7} comes first"
+    claimed = manager.claim(NINE)
+    urgent = store.add(Task(0, MissionText("wave"), "ann", NINE, priority=5))
+    assert (claimed and claimed.id) == manager.first(NINE) == waiting.id
+    assert manager.why_waiting(urgent, NINE) == f"task {waiting.id} comes first"
+
+
+def test_nothing_is_more_urgent_than_an_equal(store: Store) -> None:
+    manager = Manager(store)
+    store.add(Task(0, MissionText("wave"), "ann", NINE, priority=1))
+    assert (claimed := manager.claim(NINE)) is not None
+    assert manager.is_more_urgent(claimed, NINE) is False
+    store.add(Task(0, MissionText("wave"), "ann", NINE, priority=1))
+    assert manager.is_more_urgent(claimed, NINE) is False
+    assert manager.is_more_urgent(claimed.replace(id=99, priority=0), NINE) is True
+
+
+def test_an_emergency_stop_kills_what_was_under_way_alone(store: Store) -> None:
+    manager = Manager(store)
+    task = store.add(Task(0, MissionText("wave"), "ann", NINE))
+    assert manager.claim(NINE) is not None
+    [again] = manager.recover(NINE + 1, "the stop was pressed")
+    assert again.state is State.QUEUED  # it hadn't begun
+    assert manager.claim(NINE + 2) is not None
+    store.change(task.id, {State.STANDBY}, State.UNDERWAY, time=NINE)
+    [killed] = manager.recover(NINE + 3, "the stop was pressed")
+    assert (killed.state, killed.reason, killed.ended) == (State.KILLED, "the stop was pressed", NINE + 3)
+
+
+def test_why_a_task_could_not_begin(store: Store) -> None:
+    manager = Manager(store)
+    for fields in ({}, {"state": State.BLOCKED, "reason": "no hands"}):
+        store.add(Task(0, MissionText("wave"), "ann", NINE, deadline=NINE + 60, **fields))  # type: ignore[arg-type]
+    manager.refresh(NINE + 61)
+    assert [reason.rpartition(": ")[2] for reason in reasons(store)] == ["no time", "no hands"]
+
+
+@pytest.mark.parametrize(("seconds", "missed"), [(60.0, False), (60.1, True)])
+def test_one_minute_late_is_in_time(store: Store, seconds: float, missed: bool) -> None:
+    add_schedule(store, missed=Missed.SKIP)
+    Manager(store).refresh(NINE + seconds)
+    assert states(store) == [State.SKIPPED if missed else State.QUEUED]
+
+
+def test_one_that_is_late_overlaps_one_in_time(store: Store) -> None:
+    """What comes a minute late waits for the one before like what comes in time; what is made up for later doesn't."""
+    manager = Manager(store)
+    add_schedule(store, missed=Missed.ALL, overlap=Overlap.SKIP)
+    manager.refresh(NINE + DAY + 60)
+    assert states(store) == [State.QUEUED, State.SKIPPED]
+
+
+def test_a_clock_that_is_set_back_deletes_again(store: Store) -> None:
+    manager = Manager(store, keeps=DAY)
+    manager.tidy(NINE)
+    over = store.add(Task(0, MissionText("wave"), "ann", NINE, State.COMPLETED, ended=NINE - 9 * DAY))
+    manager.tidy(NINE)
+    assert store.task(over.id) is not None
+    manager.tidy(NINE - DAY)
+    assert store.task(over.id) is None
+
+
 def test_old_tasks_are_deleted_once_a_day(store: Store) -> None:
     manager = Manager(store, keeps=10 * DAY)
     over = store.add(Task(0, MissionText("wave"), "ann", NINE - 20 * DAY, State.COMPLETED, ended=NINE - 11 * DAY))

@@ -73,6 +73,19 @@ def test_languages_have_the_same_texts() -> None:
             assert set(re.findall(r"\{\w+\}", text)) == set(re.findall(r"\{\w+\}", texts["en"][key])), (name, key)
 
 
+def test_no_modules_import_each_other() -> None:
+    """Imports of types and those that wait until they're needed are counted, too."""
+    left: dict[Path, set[Path]] = {}
+    for path in (WEB / "src").rglob("*.ts"):
+        named = re.findall(r"""(?:from|import\() ?"(\.[^"]+)";?""", path.read_text(encoding="utf-8"))
+        left[path] = {(path.parent / f"{name}.ts").resolve() for name in named if not name.endswith(".json")}
+    assert sum(map(len, left.values())) > 150
+    while free := [path for path, others in left.items() if not others & left.keys()]:
+        for path in free:
+            del left[path]
+    assert [path.name for path in left] == [], "these, or what they import, import each other"
+
+
 def test_every_text_is_used() -> None:
     program = "".join(path.read_text(encoding="utf-8") for path in (WEB / "src").rglob("*.ts"))
     texts = json.loads((WEB / "src" / "texts" / "en.json").read_text(encoding="utf-8"))

@@ -128,8 +128,8 @@ def robot_line(state: State, signs: Signs) -> Line:
     held = [f"{name} ({hand})" for hand, name in (("left", robot.left), ("right", robot.right)) if name]
     if held:
         parts.append("holds " + ", ".join(held))
-    if state.said:
-        parts.append(f'said "{one_line(state.said)}"')
+    if state.doing.says:
+        parts.append(f'said "{one_line(state.doing.says)}"')
     return (("robot ", "dim"), (signs.apart.join(parts) or "-", ""))
 
 

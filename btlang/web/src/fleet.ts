@@ -1,4 +1,5 @@
 // What is known of the robots, from the messages of the server alone.
+import { whole, type RunEvent } from "./events";
 import type { News } from "./socket";
 
 export const STATUSES = ["IDLE", "RUNNING", "SUCCESS", "FAILURE", "SKIPPED"] as const;
@@ -47,10 +48,11 @@ export interface Run {
   prepared: Set<number>;
 }
 
+/** A line of the log: an event, or a command or condition with a new status. */
 export interface Entry {
   task: number;
   wall: number;
-  event: Record<string, any>;
+  event: RunEvent | { event: Exclude<Status, "IDLE">; name: string };
 }
 
 export interface Component {
@@ -74,46 +76,113 @@ export interface Device {
 const MOST_ENTRIES = 500;
 const MOST_STEPS = 2000;
 
-/** One robot. `state` is null until it says something, and again when the connection or the robot is gone. */
+/** What is known of a robot that hasn't said anything yet. */
+const unknown = () => ({
+  state: null as { stopped: string; paused: boolean; hindrance: string; pose: [number, number, number] | null; battery: number | null; left: string | null; right: string | null; visitors?: boolean; talks?: boolean } | null,
+  map: null as WorldMap | null,
+  /** Those that may be elsewhere than the map has them. */
+  things: [] as Thing[],
+  /** What it asks, "" for nothing. */
+  asking: "",
+  parts: { components: [] as Component[], devices: [] as Device[] },
+  /** What its scanner saw, counter-clockwise from straight ahead, and where it was then. */
+  scan: null as { ranges: (number | null)[]; pose: [number, number, number] } | null,
+  /** The positions of its joints in radians and metres, in the order of its URDF; [] if its body has no links. */
+  joints: [] as (number | null)[],
+  /** What it speaks now, "" for nothing, and the characters of the word of now. */
+  speech: { text: "", start: 0, end: 0 },
+  /** Where it is going, as far as its navigation tells. */
+  way: [] as Point[],
+  /** Its task, 0 for none, its goal, and what it said and heard last, "" for nothing. */
+  doing: { task: 0, goal: "", says: "", heard: "" },
+});
+
+export interface Robot extends ReturnType<typeof unknown> {}
+
+/** One robot, as its messages have it: the same as `RobotView` in btlang/server/robot_view.py, with a log and a path. */
 export class Robot {
   up = false;
   /** The server says that it can't reach it. */
   away = false;
-  state: { stopped: string; paused: boolean; hindrance: string; pose: [number, number, number] | null; battery: number | null; left: string | null; right: string | null; visitors?: boolean; talks?: boolean } | null = null;
-  map: WorldMap | null = null;
-  /** Those that may be elsewhere than the map has them. */
-  things: Thing[] = [];
-  /** What it asks, "" for nothing. */
-  asking = "";
-  parts: { components: Component[]; devices: Device[] } = { components: [], devices: [] };
-  /** What its scanner saw, counter-clockwise from straight ahead, and where it was then. */
-  scan: { ranges: (number | null)[]; pose: [number, number, number] } | null = null;
   /** The latest mission. */
   run: Run | null = null;
   /** What it does between missions. */
   rules: Run | null = null;
   entries: Entry[] = [];
-  /** The positions of its joints in radians and metres, in the order of its URDF; [] if its body has no links. */
-  joints: (number | null)[] = [];
-  /** What it speaks now, "" for nothing, and the characters of the word of now. */
-  speech = { text: "", start: 0, end: 0 };
-  /** What it heard last. */
-  heard = "";
   /** Where it has been. */
   path: Point[] = [];
-  /** Where it is going, as far as its navigation tells. */
-  way: Point[] = [];
-  goal = "";
-  says = "";
-  /** The task under way, 0 for none. */
-  task = 0;
-  /** Its next statuses are those that it had when the page came, not changes. */
-  fresh = false;
+  private fresh = false; // its next statuses are those that it had when the page came, not changes
 
-  constructor(readonly name: string) {}
+  constructor(readonly name: string) {
+    Object.assign(this, unknown());
+  }
+
+  /** Takes in a message; null is the loss of the connection. */
+  take(news: News | null): void {
+    if (news?.type === "up") Object.assign(this, unknown(), { up: true, away: false, fresh: true });
+    else if (!news || news.type === "away") Object.assign(this, { up: false, away: news !== null, state: null });
+    else if (news.type === "run") this.begin(news);
+    else if (news.type === "statuses") this.change(news);
+    else {
+      this.fresh = false;
+      if (news.type === "event") this.log(entryOf(news));
+      else if (news.type === "robot") this.move(news);
+      else if (news.type === "map") this.map = news as unknown as WorldMap;
+      else if (news.type === "things") this.things = news["things"];
+      else if (news.type === "asking") this.asking = news["text"];
+      else if (news.type === "scan") this.scan = news["pose"] ? { ranges: news["ranges"], pose: news["pose"] } : null;
+      else if (news.type === "way") this.way = news["points"];
+      else if (news.type === "joints") this.joints = news["positions"];
+      else if (news.type === "speech") this.speech = { text: news["text"], start: news["start"], end: news["end"] };
+      else if (news.type === "components") this.parts = { components: news["components"], devices: news["devices"] };
+      else if (news.type === "doing") this.doing = { task: news["task"], goal: news["goal"], says: news["says"], heard: news["heard"] };
+    }
+  }
+
+  private begin(news: News): void {
+    const nodes: Run["nodes"] = news["nodes"];
+    const prepared = new Set<number>(news["prepared"]);
+    const run: Run = { id: news["run"], task: news["task"], nodes, statuses: nodes.map(() => "IDLE"), leaves: leavesOf(nodes, prepared), prepared };
+    if (run.task && run.id !== this.run?.id) this.path = this.path.slice(-1);
+    this[run.task ? "run" : "rules"] = run;
+  }
+
+  private change(news: News): void {
+    const run = [this.run, this.rules].find((each) => each?.id === news["run"]);
+    if (!run) return;
+    for (const [index, words] of (news["words"] ?? []) as [number, string][]) {
+      const node = run.nodes[index];
+      if (node) node[2] = words;
+    }
+    for (const [index, status] of news["changes"] as [number, Status][]) {
+      run.statuses[index] = status;
+      const isNews = !this.fresh && run.task && run.leaves[index];
+      if (isNews && status !== "IDLE") this.log({ task: run.task, wall: news["t"], event: { event: status, name: run.nodes[index]![2] } });
+    }
+  }
+
+  private move(news: News): void {
+    this.state = news as unknown as Robot["state"];
+    const pose = this.state?.pose;
+    if (!pose) return;
+    const last = this.path.at(-1);
+    if (last && Math.hypot(last[0] - pose[0], last[1] - pose[1]) < 0.02) return;
+    this.path.push([pose[0], pose[1]]);
+    if (this.path.length > MOST_STEPS) this.path = this.path.filter((_, step) => step % 2 === 0);
+  }
+
+  private log(entry: Entry): void {
+    this.entries.push(entry);
+    if (this.entries.length > MOST_ENTRIES) this.entries.splice(0, MOST_ENTRIES / 10);
+  }
 }
 
-export type Kind = "up" | "away" | "run" | "statuses" | "robot" | "map" | "things" | "asking" | "scan" | "way" | "joints" | "speech" | "components" | "event" | "change" | "offline";
+/** The line of the log for a message about an event. */
+export function entryOf(news: News): Entry {
+  return { task: news["task"], wall: news["event"].wall, event: whole(news["event"]) };
+}
+
+export type Kind = "up" | "away" | "run" | "statuses" | "robot" | "map" | "things" | "asking" | "scan" | "way" | "doing" | "joints" | "speech" | "components" | "event" | "change" | "offline";
 export type Watcher = (robot: Robot, kind: Kind, news: News | null) => void;
 
 /** All robots by their names. Watchers are called after each message has been taken in. */
@@ -135,85 +204,17 @@ export class Fleet {
 
   /** There is no connection: what was known may no longer be true. */
   lose(): void {
-    for (const robot of this.robots.values()) {
-      robot.up = robot.away = false;
-      robot.state = null;
-      this.tell(robot, "offline", null);
-    }
+    for (const robot of this.robots.values()) this.tell(robot, "offline", null);
   }
 
   take(news: News): void {
-    const robot = this.get(news.robot);
-    if (news.type === "up") {
-      [robot.up, robot.fresh, robot.away] = [true, true, false];
-      [robot.things, robot.asking, robot.joints, robot.heard] = [[], "", [], ""];
-      robot.speech = { text: "", start: 0, end: 0 };
-    } else if (news.type === "away") {
-      [robot.up, robot.away] = [false, true];
-      robot.state = null;
-    } else if (news.type === "robot") this.state(robot, news);
-    else if (news.type === "map") robot.map = news as unknown as WorldMap;
-    else if (news.type === "things") robot.things = news["things"];
-    else if (news.type === "asking") robot.asking = news["text"];
-    else if (news.type === "scan") robot.scan = news["pose"] ? { ranges: news["ranges"], pose: news["pose"] } : null;
-    else if (news.type === "way") robot.way = news["points"];
-    else if (news.type === "joints") robot.joints = news["positions"];
-    else if (news.type === "speech") robot.speech = { text: news["text"], start: news["start"], end: news["end"] };
-    else if (news.type === "components") robot.parts = { components: news["components"], devices: news["devices"] };
-    else if (news.type === "change") {
-      if (news["state"] === "underway") robot.task = news["task"];
-      else if (robot.task === news["task"]) robot.task = 0;
-    } else if (news.type === "run") begin(robot, news);
-    else if (news.type === "statuses") {
-      const run = [robot.run, robot.rules].find((each) => each?.id === news["run"]);
-      if (!run) return;
-      for (const [index, words] of (news["words"] ?? []) as [number, string][]) {
-        const node = run.nodes[index];
-        if (node) node[2] = words;
-      }
-      for (const [index, status] of news["changes"] as [number, Status][]) {
-        run.statuses[index] = status;
-        if (!robot.fresh && run.task && run.leaves[index]) log(robot, { task: run.task, wall: news["t"], event: { event: status, name: run.nodes[index]![2] } });
-      }
-      robot.fresh = false;
-    } else if (news.type === "event") note(robot, news);
-    this.tell(robot, news.type as Kind, news);
-  }
-
-  private state(robot: Robot, news: News): void {
-    robot.state = news as unknown as Robot["state"];
-    const pose = robot.state?.pose;
-    if (!pose) return;
-    const last = robot.path.at(-1);
-    if (last && Math.hypot(last[0] - pose[0], last[1] - pose[1]) < 0.02) return;
-    robot.path.push([pose[0], pose[1]]);
-    if (robot.path.length > MOST_STEPS) robot.path.splice(0, MOST_STEPS / 2);
+    this.tell(this.get(news.robot), news.type as Kind, news);
   }
 
   private tell(robot: Robot, kind: Kind, news: News | null): void {
+    robot.take(news);
     for (const watcher of [...this.watchers]) watcher(robot, kind, news);
   }
-}
-
-function begin(robot: Robot, news: News): void {
-  const again = robot.run?.id === news["run"];
-  const nodes: Run["nodes"] = news["nodes"];
-  const prepared = new Set<number>(news["prepared"]);
-  const run: Run = { id: news["run"], task: news["task"], nodes, statuses: nodes.map(() => "IDLE"), leaves: leavesOf(nodes, prepared), prepared };
-  robot[run.task ? "run" : "rules"] = run;
-  robot.task = run.task;
-  if (again || !run.task) return;
-  robot.path = robot.path.slice(-1);
-  robot.goal = robot.says = robot.heard = "";
-}
-
-function note(robot: Robot, news: News): void {
-  const event = news["event"];
-  if (event.event === "navigate") robot.goal = event.name;
-  if (["arrive", "stop", "end"].includes(event.event)) [robot.goal, robot.way] = ["", []];
-  if (event.event === "say") robot.says = event.text;
-  if (event.event === "hear") robot.heard = event.text;
-  log(robot, { task: news["task"], wall: event.wall, event });
 }
 
 function leavesOf(nodes: Run["nodes"], prepared: Set<number>): boolean[] {
@@ -229,9 +230,4 @@ function leavesOf(nodes: Run["nodes"], prepared: Set<number>): boolean[] {
 /** The numbers of the actions and conditions that run. */
 export function running(run: Run): number[] {
   return run.statuses.flatMap((status, index) => (status === "RUNNING" && run.leaves[index] ? [index] : []));
-}
-
-function log(robot: Robot, entry: Entry): void {
-  robot.entries.push(entry);
-  if (robot.entries.length > MOST_ENTRIES) robot.entries.splice(0, MOST_ENTRIES / 10);
 }

@@ -1,11 +1,11 @@
 // Start: who is logged in sees the shell, everybody else the log-in.
+import { address } from "./address";
 import { enter as enterByToken, request, whoAmI } from "./api";
 import { fill, h } from "./dom";
 import { showLogin } from "./login";
 import { Shell } from "./shell";
 import { language, t } from "./texts";
 import { applyTheme } from "./theme";
-import { address } from "./view";
 
 async function start(): Promise<void> {
   document.documentElement.lang = language();

@@ -1,8 +1,8 @@
 // Who else is here: the people on a robot behind a count, and who else has the open mission.
+import { address } from "./address";
 import { fill, h, openMenu } from "./dom";
 import type { Link, OpenPage } from "./socket";
 import { t, visible, type Key } from "./texts";
-import { address } from "./view";
 
 const SCREENS: Record<string, Key> = { robots: "robots", watch: "tab.watch", tasks: "tab.tasks", write: "tab.write", runs: "tab.runs" };
 

@@ -1,8 +1,9 @@
 // All robots: which are up, what they do, and the way to each.
+import { address } from "./address";
 import { fill, h, oncePerFrame } from "./dom";
 import type { Robot } from "./fleet";
 import { t } from "./texts";
-import { address, type Context, type View } from "./view";
+import type { Context, View } from "./view";
 
 /** See `View`. */
 export function openRobots({ fleet }: Context): View {
@@ -33,5 +34,5 @@ export function state(robot: Robot): [kind: "good" | "bad" | "quiet", text: stri
   if (robot.state?.stopped) return ["bad", t("robot.stopped") + charge];
   if (robot.state?.paused) return ["quiet", t("robot.paused") + charge];
   if (robot.state?.hindrance) return ["bad", robot.state.hindrance + charge];
-  return ["good", t(robot.task ? "robot.working" : "robot.ready") + charge];
+  return ["good", t(robot.doing.task ? "robot.working" : "robot.ready") + charge];
 }

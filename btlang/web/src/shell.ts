@@ -1,4 +1,5 @@
 // The frame around every screen: robots, tabs, who is logged in, and the emergency stop.
+import { address } from "./address";
 import { logOut, request, type Me } from "./api";
 import { fill, h, openMenu } from "./dom";
 import { Fleet } from "./fleet";
@@ -8,7 +9,7 @@ import { Link } from "./socket";
 import { EmergencyStop } from "./stop";
 import { language, languages, setLanguage, t } from "./texts";
 import { setTheme, theme, THEMES } from "./theme";
-import { address, type Open, type View } from "./view";
+import type { Open, View } from "./view";
 
 const ALL = ["tree", "tasks", "events", "robot", "map", "components", "body"];
 const TABS = { watch: "tab.watch", tasks: "tab.tasks", write: "tab.write", runs: "tab.runs" } as const;

@@ -20,6 +20,9 @@ export function setLanguage(name: string): void {
 /** The languages with their own names. */
 export const languages: [string, string][] = Object.entries(LANGUAGES).map(([name, texts]) => [name, texts["language"] ?? name]);
 
+/** The texts that there are, in their order. */
+export const KEYS = Object.keys(en) as Key[];
+
 /** A text in the language of the page, with `{name}` filled in. */
 export function t(key: Key, values: Record<string, string | number> = {}): string {
   const text = LANGUAGES[language()]?.[key] ?? en[key];

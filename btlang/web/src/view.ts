@@ -21,6 +21,3 @@ export interface View {
 }
 
 export type Open = (context: Context) => View;
-
-/** The address of a screen: #/robots/kim/tasks */
-export const address = (...parts: string[]): string => `#/${parts.map(encodeURIComponent).join("/")}`;

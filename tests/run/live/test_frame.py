@@ -25,7 +25,7 @@ from btlang.run.live.frame import (
 from btlang.run.live.view import usual_keys
 from btlang.run.robot_state import RobotState
 from btlang.run.shape import Shape
-from btlang.run.snapshot import HALTED, SUSPENDED, State
+from btlang.run.snapshot import HALTED, SUSPENDED, Doing, State
 from btlang.text.source import Source, Span
 from btlang.tree.node import Node
 
@@ -139,7 +139,7 @@ def test_the_robot() -> None:
     state, _ = made("all")
     assert text(robot_line(state, UNICODE)) == "robot -"
     state.robot = RobotState(Pose(1.0, -0.001, 90.4), 87.4, None, "red cup")
-    state.said = "Hello\x1b[2J!"
+    state.doing = Doing(says="Hello\x1b[2J!")
     assert text(robot_line(state, UNICODE)) == (
         'robot x 1.00 m  y 0.00 m  heading 90° · battery 87% · holds red cup (right) · said "Hello\\x1b[2J!"'
     )

@@ -1,10 +1,11 @@
 // What the robots did: the tasks that are over, newest first, the films of those that were recorded, and two side by side.
+import { address } from "../address";
 import { request } from "../api";
 import { fill, h } from "../dom";
 import { downloads, pictures, plain, type Offer } from "../download";
 import { called, command, type Task } from "../tasks/queue";
 import { moment, t, type Key } from "../texts";
-import { address, type Context, type View } from "../view";
+import type { Context, View } from "../view";
 import { Comparison, titleOf, type Compared } from "./compare";
 import { Player } from "./player";
 import type { Film } from "./scene";

@@ -1,6 +1,7 @@
 // A run at one moment: its tree, its map, its story, and the words of a node.
 import { fill, h, oncePerFrame } from "../dom";
-import { Robot, STATUSES, type Point, type Status, type Thing, type WorldMap } from "../fleet";
+import { whole } from "../events";
+import { Robot, STATUSES, type Status, type Thing, type WorldMap } from "../fleet";
 import { t } from "../texts";
 import { TreeView, joined, type TreeNode } from "../tree/tree_view";
 import { MapView } from "../watch/map";
@@ -13,10 +14,11 @@ export interface Film {
   names: Status[];
   nodes: (TreeNode & { start: number | null; end: number | null })[];
   words: [t: number, node: number, words: string][];
-  statuses: number[][];
+  statuses: [t: number, ...number[]][];
   robot: [t: number, x: number | null, y: number | null, heading: number | null, battery: number | null, left: string | null, right: string | null][];
   things: [t: number, ...Thing][];
-  events: Record<string, any>[];
+  events: { t: number; event: string }[];
+  doing: [t: number, task: number, goal: string, says: string, heard: string][];
   story: [t: number, node: number, words: string][];
   map: WorldMap;
   why: string;
@@ -26,6 +28,21 @@ export interface Film {
   stopped?: string;
 }
 
+/** Rows that begin with their times, in seconds, given out as these come. */
+class Rows<Row extends [number, ...unknown[]]> {
+  private taken = 0;
+
+  constructor(private rows: Row[]) {}
+
+  /** Those up to a moment that weren't given out yet. */
+  *upTo(now: number): Generator<Row> {
+    for (let row = this.rows[this.taken]; row && row[0] <= now + 1e-6; row = this.rows[this.taken]) {
+      this.taken++;
+      yield row;
+    }
+  }
+}
+
 export class Scene {
   readonly tree: TreeView;
   readonly place: HTMLElement;
@@ -33,12 +50,13 @@ export class Scene {
   readonly words = h("pre", { class: "film-text", tabindex: 0, dir: "auto", lang: "en", "aria-label": t("write.text") });
   /** How it ended, and why. */
   readonly outcome: HTMLElement;
-  private robot = new Robot("film");
+  private robot!: Robot;
   private map = new MapView(() => this.robot);
   private story = h("ol", { class: "log story", lang: "en", tabindex: 0 });
   private now = 0;
-  private taken = 0; // statuses that the tree shows
-  private said = 0; // words that it shows
+  private shown = 0; // the moment that is shown
+  private things = new Map<string, Thing>();
+  private rows: ReturnType<Scene["begin"]>;
   private draw = oncePerFrame(() => this.show());
 
   /** `jump` is told what somebody chose in the story: a time, in seconds, and a node (-1: none). */
@@ -47,7 +65,7 @@ export class Scene {
     jump: (seconds: number, node: number) => void,
     selected: (node: number) => void = () => undefined,
   ) {
-    this.robot.map = film.map;
+    this.rows = this.begin();
     this.tree = new TreeView({ label: t("watch.tree"), select: (node) => { this.showWords(node); selected(node); } });
     const items = film.story.map(([seconds, node, words]) =>
       h("li", {}, h("time", {}, clock(seconds)), h("button", { type: "button", class: "plain", onclick: () => jump(seconds, node) }, words)),
@@ -85,58 +103,56 @@ export class Scene {
     return found?.[0] ?? this.film.seconds;
   }
 
+  /** At the beginning of the film, where nothing has happened. */
+  private begin() {
+    const { film } = this;
+    this.robot = new Robot("film");
+    this.take("map", { ...film.map });
+    this.things.clear();
+    const events = film.events.map((event): [number, typeof event] => [event.t, event]);
+    return {
+      statuses: new Rows(film.statuses), words: new Rows(film.words), robot: new Rows(film.robot), things: new Rows(film.things), doing: new Rows(film.doing), events: new Rows(events),
+    };
+  }
+
   private show(): void {
     const { film, now } = this;
-    if (this.taken && film.statuses[this.taken - 1]![0]! > now) {
-      this.taken = 0;
+    if (now < this.shown) {
+      this.rows = this.begin();
       this.tree.setStatuses(film.nodes.map((_, index) => [index, STATUSES[0]] as const));
+      this.tree.setWords(film.words.map(([, node]) => [node, film.nodes[node]!.label] as const));
     }
+    this.shown = now;
     const changes = new Map<number, Status>();
-    while (this.taken < film.statuses.length && film.statuses[this.taken]![0]! <= now + 1e-6) {
-      const row = film.statuses[this.taken++]!;
-      for (let at = 1; at < row.length; at += 2) changes.set(row[at]!, film.names[row[at + 1]!]!);
-    }
+    for (const [, ...row] of this.rows.statuses.upTo(now)) for (let at = 0; at < row.length; at += 2) changes.set(row[at]!, film.names[row[at + 1]!]!);
     this.tree.setStatuses(changes);
-    this.showValues();
-    this.showRobot();
+    this.tree.setWords(new Map([...this.rows.words.upTo(now)].map(([, node, words]) => [node, words])));
+    this.tell();
+    this.map.redraw();
     const current = film.story.findLastIndex(([seconds]) => seconds <= now + 1e-6);
     [...this.story.children].forEach((item, index) => item.classList.toggle("now", index === current));
   }
 
-  /** What the nodes say with the values of this moment. */
-  private showValues(): void {
-    const { film, now } = this;
-    if (this.said && film.words[this.said - 1]![0] > now) {
-      this.said = 0;
-      this.tree.setWords(film.words.map(([, node]) => [node, film.nodes[node]!.label] as const));
+  /** Takes in the messages that the robot sent up to this moment. */
+  private tell(): void {
+    const { rows, now } = this;
+    for (const [, x, y, heading, battery, left, right] of rows.robot.upTo(now)) {
+      const pose = x === null || y === null ? null : [x, y, heading ?? 0];
+      this.take("robot", { stopped: "", paused: false, hindrance: "", pose, battery, left, right });
     }
-    const words = new Map<number, string>();
-    while (this.said < film.words.length && film.words[this.said]![0] <= now + 1e-6) {
-      const [, node, said] = film.words[this.said++]!;
-      words.set(node, said);
+    for (const [, ...thing] of rows.things.upTo(now)) this.things.set(thing[0], thing);
+    this.take("things", { things: [...this.things.values()] });
+    for (const [, task, goal, says, heard] of rows.doing.upTo(now)) this.take("doing", { task, goal, says, heard });
+    for (const [, event] of rows.events.upTo(now)) {
+      const moved = whole(event);
+      if (moved.event !== "door") continue;
+      const doors = this.robot.map?.doors?.map((door) => (door.name === moved.name ? { ...door, open: moved.open } : door));
+      this.take("map", { ...this.film.map, doors });
     }
-    this.tree.setWords(words);
   }
 
-  private showRobot(): void {
-    const { film, robot, now } = this;
-    const count = film.robot.findLastIndex((row) => row[0] <= now) + 1;
-    const latest = film.robot[count - 1];
-    robot.path = film.robot.slice(0, count).flatMap(([, x, y]): Point[] => (x === null || y === null ? [] : [[x, y]]));
-    if (latest) {
-      const [, x, y, heading, battery, left, right] = latest;
-      robot.state = { stopped: "", paused: false, hindrance: "", pose: x === null || y === null ? null : [x, y, heading ?? 0], battery, left, right };
-    }
-    const things = new Map<string, Thing>();
-    for (const [seconds, ...thing] of film.things) {
-      if (seconds > now) break;
-      things.set(thing[0], thing);
-    }
-    robot.things = [...things.values()];
-    const moved = film.events.filter((event) => event["event"] === "door" && event["t"] <= now);
-    const doors = new Map(moved.map((event) => [event["name"], event["open"]]));
-    robot.map = { ...film.map, doors: film.map.doors?.map((door) => ({ ...door, open: doors.get(door.name) ?? door.open })) };
-    this.map.redraw();
+  private take(type: string, fields: object): void {
+    this.robot.take({ type, robot: "film", ...fields });
   }
 
   private showWords(node: number): void {

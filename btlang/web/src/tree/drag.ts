@@ -1,6 +1,6 @@
 // Nodes dragged onto others by mouse, pen or finger. Who can't do that has the menu of a node.
 import type { Item } from "./items";
-import type { TreeView } from "./tree_view";
+import type { TreeCanvas } from "./tree_canvas";
 
 /** What may be dragged, where to, and what is to be done then; nodes are meant by their numbers. */
 export interface DragOptions {
@@ -31,7 +31,7 @@ export class TreeDrag {
   private listening = new AbortController();
 
   constructor(
-    private view: TreeView,
+    private view: TreeCanvas,
     private options: DragOptions,
   ) {
     view.scroll.addEventListener("pointerdown", (event) => this.press(event));

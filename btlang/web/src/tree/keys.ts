@@ -1,6 +1,6 @@
 // The keys of a tree, as WAI-ARIA has them.
 import type { Item } from "./items";
-import type { TreeView } from "./tree_view";
+import type { TreeCanvas } from "./tree_canvas";
 
 const TOGETHER = 700; // milliseconds between two letters of a word that is typed to find a node
 
@@ -8,7 +8,7 @@ export class TreeKeys {
   private typed = "";
   private last = 0;
 
-  constructor(private view: TreeView) {
+  constructor(private view: TreeCanvas) {
     view.scroll.addEventListener("keydown", (event) => {
       if (!event.ctrlKey && !event.metaKey && !event.altKey && this.press(event)) event.preventDefault();
     });

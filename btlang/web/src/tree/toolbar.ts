@@ -1,9 +1,9 @@
 // What is above a tree: search, folds, zoom, direction.
 import { fill, h, s } from "../dom";
 import { t, type Key } from "../texts";
-import type { TreeView } from "./tree_view";
+import type { TreeCanvas } from "./tree_canvas";
 
-export function toolbar(view: TreeView): HTMLElement {
+export function toolbar(view: TreeCanvas): HTMLElement {
   const count = h("output", { class: "count" });
   const search = h("input", { type: "search", placeholder: t("tree.search"), "aria-label": t("tree.search"), dir: "auto" });
   let found: number[] = [];

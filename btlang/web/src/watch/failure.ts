@@ -1,5 +1,6 @@
 // Why a mission failed, with the node and the words that did.
 import { fill, h } from "../dom";
+import type { Entry } from "../fleet";
 import { command } from "../tasks/queue";
 import { t } from "../texts";
 import type { Context } from "../view";
@@ -20,18 +21,18 @@ export class Failure {
   }
 
   /** Shows a failed end. */
-  note(task: number, event: Record<string, any>): void {
-    if (event["event"] !== "end" || event["outcome"] !== "FAILURE" || event["stopped"] || !task) return;
+  note({ task, event }: Entry): void {
+    if (event.event !== "end" || event.outcome !== "FAILURE" || event.stopped || !task) return;
     const words = h("pre", { class: "words", dir: "auto" });
     fill(
       this.element,
-      h("p", {}, h("strong", {}, t("failure", { what: event["id"] ?? "" })), " ", h("span", { lang: "en", dir: "auto" }, event["reason"] ?? "")),
+      h("p", {}, h("strong", {}, t("failure", { what: event.id })), " ", h("span", { lang: "en", dir: "auto" }, event.reason)),
       words,
-      event["path"] && h("button", { type: "button", onclick: () => this.select(event["path"]) }, t("failure.node")),
+      event.path && h("button", { type: "button", onclick: () => this.select(event.path) }, t("failure.node")),
     );
     this.element.hidden = false;
-    if (event["path"]) this.select(event["path"]);
-    const line = Number(/(\d+)(?::\d+)?$/.exec(event["place"] ?? "")?.[1] ?? 0);
+    if (event.path) this.select(event.path);
+    const line = Number(/(\d+)(?::\d+)?$/.exec(event.place)?.[1] ?? 0);
     if (line) void this.showWords(task, line, words);
   }
 

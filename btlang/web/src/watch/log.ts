@@ -1,37 +1,34 @@
 // What happened on a robot, in words.
 import { h } from "../dom";
+import { ALARMS, DEFAULTS } from "../events";
 import type { Entry } from "../fleet";
-import { moment, t, type Key } from "../texts";
+import { KEYS, moment, t, type Key } from "../texts";
 
 const NEWEST = 200;
 const PERIOD = 200; // milliseconds
-const SAID: Record<string, Key> = {
-  RUNNING: "log.running", SUCCESS: "log.success", FAILURE: "log.failure", SKIPPED: "log.skipped",
-  say: "log.say", print: "log.print", navigate: "log.navigate", choose: "log.choose", arrive: "log.arrive", bump: "log.bump",
-  stuck: "log.stuck", stop: "log.stop", grasp: "log.grasp", release: "log.release", drop: "log.drop", dock: "log.dock",
-  come: "log.come", leave: "log.leave", see: "log.see", give: "log.give", picture: "log.picture", call: "log.call", undock: "log.undock", battery: "log.battery", fault: "log.fault", part: "log.part", warning: "log.warning", error: "log.error",
-};
-const BAD = new Set(["FAILURE", "bump", "stuck", "drop", "battery", "fault", "warning", "error"]);
+const TEXTS = KEYS.map((key) => [key, key.split(".")] as const).filter(([, [log]]) => log === "log");
 
-/** An event in words, "" for one that only programs need. */
-export function inWords(event: Record<string, any>): string {
-  if (event["event"] === "end") {
-    if (event["stopped"]) return t("log.ended", { why: event["stopped"] });
-    return event["outcome"] === "FAILURE" ? t("log.failed", { why: event["reason"] ?? "" }) : event["outcome"] === "SUCCESS" ? t("log.succeeded") : "";
-  }
-  if (event["event"] === "part" && !event["text"]) return "";
-  const key = SAID[event["event"]] ?? manner(event);
-  return key ? t(key, event) : "";
+/** An event in words, "" for one that only programs need. Of the texts that its fields fit, the last one says it:
+ *  "log.ask.text.who" is for a question with `text` and `who`, "log.end.outcome=FAILURE" for an end with that outcome.
+ */
+export function inWords(event: Entry["event"]): string {
+  const fields: Record<string, unknown> = { ...event };
+  const values = Object.fromEntries(Object.entries(fields).map(([name, value]) => [name, written(value)]));
+  const fits = (condition: string): boolean => {
+    const [name, wanted] = condition.split("=") as [string, string?];
+    return wanted === undefined ? Boolean(values[name]) && fields[name] !== DEFAULTS[event.event]?.[name] : values[name] === wanted;
+  };
+  const usual: Key = `log.${event.event}`; // so each kind has one: else this isn't a Key
+  const [key] = TEXTS.findLast(([, [, kind, ...conditions]]) => kind === event.event && conditions.every(fits)) ?? [usual];
+  return t(key, values);
 }
 
-/** The words of an event that says one of several things. */
-function manner(event: Record<string, any>): Key | undefined {
-  const { event: kind, who, text, open, on } = event;
-  if (kind === "hear") return who ? "log.hear_from" : "log.hear";
-  if (kind === "ask") return !text ? "log.listen" : who ? "log.ask_person" : "log.ask";
-  if (kind === "door") return open ? "log.door_open" : "log.door_closed";
-  if (kind === "switch") return on ? "log.switch_on" : "log.switch_off";
-  return undefined;
+/** The value of a field; "" for nothing. */
+function written(value: unknown): string {
+  if (typeof value === "number") return String(Math.round(value * 100) / 100);
+  if (value === null || value === undefined || value === false) return "";
+  if (typeof value === "object") return Object.entries(value).map(([name, each]) => `${name} ${written(each)}`).join(", ");
+  return String(value);
 }
 
 /** The log, of which only the newest lines are shown. New ones come at its end. */
@@ -67,7 +64,7 @@ export class LogView {
       if (!words || words === this.lastWords) continue; // several parts of a robot say that they were stopped
       this.lastWords = words;
       this.lines.append(
-        h("li", { class: BAD.has(entry.event["event"]) ? "bad" : null }, h("time", {}, moment(entry.wall)), h("span", { dir: "auto" }, words)),
+        h("li", { class: ALARMS.has(entry.event.event) || entry.event.event === "FAILURE" ? "bad" : null }, h("time", {}, moment(entry.wall)), h("span", { dir: "auto" }, words)),
       );
     }
     while (this.lines.childElementCount > NEWEST) this.lines.firstElementChild!.remove();

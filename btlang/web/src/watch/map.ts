@@ -95,7 +95,7 @@ function drawRobot(pen: Pen, robot: Robot, pose: [number, number, number], goals
   const { context, colour, scale } = pen;
   const { way } = robot;
   const here: Point = [pose[0], pose[1]];
-  const goal = goals.find(({ name }) => name === robot.goal);
+  const goal = goals.find(({ name }) => name === robot.doing.goal);
   if (way.length) pen.line(way, colour("running"), 1.5, [4, 5]);
   else if (goal) pen.line([here, [goal.x, goal.y]], colour("running"), 1.5, [4, 5]);
   const size = Math.max(7, ROBOT * scale);

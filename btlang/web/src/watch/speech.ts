@@ -19,15 +19,15 @@ export class Speech {
 
   /** What is known of the robot by now. */
   show(robot: Robot): void {
-    const shown = JSON.stringify([robot.says, robot.asking, robot.speech, robot.heard]);
+    const shown = JSON.stringify([robot.doing, robot.asking, robot.speech]);
     if (shown === this.shown) return;
     this.shown = shown;
-    const text = robot.speech.text || robot.says;
+    const text = robot.speech.text || robot.doing.says;
     this.says.hidden = !text || text === robot.asking;
     const [before, word, after] = spoken(robot.speech);
     if (robot.speech.text) fill(this.words, "“", before, h("mark", {}, word), after, "”");
     else fill(this.words, `“${text}”`);
     if (this.whole.textContent !== text) fill(this.whole, text);
-    fill(this.heard, robot.heard && t("watch.heard", { text: robot.heard }));
+    fill(this.heard, robot.doing.heard && t("watch.heard", { text: robot.doing.heard }));
   }
 }

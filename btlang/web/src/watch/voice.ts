@@ -1,5 +1,6 @@
 // What a robot without a speaker says, played in the page.
 import { h, set } from "../dom";
+import type { Entry } from "../fleet";
 import { command } from "../tasks/queue";
 import { t } from "../texts";
 import type { Context } from "../view";
@@ -18,9 +19,9 @@ export class Voice {
   }
 
   /** Something happens on the robot. */
-  note(event: Record<string, any>): void {
-    if (event["event"] === "say") void this.say(event["text"]);
-    if (event["event"] === "stop" || event["event"] === "end") this.silence();
+  note({ event }: Entry): void {
+    if (event.event === "say") void this.say(event.text);
+    if (event.event === "stop" || event.event === "end") this.silence();
   }
 
   silence(): void {

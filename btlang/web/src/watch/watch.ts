@@ -1,7 +1,7 @@
 // A robot at work: its tree, its map, what it says and does, why it failed, and what may be asked of it.
 import { may } from "../api";
 import { fill, h, oncePerFrame, set } from "../dom";
-import { running, type Run } from "../fleet";
+import { entryOf, running, type Run } from "../fleet";
 import { state } from "../robots";
 import { called, command, Queue } from "../tasks/queue";
 import { submitForm } from "../tasks/submit";
@@ -88,8 +88,9 @@ class Watch implements View {
         this.tree.setStatuses(news!["changes"]);
       }
       if (kind === "event") {
-        this.failure.note(news!["task"], news!["event"]);
-        this.voice.note(news!["event"]);
+        const entry = entryOf(news!);
+        this.failure.note(entry);
+        this.voice.note(entry);
       }
       if (kind === "up") this.body.close(); // it may have another body by now
       if (kind === "run" && news!["task"]) this.failure.clear();

@@ -1,4 +1,5 @@
 // Missions: a list of those in the library, and one as English and tree side by side.
+import { address } from "../address";
 import { may, type RequestError } from "../api";
 import { fill, h, set } from "../dom";
 import { downloads, pictures, plain, type Offer } from "../download";
@@ -7,7 +8,7 @@ import { command } from "../tasks/queue";
 import { askSchedule } from "../tasks/schedule";
 import { t } from "../texts";
 import { TreeView } from "../tree/tree_view";
-import { address, type Context, type View } from "../view";
+import type { Context, View } from "../view";
 import { ask } from "./ask";
 import { Editor, smallest } from "./editor";
 import { Keeping } from "./keeping";

