@@ -44,6 +44,9 @@ def test_politeness_changes_nothing(text: str) -> None:
     [
         ("turn left 45 derees", "turn left 45 degrees"),
         ("move forward 3 meeters", "move forward 3 meters"),
+        ("whree is the cup?", "where is the cup?"),
+        ("wave at Allice", "wave at Alice"),
+        ("pick up the bookk", "pick up the book"),
         ("go home", None),
         ("say 'hello world' at Bob", None),
     ],

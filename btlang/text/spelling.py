@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import groupby
 
 _NEAR = 70  # of 100; below it a suggestion is noise (tried on misspelt missions)
 
@@ -46,11 +47,17 @@ def _most_slips(written: str) -> int:
 def distance(written: str, meant: str) -> int:
     """Two for each letter that was left out, added or mistaken for another, or that changed places with the next one.
 
-    One less where all letters are there: that is the likeliest slip.
+    One less where all letters are there, or one of them only is doubled or isn't: these are the likeliest slips.
     """
     from rapidfuzz.distance import OSA
 
-    return 2 * OSA.distance(written, meant) - (sorted(written) == sorted(meant) and written != meant)
+    is_likely = sorted(written) == sorted(meant) or _once(written) == _once(meant)
+    return 2 * OSA.distance(written, meant) - (is_likely and written != meant)
+
+
+def _once(word: str) -> str:
+    """A word with each double letter once."""
+    return "".join(letter for letter, _ in groupby(word))
 
 
 def is_misspelling(written: str, meant: str, others: Iterable[str]) -> bool:

@@ -200,10 +200,14 @@ class _Corrections:
     def _changes_for(self, problem: Diagnostic, trial: _Trial) -> list[tuple[int, Change]]:
         suspects = self._suspects(problem, trial.own)
         proposed = self._before_article(_proposed(problem))
-        strangers = [word for word in suspects if self._text.words[word] not in self._known]
+        strangers = [word for word in suspects if self._text.words[word] not in self._known or self._is_used_once(word)]
         changes = [*self._changes_of_names(suspects), *self._changes(strangers), *([proposed] if proposed else ())]
         allowed = [change for change in dict.fromkeys(changes) if self._is_respelling(change)]
         return sorted(((self._far(change), change) for change in allowed), key=lambda pair: pair[0])
+
+    def _is_used_once(self, word: int) -> bool:
+        """Whether a word is one of a name that nothing uses, so that it may be none: `whree is the book?`."""
+        return word in self._strange and self._written[self._text.words[word]] == 1
 
     def _before_article(self, change: Change | None) -> Change | None:
         """Words that are put before a word are put before its article."""

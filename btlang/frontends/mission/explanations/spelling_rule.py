@@ -9,6 +9,7 @@ from btlang.text.spelling import distance, fewest_slips, is_misspelling
 from btlang.vocabulary.correct_words import correct_words
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 
+_LEAST_LETTERS = 4  # of a word that may have run into another one and that nothing here knows: not `ha all` for `haall`
 _PIECE = re.compile(r"[^\W\d_]+(?:['\N{RIGHT SINGLE QUOTATION MARK}][^\W\d_]+)?|\d+(?:\.\d+)?")
 
 
@@ -62,7 +63,12 @@ def _turned(written: str, vocabulary: Lexicon) -> frozenset[str]:
     """What would turn the meaning round, if it was meant: negations, and those with a word that they run into."""
     right, known, quantifiers = correct_words(vocabulary.word_list), words_of(vocabulary), vocabulary.quantifiers
     apart = ((written[:at], written[at:]) for at in range(1, len(written)))  # `nowave`
-    found = (pair for pair in apart if not quantifiers.isdisjoint(pair) and all(p in right or p in known for p in pair))
+    found = (
+        pair
+        for pair in apart
+        if not quantifiers.isdisjoint(pair)
+        and all(p in quantifiers or p in known or (p in right and len(p) >= _LEAST_LETTERS) for p in pair)
+    )
     return (quantifiers - known).union(map(" ".join, found))  # those that can be read are tried like any word
 
 
