@@ -38,6 +38,7 @@ CHANGING = ("increase", "decrease")
 ASKING = (
     "journey", "search", "whereabouts", "counting", "asking_be", "asking_do", "answers", "feeling", "there",
     "very", "states", "subject", "been", "towards",
+    "if_yes", "if_no",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 

@@ -43,6 +43,8 @@ DEFINING = ("define_strong", "define")
 NODE_ROLES = ("do", "test")
 """Roles whose words begin a node that is said by its id, a command or a condition."""
 
+_REPLIES = (("if_yes", True), ("if_no", False))
+
 
 class Lexicon:
     """Phrases, types and connectives of a language and its packs; frozen once it is made.
@@ -110,6 +112,8 @@ class Lexicon:
         """The words of remarks: how somebody feels, that there is something, and what may be felt."""
         self.been = tree_of((words, True) for words in ways(self.asking["been"]))
         """The words of a journey that is behind somebody: `have been in`."""
+        self.replies = tree_of((words, is_yes) for name, is_yes in _REPLIES for words in ways(self.asking[name]))
+        """Words behind a question, each with whether it is for a yes: `if so`."""
         verb = "".join(self.asking["journey"][:1])
         self.journey_verbs = frozenset((verb, *self.values.role_words.synonyms.get(verb, ())))
         """The verbs of a journey: `go from the lab to the hall`."""

@@ -31,6 +31,7 @@ UNKNOWABLE = {
     "BT044": "`ball` alone is a thing, behind `count` a kind of things",
     "BT052": "what comes before goes on for ever",
     "BT068": "a condition behind `when` is checked once",
+    "BT160": "16:45 is in no morning",
     "BT171": "what follows `as soon as` waits, too",
     "BT172": "of several statements `start over` repeats all",
 }

@@ -297,7 +297,7 @@ def test_some_of_them():
         "Say",
         "SpeakLanguage",
         "Print",
-        *("Ask", "ListenForYesOrNo", "ListenFor", "Obey", "CallStaff", "RaiseAlarm", "GreetPerson"),
+        *("Ask", "ListenForYesOrNo", "ListenFor", "Obey", "CallStaff", "RaiseAlarm", "GreetPerson", "TellPerson"),
         "MoveForward",
         "TurnLeft",
     ]

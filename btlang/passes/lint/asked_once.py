@@ -43,7 +43,7 @@ def _warning(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Itera
             reading = Span(source, before.span.start, node.span.end), fixed
             yield diagnostic("BT068", node.span, words=node.span.text, advice=advice).replace(readings=(reading,))
         return
-    word = source.text[node.span.start : condition.start].split(maxsplit=1)[0]
+    word = next(iter(source.text[node.span.start : condition.start].split(maxsplit=1)), "")  # none before a question
     if word.lower() in vocabulary.asked_once:
         rest = source.text[node.span.start + len(word) : node.span.end].lstrip()
         once, each = (f"{vocabulary.word(role)} {rest}" for role in ("as_soon_as", "whenever"))

@@ -35,6 +35,7 @@ _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parall
 _NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
 _CONDITIONS = frozenset(("condition", *NEGATED))
 _JOINING = ("and", "or")
+_REPLIES = ("if_works", "otherwise")
 _BEFORE_CONDITIONS = frozenset(("if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "not"))
 """Behind these a polite word could be a misspelt one: `wave if now bumped`."""
 
@@ -253,6 +254,10 @@ class Lexer:
                     at = match.last  # `until after going to the lab`
                     continue
                 if at in going_on:
+                    end = self._requests.reply(at) if role in _REPLIES else 0
+                    if end:
+                        at = end
+                        continue
                     go_on(tokens)
                 if role == "condition" and len(tokens) > 1 and tokens[-2].kind == "command":
                     end = self._partial.add_left_out(at, match.last)  # `go to the kitchen and then in the lab`

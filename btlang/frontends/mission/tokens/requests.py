@@ -18,6 +18,7 @@ from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import find
 
 _MOST_WORDS = 8  # of the subject of a question
+_ASK, _ANSWERED = "Ask", "AnswerIs"
 _SOMEBODY = "may be somebody else for whoever hears it"
 _NEXT = "may be a part of it, or go on with the mission"
 _NO_QUESTION = "begins no question that I know"
@@ -174,9 +175,12 @@ class Requests(SentenceReader):
                 condition = self._condition([*subject, at, *range(at + 1 + count, at + 2 + length)])
                 if condition is not None:
                     break
-        if condition is None or self._saying is None or condition.last + 1 in text.going_on:
-            return 0  # `is the battery low? If so, A` would go on with what says so
+        if condition is None or self._saying is None:
+            return 0
         start, end = text.starts[at], text.ends[condition.last - 1]
+        if condition.last + 1 in text.going_on:
+            reply = find(self._vocabulary.replies, text.words, condition.last + 1)
+            return self._depend(condition, at, reply) if reply is not None else 0
         asked = self._calls.token(condition, at)
         yes, no = (self._saying_of(answer) for answer in self._vocabulary.asking["answers"])
         self._tokens += [Token("if", start, start)]
@@ -187,6 +191,34 @@ class Requests(SentenceReader):
             Token("otherwise", end, end), Token("command", end, end, no),
         ]  # fmt: skip
         return condition.last
+
+    def _depend(self, condition: Match, at: int, reply: tuple[bool, int]) -> int:
+        """`is the battery low? If so, A`: a command that depends on what is asked."""
+        asked, is_yes = self._calls.token(condition, at), reply[0]
+        self._calls.note(condition)
+        self._if(asked, (condition.meaning.role == "condition") == is_yes)
+        return reply[1] + (self._text.words[reply[1]] == ",")
+
+    def _if(self, condition: Token, is_so: bool) -> None:
+        start, end = condition.start, condition.end
+        self._tokens.append(Token("if", start, start))
+        if not is_so:
+            self._tokens.append(Token("not", start, start))
+        self._tokens += [condition, Token("comma", end, end)]
+
+    def reply(self, at: int) -> int:
+        """`ask Alice "Tea?". If so, A`: a command that depends on the answer, not on whether there was one."""
+        found = find(self._vocabulary.replies, self._text.words, at)
+        before = next((token for token in reversed(self._tokens) if token.kind not in ("semi", "newline")), None)
+        entry = self._vocabulary.entry(_ANSWERED)
+        if found is None or before is None or entry is None or not isinstance(before.value, Called):
+            return 0
+        if before.kind != "command" or before.value.entry.id != _ASK:
+            return 0
+        start, end = self._text.starts[at], self._text.ends[found[1] - 1]
+        yes = Called(entry, ((entry.slots[0].name, self._vocabulary.asking["answers"][0]),))
+        self._if(Token("condition", start, end, yes), found[0])
+        return found[1] + (self._text.words[found[1]] == ",")
 
     def _length(self, at: int) -> int:
         """How many words of the statement stand behind one."""
