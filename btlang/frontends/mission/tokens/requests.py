@@ -89,7 +89,8 @@ class Requests(SentenceReader):
             self._doubt(entry, at, _NO_QUESTION)
 
     def _is_clause(self, value: SlotValue) -> bool:
-        return value.last > value.first + 1 and self._vocabulary.values.texts.opens(self._text.words[value.first - 1])
+        """Whether a text stands behind a word such as `that` or `if`."""
+        return self._vocabulary.values.texts.opens(self._text.words[value.first - 1])
 
     def _doubt(self, entry: Entry, at: int, reason: str = "") -> bool:
         """Says that a word of a text without quotes may mean something else (BT159), if it is one."""
