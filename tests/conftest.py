@@ -50,8 +50,8 @@ IN_REAL_TIME = (*OVER_DDS, *(f"tests/{folder}/" for folder in _FOLDERS))
 _AT_ONCE = 2
 """The tests of OVER_DDS that run at a time. With more some come too late."""
 _WORKER = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
-_GIVING_WAY = 15
-"""The niceness of a test that only computes."""
+_GIVING_WAY, _FIRST = 15, -10
+"""How nice a test that only computes is, and one over DDS."""
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -63,17 +63,18 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
     """A test over DDS waits until few others run, and one that only computes gives way to those that can't wait."""
-    _give_way(not item.nodeid.startswith(IN_REAL_TIME))
-    if not item.nodeid.startswith(OVER_DDS):
+    over_dds = item.nodeid.startswith(OVER_DDS)
+    _be_nice(_FIRST if over_dds else 0 if item.nodeid.startswith(IN_REAL_TIME) else _GIVING_WAY)
+    if not over_dds:
         return (yield)
     with _turn():
         return (yield)
 
 
-def _give_way(only_computes: bool) -> None:
+def _be_nice(niceness: int) -> None:
     """Sets how nice this process and those that it starts are. Who isn't root can't become less nice again."""
     if hasattr(os, "geteuid") and os.geteuid() == 0:
-        os.setpriority(os.PRIO_PROCESS, 0, _GIVING_WAY if only_computes else 0)
+        os.setpriority(os.PRIO_PROCESS, 0, niceness)
     elif hasattr(os, "nice") and _WORKER >= _AT_ONCE and os.nice(0) == 0:
         os.nice(_GIVING_WAY)
 

@@ -70,7 +70,7 @@ def rests(looks: list[Look], text: str) -> tuple[float, float]:
 def test_a_stroke_meets_its_word_and_voice_and_arms_stop_together(watched: WatchedSim) -> None:
     with Session(robot=speaker(), world=Source(ROOM, "room.toml")) as session:
         run(session, 'say "Hello."')  # on a busy computer DDS takes seconds until the first word
-        events = run(session, f'(say "{TEXT}") for 2.5 s')
+        events = run(session, f'(say "{TEXT}") for 4 s')  # late enough for the stroke, in time before the end
     [planned] = [event for event in events if isinstance(event, StrokePlanned)]
     text = read_marks(TEXT)[0]
     late = watched.late(guide("").gestures["bow"], text, planned.word)

@@ -41,6 +41,15 @@ class UnknownWords:
         latest = self._problems[-1].span if self._problems else None
         return latest is not None and latest.source is self._text.source and latest.start <= start and end <= latest.end
 
+    def lack_name(self, at: int, last: int) -> bool:
+        """Whether a phrase begins that only lacks a name: `without entering the kitchen`, where that is no zone.
+
+        The words up to `last` (exclusive) are a phrase of their own.
+        """
+        from btlang.frontends.mission.explanations.misfits import misfits_of  # most missions have nothing to explain
+
+        return any(each.at > last for each in misfits_of(self._text, at, (self._vocabulary.trie,), self._context))
+
     def why(self, at: int, end: int, match: Match | None) -> Diagnostic:
         """What is wrong with words that are no phrase, or one that stands where it cannot."""
         from btlang.frontends.mission.explanations import fragments, unknown  # most missions have nothing to explain
