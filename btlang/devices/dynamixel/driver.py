@@ -19,6 +19,7 @@ from btlang.devices.kinds import Command, JointTarget, Reading
 from btlang.record import Record
 
 _RATE = 100.0
+_MORE_TRIES = 2  # to find a servo when the line is opened
 _PAUSES = (0.1, 0.2, 0.4, 1.0)
 """Seconds until a servo that can't be used is tried again, the last of them from then on."""
 _PACKET = 14  # bytes of a packet to all servos, beside those of each
@@ -59,6 +60,10 @@ class DynamixelDriver:
         self._absent = {}
         for servo in self._servos.values():
             self._find(servo)
+        for _ in range(_MORE_TRIES):  # an answer may be late, and a robot that starts can wait for it
+            for id in [id for id, absent in self._absent.items() if isinstance(absent.reason, DeviceSilent)]:
+                del self._absent[id]
+                self._find(self._servos[id])
         if len(self._absent) == len(self._servos):
             raise next(iter(self._absent.values())).reason
         self._client.delay = max(servo.delay for servo in self._servos.values())
