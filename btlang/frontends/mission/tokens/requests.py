@@ -46,11 +46,13 @@ class Requests(SentenceReader):
         value = next((value for value in match.values if value.type == TEXT), None)
         if value is None or entry is None or entry.sort != "action" or self._text.words[value.first][0] == '"':
             return 0
-        if "ears" in entry.needs:
+        if entry.id == _ASK:
             self._ask(entry, value, command)
             return 0
         if self._is_clause(value):
             self._doubt(entry, self._vocabulary.values.texts.doubt(self._text, value.first, value.last))
+        if not (entry.accompaniment or "voice" in entry.needs):
+            return 0  # a text that nobody says is its words: `listen for the bell`
         text, first = self._text, value.first
         asked = longest(self._vocabulary.trie, text, first, self._context)
         if asked is not None and asked.meaning.role == "ask_how_many":
