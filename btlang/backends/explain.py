@@ -158,7 +158,7 @@ class _Sentences:
 
     def written(self, number: int) -> tuple[int, str]:
         """The line (from 1) and the text of a sentence."""
-        words, (start, first, last) = self._words, self._sentences[number]
-        start = words.articles.get(first, (start, 0))[0]
+        words, (_, first, last) = self._words, self._sentences[number]
+        start = words.begin(first)
         end = words.ends[last if words.words[last] == END_OF_STATEMENT else last - 1]
         return words.source.position(start)[0], words.source.text[start:end]

@@ -173,6 +173,10 @@ class Words:
             first -= 1
         return self, first, at
 
+    def begin(self, at: int) -> int:
+        """The character at which a word begins, or the article before it."""
+        return self.articles[at][0] if at in self.articles else self.starts[at]
+
     def span(self, first: int, last: int) -> Span:
         """The characters of words `first` to `last` (exclusive); never empty where there is a word."""
         if first >= last:

@@ -77,7 +77,11 @@ class Lexicon:
                 ]
         self.articles = frozenset(language["articles"])
         self.orthography = Orthography(self.articles, language["decimal_comma"], language["contractions"])
-        said = chain(*language["roles"].values(), *language["negations"].values(), *language["asking"].values())
+        self.asking: Mapping[str, Sequence[str]] = {
+            **dict.fromkeys(ASKING, ()), **{name: tuple(ways(said)) for name, said in language["asking"].items()}
+        }  # fmt: skip
+        """Words that questions and shortened journeys leave out, and those that begin questions, by what they are."""
+        said = chain(*language["roles"].values(), *language["negations"].values(), *self.asking.values())
         said = chain(said, language["relatives"], language["relative_denials"])
         contracted = {word for phrase in said for word in phrase.split() if re.fullmatch(r"[a-z]+'[a-z]+", word)}
         self.orthography = self.orthography.with_contractions(contracted)
@@ -104,15 +108,13 @@ class Lexicon:
         self.asked_once = frozenset(language["asked_once"])
         self.subjects = frozenset(language["subjects"])
         """Words that say nothing behind `until` and `before`: `until you go to the lab`."""
-        self.asking: Mapping[str, Sequence[str]] = {**dict.fromkeys(ASKING, ()), **language["asking"]}
-        """Words that questions and shortened journeys leave out, and those that begin questions, by what they are."""
         self.remarks: tuple[WordTree, ...] = tuple(
             tree_of((phrase, True) for phrase in self.asking[name]) for name in ("feeling", "there", "states")
         )
         """The words of remarks: how somebody feels, that there is something, and what may be felt."""
-        self.been = tree_of((words, True) for words in ways(self.asking["been"]))
+        self.been = tree_of((words, True) for words in self.asking["been"])
         """The words of a journey that is behind somebody: `have been in`."""
-        self.replies = tree_of((words, is_yes) for name, is_yes in _REPLIES for words in ways(self.asking[name]))
+        self.replies = tree_of((words, is_yes) for name, is_yes in _REPLIES for words in self.asking[name])
         """Words behind a question, each with whether it is for a yes: `if so`."""
         verb = "".join(self.asking["journey"][:1])
         self.journey_verbs = frozenset((verb, *self.values.role_words.synonyms.get(verb, ())))

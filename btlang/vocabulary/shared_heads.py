@@ -71,8 +71,8 @@ class SharedHeads:
     def _behind(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """The name whose first words are those of the item before: `landmark one and two`."""
         words, tree, end = text.words, self._names(kind), at
-        if words[at] not in self._plurals(kind)[1].values():
-            return None
+        if plural(words[at], self._endings) not in self._plurals(kind)[1]:
+            return None  # as nearly always
         while end and words[end - 1] in self._joiners:
             end -= 1
         for first in range(end - 1, max(end - _LONGEST_NAME, 0) - 1, -1):

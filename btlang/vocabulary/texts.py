@@ -52,7 +52,7 @@ class Texts:
             return word[1:], at + 1
         end = self._end_of_several(text, at)
         if end:
-            return text.source.text[self._start(text, at) : text.ends[end - 1]], end
+            return text.source.text[text.begin(at) : text.ends[end - 1]], end
         if self._is_clause(text, at):
             return None
         bare = word[0].isalnum() or (word[0] == "-" and len(word) > 1)
@@ -61,11 +61,6 @@ class Texts:
             start, end = text.articles[at]
             return text.source.text[start:end], at
         return (text.source.text[text.starts[at] : text.ends[at]], at + 1) if bare else None
-
-    @staticmethod
-    def _start(text: Words, at: int) -> int:
-        """Where a word begins, with the article before it."""
-        return text.articles[at][0] if at in text.articles else text.starts[at]
 
     def _end_of_several(self, text: Words, at: int) -> int:
         """Where a clause or saying ends that begins at a word, 0 for none."""
@@ -92,7 +87,7 @@ class Texts:
         front = find(self._direct, text.words, first)
         if front is None or front[1] >= last or any(word in self._doubtful for word in text.words[front[1] : last]):
             return None
-        behind = text.source.text[self._start(text, front[1]) : text.ends[last - 1]]
+        behind = text.source.text[text.begin(front[1]) : text.ends[last - 1]]
         return f"{front[0][0].upper()}{front[0][1:]} {behind}?"
 
     def _end_of_clause(self, text: Words, at: int) -> int:

@@ -62,7 +62,6 @@ class DynamixelDriver:
             self._find(servo)
         for _ in range(_MORE_TRIES):  # an answer may be late, and a robot that starts can wait for it
             for id in [id for id, absent in self._absent.items() if isinstance(absent.reason, DeviceSilent)]:
-                del self._absent[id]
                 self._find(self._servos[id])
         if len(self._absent) == len(self._servos):
             raise next(iter(self._absent.values())).reason

@@ -64,8 +64,7 @@ def stopped(span: Span, vocabulary: Lexicon) -> Diagnostic:
 
 
 def _with_article(text: Words, at: int, end: int) -> Span:
-    start = text.articles[at][0] if at in text.articles else text.starts[at]
-    return Span(text.source, start, text.ends[end - 1])
+    return Span(text.source, text.begin(at), text.ends[end - 1])
 
 
 def _found(text: Words, at: int, end: int, vocabulary: Lexicon, context: ReadingContext) -> Iterator[tuple[_Gap, int]]:

@@ -206,8 +206,9 @@ class Lexer:
             role = match.meaning.role if match is not None else ""
             if role == "politeness" and tokens and tokens[-1].kind in _BEFORE_CONDITIONS:
                 match, role = None, ""
-            if match is not None and word in self._before_doing and self._unknown.lack_name(at, match.last):
-                match, role = None, ""
+            if match is not None and role == "never" and word in self._before_doing:
+                if self._unknown.lack_name(at, match.last):
+                    match, role = None, ""
             if (role in QUESTIONS or word in asking) and begins(tokens):
                 end = self._requests.question(match, role, at)
                 if end:

@@ -180,18 +180,16 @@ class Requests(SentenceReader):
                     break
         if condition is None or self._saying is None:
             return 0
-        start, end = text.starts[at], text.ends[condition.last - 1]
+        end = text.ends[condition.last - 1]
         if condition.last + 1 in text.going_on:
             reply = find(self._vocabulary.replies, text.words, condition.last + 1)
             return self._depend(condition, at, reply) if reply is not None else 0
         asked = self._calls.token(condition, at)
         yes, no = (self._saying_of(answer) for answer in self._vocabulary.asking["answers"])
-        self._tokens += [Token("if", start, start)]
-        if condition.meaning.role != "condition":
-            self._tokens.append(Token("not", start, start))
+        self._if(asked, condition.meaning.role == "condition")
         self._tokens += [
-            asked, Token("comma", end, end), Token("command", end, end, yes), Token("comma", end, end),
-            Token("otherwise", end, end), Token("command", end, end, no),
+            Token("command", end, end, yes), Token("comma", end, end), Token("otherwise", end, end),
+            Token("command", end, end, no),
         ]  # fmt: skip
         return condition.last
 
@@ -203,6 +201,7 @@ class Requests(SentenceReader):
         return reply[1] + (self._text.words[reply[1]] == ",")
 
     def _if(self, condition: Token, is_so: bool) -> None:
+        """Begins a command that is done if a condition is so, or isn't."""
         start, end = condition.start, condition.end
         self._tokens.append(Token("if", start, start))
         if not is_so:

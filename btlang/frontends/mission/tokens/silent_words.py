@@ -55,15 +55,13 @@ def without_meaning(
     if not tokens:
         return 0
     before = tokens[-1]
-    if before.kind == "check" and text.words[at] in vocabulary.subjects:
+    if before.kind in ("check", "while") and text.words[at] in vocabulary.subjects:
         follows = longest(vocabulary.trie, text, at + 1, context)
         if follows is not None and follows.meaning.role == "command":
-            tokens.pop()  # `make sure that you wave`
-            return at + 1
-    if before.kind == "while" and text.words[at] in vocabulary.subjects:
-        follows = longest(vocabulary.trie, text, at + 1, context)
-        if follows is not None and follows.meaning.role == "command":
-            before.kind = "while_doing"  # `while you wave`
+            if before.kind == "check":
+                tokens.pop()  # `make sure that you wave`
+            else:
+                before.kind = "while_doing"  # `while you wave`
             return at + 1
     if before.kind in ("until", "before") and text.words[at] in vocabulary.subjects:
         return at + 1
