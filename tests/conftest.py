@@ -54,6 +54,19 @@ _GIVING_WAY, _FIRST = 15, -10
 """How nice a test that only computes is, and one over DDS."""
 
 
+def _may_go_first() -> bool:
+    """Whether this process may become less nice. Root may not in every container."""
+    try:
+        os.setpriority(os.PRIO_PROCESS, 0, _FIRST)
+    except (AttributeError, PermissionError):  # Windows has no priorities
+        return False
+    os.setpriority(os.PRIO_PROCESS, 0, 0)
+    return True
+
+
+_MAY_GO_FIRST = _may_go_first()
+
+
 def pytest_configure(config: pytest.Config) -> None:
     """`-m long` is known before the tests are read."""
     if config.option.markexpr == "long":
@@ -62,7 +75,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
-    """A test over DDS waits until few others run, and one that only computes gives way to those that can't wait."""
+    """A test over DDS waits for its turn, and one that only computes gives way to those that can't wait."""
     over_dds = item.nodeid.startswith(OVER_DDS)
     _be_nice(_FIRST if over_dds else 0 if item.nodeid.startswith(IN_REAL_TIME) else _GIVING_WAY)
     if not over_dds:
@@ -72,8 +85,8 @@ def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object
 
 
 def _be_nice(niceness: int) -> None:
-    """Sets how nice this process and those that it starts are. Who isn't root can't become less nice again."""
-    if hasattr(os, "geteuid") and os.geteuid() == 0:
+    """Sets how nice this process and those that it starts are. Most users can't become less nice again."""
+    if _MAY_GO_FIRST:
         os.setpriority(os.PRIO_PROCESS, 0, niceness)
     elif hasattr(os, "nice") and _WORKER >= _AT_ONCE and os.nice(0) == 0:
         os.nice(_GIVING_WAY)
