@@ -5,6 +5,7 @@ from __future__ import annotations
 _LATE = 0.7  # seconds more than usual that a message may be under way
 _EARLY = 0.3  # seconds before its measurement that a message seems to arrive: its clock has been set
 _BACK = 1e-6
+_LEARNING = 2.0  # seconds from the first message in which one may show that the ones before were held up
 _AGAIN = 3.0  # seconds in which stamps go on steadily after a jump, until they are believed again
 
 
@@ -18,6 +19,7 @@ class StampCheck:
         self._before: float | None = None
         self._offset: float | None = None
         self._steady_since: float | None = None
+        self._first: float | None = None
         self._last = 0.0
 
     def fault(self, stamp: float, arrival: float, lags: bool = True) -> str:
@@ -36,12 +38,13 @@ class StampCheck:
         if not lags:
             return ""
         under_way = arrival - stamp
-        if self._offset is None:
-            self._offset = under_way
+        if self._offset is None or self._first is None:
+            self._offset, self._first = under_way, arrival
         late = under_way - self._offset
         if late > _LATE:
             return self._jumped(f"is {late:.1f} s old", arrival, last, under_way)
-        if late < -_EARLY:
+        held_up = arrival - self._first < _LEARNING and late > -_LEARNING
+        if late < -_EARLY and not held_up:
             return self._jumped(f"has time stamps that are {-late:.1f} s in the future", arrival, last, under_way)
         self._offset, self._steady_since = min(self._offset, under_way), None
         return ""
