@@ -64,6 +64,11 @@ def turn_around(robot: Driving) -> Steps:
     yield from turn(robot, 180.0)
 
 
+def turn_once_around(robot: Driving) -> Steps:
+    """Turns on the spot by a full turn."""
+    yield from turn(robot, 360.0)
+
+
 def stop(robot: Driving) -> Steps:
     """Brings the base to rest. Fails if it does not come to rest within the patience of the robot."""
     robot.drive(0.0, 0.0)

@@ -180,6 +180,36 @@ def someone_near(robot: Base) -> bool:
     return bool(robot.nearby_people(NEAR_PERSON))
 
 
+def someone_within(robot: Base, distance: float) -> bool:
+    """Whether anybody is at most so many metres away."""
+    return bool(robot.nearby_people(distance))
+
+
+def obstacle_within(robot: Sensors, distance: float) -> bool:
+    """Whether the robot can't drive so many metres straight ahead. Raises SensorSilent as `distance_ahead` does."""
+    return distance_ahead(robot) < distance
+
+
+def object_is_at(robot: Base, object: str, place: str) -> bool:
+    """Whether an object is at a place, as far as the robot knows."""
+    return object in robot.described("object", {"named": object, "at": place})
+
+
+def object_is_on(robot: Base, object: str, container: str) -> bool:
+    """Whether an object is on or in another one, as far as the robot knows."""
+    return object in robot.described("object", {"named": object, "on": container})
+
+
+def person_is_at(robot: Base, person: str, place: str) -> bool:
+    """Whether a person is at a place, as far as the robot knows."""
+    return person in robot.described("person", {"named": person, "at": place})
+
+
+def someone_is_at(robot: Base, place: str) -> bool:
+    """Whether anybody is at a place, as far as the robot knows."""
+    return bool(robot.described("person", {"at": place}))
+
+
 def holding(robot: Hands, object: str) -> bool:
     """Whether either hand holds the object."""
     return object in (robot.holding("left"), robot.holding("right"))

@@ -40,6 +40,11 @@ def say(robot: Presenting, text: str, kept: dict[str, Any] | None = None) -> Ste
         robot.silence()
 
 
+def report_back(robot: Presenting) -> Steps:
+    """Says that the robot is done."""
+    yield from say(robot, "I am done.")
+
+
 def _begun(robot: Voice, text: str) -> int:
     """Where the sentence of a text begins that it is in; behind the last one when all is said."""
     if robot.said is None or robot.said.text != text:

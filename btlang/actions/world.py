@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from btlang.actions.manner import paced
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, travel
 from btlang.actions.points import where
@@ -21,6 +22,10 @@ class Photographing(Perception, Driving, Protocol):
     """It turns its camera to things."""
 
 
+class PhotographingDoors(Photographing, Handling, Protocol):
+    """It turns its camera to doors."""
+
+
 def open_door(robot: Doorkeeping, door: str) -> Steps:
     """Goes to a door and opens it."""
     yield from _move_door(robot, door, True)
@@ -31,7 +36,17 @@ def close_door(robot: Doorkeeping, door: str) -> Steps:
     yield from _move_door(robot, door, False)
 
 
+def go_to_door(robot: Doorkeeping, door: str, manner: str | None = None) -> Steps:
+    """Goes to a door, on the side from which it can be reached, and faces it."""
+    yield from paced(robot, manner, _to_door(robot, door))
+
+
 def _move_door(robot: Doorkeeping, door: str, is_open: bool) -> Steps:
+    yield from _to_door(robot, door)
+    yield from accomplish(robot.move_door(door, is_open))
+
+
+def _to_door(robot: Doorkeeping, door: str) -> Steps:
     *others, last = robot.beside_door(door)
     for spot in others:
         try:
@@ -41,7 +56,6 @@ def _move_door(robot: Doorkeeping, door: str, is_open: bool) -> Steps:
         break
     else:
         yield from accomplish(robot.navigate_to_pose(last))
-    yield from accomplish(robot.move_door(door, is_open))
 
 
 def door_is_open(robot: Handling, door: str) -> bool:
@@ -169,6 +183,14 @@ def take_picture_of_place(
 ) -> Steps:
     """Turns to a place or a point and takes a picture."""
     yield from turn(robot, robot.pose.bearing_to(where(robot, place, x, y)))
+    yield from accomplish(robot.take_picture())
+
+
+def take_picture_of_door(robot: PhotographingDoors, door: str) -> Steps:
+    """Turns to a door and takes a picture."""
+    spots = robot.beside_door(door)
+    middle = sum(spot.x for spot in spots) / len(spots), sum(spot.y for spot in spots) / len(spots)
+    yield from turn(robot, robot.pose.bearing_to(middle))
     yield from accomplish(robot.take_picture())
 
 

@@ -14,7 +14,7 @@ from btlang.printer.printer import THEN, WHOLE, Doc, Printer
 from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Form, Slot, forms
-from btlang.vocabulary.value_type import format_number
+from btlang.vocabulary.value_type import PLACE, WORLD, format_number
 
 
 def compared(node: ast.Compared, _parts: list[Doc], printer: Printer) -> Doc:
@@ -52,7 +52,16 @@ def each_head(node: ast.ForEach, printer: Printer) -> Iterator[Piece]:
     """`for each place in lab, dock`: marks, as no phrase is looked for in it."""
     word = printer.vocabulary.word
     values = ", ".join(printer.plain_value(text, node.kind) for text in node.values)
-    yield mark(f"{word('each')} {spelt(node.key, printer.vocabulary)} {word('each_in')} {values}")
+    yield mark(f"{word('each')} {spelt(node.key, printer.vocabulary)} {_each_in(node, printer.vocabulary)} {values}")
+
+
+def _each_in(node: ast.ForEach, vocabulary: Lexicon) -> str:
+    """The words before the values; before one thing none that describe it, as `for each cup in kitchen` would."""
+    if len(node.values) > 1 or node.kind == PLACE or node.kind not in WORLD:
+        return vocabulary.word("each_in")
+    describing = vocabulary.values.modifiers.starts
+    ways = (words for words in vocabulary.roles["each_in"] if words.split()[0] not in describing)
+    return next(ways, vocabulary.word("each_in"))
 
 
 def filled(form: Form, values: Mapping[str, str]) -> Iterator[str]:

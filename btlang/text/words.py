@@ -50,13 +50,16 @@ class Orthography(Record):
 
     `spellings` are words that are read as another one: contractions (Spanish `al` as `a`), and words that are written
     without their accents, where no other word is written so. `contracted` are words with an apostrophe that may be
-    written as two (`don t`, `do n't`, `you 've`), by the second and the first of these.
+    written as two (`don t`, `do n't`, `you 've`), by the second and the first of these. `expanded` are words that are
+    read as two: `it's` as `it` and `is`. `titles` are articles that a full stop may belong to: `Mr. Miller`.
     """
 
     articles: frozenset[str] = frozenset()
     decimal_comma: bool = False
     spellings: Mapping[str, str] = {}
     contracted: Mapping[str, Mapping[str, str]] = {}
+    expanded: Mapping[str, tuple[str, str]] = {}
+    titles: frozenset[str] = frozenset()
 
     def with_words(self, words: Iterable[str]) -> Orthography:
         """The same, where these words may be written without their accents."""
@@ -192,7 +195,8 @@ def split(source: Source, orthography: Orthography) -> Words:
     if orthography.decimal_comma:
         text = re.sub(_DECIMAL_COMMA, r"\1.\2", text)
     articles, spellings = orthography.articles, orthography.spellings
-    contracted = orthography.contracted
+    contracted, expanded, titles = orthography.contracted, orthography.expanded, orthography.titles
+    titled = -1  # where a title ended
     first = 0
     margin = _MARGIN.match(text).group()  # type: ignore[union-attr]
     indent, is_item = below = _indent(margin)
@@ -219,12 +223,18 @@ def split(source: Source, orthography: Orthography) -> Words:
         if kind == _WORD:
             word = word.lower() if word.isascii() and not spellings else orthography.word(word)
             if word in contracted and len(words) > first and words[-1] in contracted[word]:
-                words[-1], ends[-1] = contracted[word][words[-1]], end
-                continue
+                word, start, end = contracted[word][words.pop()], starts.pop(), max(end, ends.pop())
+            if word in expanded:
+                middle = start + len(expanded[word][0])
+                words.append(expanded[word][0])
+                starts.append(start)
+                ends.append(middle)
+                word, start = expanded[word][1], middle
             if word in articles and not (
                 text[start - 1 : start] == "{" and text[end : end + 1] == "}"
             ):  # a name is `{a}`
                 result.articles[len(words)] = (start, end)
+                titled = end if word in titles else -1
                 continue
         elif kind == _LINE:
             below = _indent(word[1:])
@@ -235,7 +245,7 @@ def split(source: Source, orthography: Orthography) -> Words:
                 indent, is_item = below
             continue
         elif kind == _STOP:
-            if len(words) == first or words[-1] == END_OF_STATEMENT:
+            if len(words) == first or words[-1] == END_OF_STATEMENT or (start == titled and word == "."):
                 continue
             word = END_OF_STATEMENT
         elif kind == _COMMENT:

@@ -82,7 +82,8 @@ class Adjectives:
         """
         for part in (*_BEFORE, OWNER):
             found = find(names(part), text.words, at)
-            if found is not None and not any(i in text.articles for i in range(at + 1, found[1])):
+            last = 0 if found is None else found[1] + (part == OWNER)  # `her the cup` isn't `her cup`
+            if found is not None and not any(i in text.articles for i in range(at + 1, last)):
                 value = _only_person(text, at, names) if found[0] == _SOMEBODY else found[0]
                 yield (((part, value),) if value else ()), found[1]
         skipped = find(self._determiners, text.words, at) if determined else None

@@ -37,7 +37,7 @@ _ENTRY = {
     "example",
 }  # fmt: skip
 _FLAGS = ("accompaniment", "first", "instant", "uninterruptible", "thread", "touches")
-_MORE = {"action": {*_FLAGS, "constrains"}, "condition": {"touches"}, "quantity": {"type", "named"}}
+_MORE = {"action": {*_FLAGS, "constrains"}, "condition": {"touches", "denied"}, "quantity": {"type", "named"}}
 """The keys that an entry of one sort has beside those of all."""
 _TYPE = {"name", "units", "whole", "least", "open", "values"}
 _NOUN = {"type", "phrase", "slots", "how"}
@@ -142,9 +142,21 @@ class _Reader:
             sort, name, tuple(phrases), str(call), slots, tuple(resources), topic, help, example, span=self.span(near),
             constrains=str(constrains), **flags,
             ros=self.ros(table["ros"], sort, slots, near) if "ros" in table else None,
+            denied=tuple(self.denied(table.get("denied", []), slots, near)),
             needs=tuple(needs), outputs=self.outputs(table.get("outputs", []), slots, near), verbs=verbs,
         )  # fmt: skip
         return self.quantity(made, table, near) if sort == "quantity" else made
+
+    def denied(self, phrases: object, slots: Sequence[SlotSpec], near: str) -> list[str]:
+        """The phrases that say that a condition isn't so; they have the slots of the others."""
+        names = {slot.name for slot in slots}
+        if not isinstance(phrases, list) or not _strings(phrases):
+            self.wrong(f"denied of '{near}' must be a list of phrases", near)
+            return []
+        for phrase in phrases:
+            if not names.issuperset(_slot_names(phrase)):
+                self.wrong(f"the phrase '{phrase}' has a slot that '{near}' hasn't", near)
+        return phrases
 
     def noun(self, table: dict[str, Any]) -> None:
         given, kind, slots = table.get("phrase"), table.get("type"), table.get("slots", {})

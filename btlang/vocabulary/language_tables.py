@@ -37,7 +37,7 @@ CHANGING = ("increase", "decrease")
 
 ASKING = (
     "journey", "search", "whereabouts", "counting", "asking_be", "asking_do", "answers", "feeling", "there",
-    "very", "states", "subject", "been", "towards",
+    "very", "states", "subject", "been", "towards", "going", "finding_out", "inspecting", "telling", "whole",
     "if_yes", "if_no",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
@@ -45,7 +45,9 @@ ASKING = (
 QUESTIONS = ("ask_value", "ask_where", "ask_how_many")
 """The roles of words that begin questions; "there_are" are words that may end one."""
 
-ORDER = ("arrival", "arrival_at", "on_way", "on_way_to", "start_at")
+ORDER = (
+    "arrival", "arrival_at", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "any_time", "tries",
+)  # fmt: skip
 """The roles of words about the order of commands."""
 
 NOT_ALONE = frozenset(("ordinal", "keep", "fails", "there_are", "mind", *ORDER, *QUESTIONS))
@@ -57,7 +59,8 @@ _NO_SLOT = (
     "but", "may", "or_stay",
     "either", "both", "neither", "nor", "not_both", "any_of", "all_of", "none_of", "one_of",
     "do_that", "repeat_that", "again", "start_over", "everything", "here", "ordinal", "following", "keep", "fails",
-    "followed_by", "arrival", "on_way", "on_way_to", "start_at", "there_are", "mind", *QUESTIONS,
+    "followed_by", "arrival", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "any_time",
+    "there_are", "mind", *QUESTIONS,
     "repeat", "try", "retry", "if_possible", "wait_until", "wait_for", "check", "nothing", "never", "fail",
     "in_parallel", "in_order",
     "define_strong", "define", "fact", "facing",
@@ -69,8 +72,8 @@ ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),
     **dict.fromkeys(("every", "delay", "for", "up_to", "apart", "within", "wait", "wait_up_to"), "duration"),
     **dict.fromkeys(("without_entering", "without_leaving"), "zone"),
-    **dict.fromkeys(("count", "more", "at_least_of"), "count"),
-    "arrival_at": "place",
+    **dict.fromkeys(("count", "tries", "more", "at_least_of"), "count"),
+    **dict.fromkeys(("arrival_at",), "place"),
     **dict.fromkeys(("at", "every_day", "until_time", "wait_time"), "time_of_day"),
 }
 """The roles that words can have, each with the slot that its phrases hold."""
@@ -85,7 +88,7 @@ EXPLAINED = (*(role for role in ROLES if role not in _UNEXPLAINED), "compare", "
 SWITCHES = frozenset(("decimal_comma",))
 
 WORD_LISTS = frozenset((
-    "articles", "politeness", "unit_joiner", "one_each", "every_second", "quantifiers",
+    "articles", "titles", "politeness", "unit_joiner", "one_each", "every_second", "quantifiers",
     "halting", "asked_once", "relatives",
     "relative_denials", "particles", "fillers", "speaker", "subjects", "purpose", "determiners", "denials",
     "possessive_endings", "ones", "directions", "clause_openers", "clause_words", "sayings", "of_persons", "colored",
@@ -137,6 +140,10 @@ def _is_text(value: object) -> bool:
     return isinstance(value, str) and bool(value)
 
 
+def _is_contracted(value: object) -> bool:
+    return isinstance(value, str) and 1 <= len(value.split()) <= 2
+
+
 TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "roles": (_role, "a list of phrases, or a table with the lists add and remove"),
     "about": (_about, "a table with the texts topic, help and example"),
@@ -158,7 +165,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "pronouns": (_words, "a list of types"),
     "meanings": (_between, "one of " + ", ".join(CONNECTIVES)),
     "nodes": (_is_text, "the words of a node"),
-    "contractions": (_is_text, "a word"),
+    "contractions": (_is_contracted, "a word, or two"),
     "direct": (_patterns, "a list of patterns"),
     "counts": (_rounds, "a whole number from 1 on, or -1 for endless"),
     "numbers": (_number, "a number"),
@@ -219,7 +226,7 @@ def _phrase_problems(kind: str, name: str, phrases: list[str], known: Mapping[st
 
 _LANGUAGE: dict[str, Any] = {
     "language": "", "decimal_comma": False,
-    "articles": [], "politeness": [], "unit_joiner": [], "one_each": [], "every_second": [],
+    "articles": [], "titles": [], "politeness": [], "unit_joiner": [], "one_each": [], "every_second": [],
     "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},
     "relations_to_self": {},
     "determiners": [], "denials": [], "possessive_endings": [], "ones": [], "directions": [],

@@ -75,8 +75,14 @@ class Lexicon:
                 self.entries[node_id] = [
                     entry.replace(phrases=(), quantity=(), verbs=(), example="") for entry in known
                 ]
-        self.articles = frozenset(language["articles"])
-        self.orthography = Orthography(self.articles, language["decimal_comma"], language["contractions"])
+        titles = frozenset(language["titles"])
+        self.articles = titles.union(language["articles"])
+        contractions = {word: tuple(read.split()) for word, read in language["contractions"].items()}
+        spellings = {word: read[0] for word, read in contractions.items() if len(read) == 1}
+        expanded = {word: read for word, read in contractions.items() if len(read) > 1}
+        self.orthography = Orthography(
+            self.articles, language["decimal_comma"], spellings, expanded=expanded, titles=titles
+        )
         self.asking: Mapping[str, Sequence[str]] = {
             **dict.fromkeys(ASKING, ()), **{name: tuple(ways(said)) for name, said in language["asking"].items()}
         }  # fmt: skip
@@ -84,7 +90,7 @@ class Lexicon:
         said = chain(*language["roles"].values(), *language["negations"].values(), *self.asking.values())
         said = chain(said, language["relatives"], language["relative_denials"])
         contracted = {word for phrase in said for word in phrase.split() if re.fullmatch(r"[a-z]+'[a-z]+", word)}
-        self.orthography = self.orthography.with_contractions(contracted)
+        self.orthography = self.orthography.with_contractions({*contracted, *expanded})
         self._with_names: dict[tuple[object, ...], Lexicon] = {}
         self.values = Values(self._types_of(files, english), language, [noun for file in files for noun in file.nouns])
         for file in files:
@@ -114,6 +120,8 @@ class Lexicon:
         """The words of remarks: how somebody feels, that there is something, and what may be felt."""
         self.been = tree_of((words, True) for words in self.asking["been"])
         """The words of a journey that is behind somebody: `have been in`."""
+        self.telling = tree_of((words, True) for words in self.asking["telling"])
+        """The words before a text in quotes that is to be said: `tell me`."""
         self.replies = tree_of((words, is_yes) for name, is_yes in _REPLIES for words in self.asking[name])
         """Words behind a question, each with whether it is for a yes: `if so`."""
         verb = "".join(self.asking["journey"][:1])
@@ -366,6 +374,8 @@ class Lexicon:
                 self._add_phrase(phrase, Meaning("command" if entry.sort == "action" else "condition", entry), types)
             except PatternError as error:
                 self._wrong(entry, str(error))
+        for phrase in entry.denied:
+            self._add_phrase(phrase, Meaning("negated", entry), types)
 
     def _replaced_id(self, entry: Entry) -> str:
         """The id of the known word that has its phrase."""
@@ -423,8 +433,11 @@ class Lexicon:
 
     def _forms(self, pattern: str) -> Iterator[Form]:
         """Every way to say a pattern, in words as they are read."""
-        read = self.orthography.spellings
+        read, expanded = self.orthography.spellings, self.orthography.expanded
         for form in forms(pattern, self.articles):
+            if expanded and any(part in expanded for part in form):
+                parts = (expanded.get(part, (part,)) if isinstance(part, str) else (part,) for part in form)
+                form = tuple(chain.from_iterable(parts))
             yield tuple(read.get(part, part) if isinstance(part, str) else part for part in form)
 
     def _add_phrase(self, phrase: str, meaning: Meaning, types: dict[str, str]) -> None:

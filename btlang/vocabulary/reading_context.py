@@ -86,8 +86,8 @@ class ReadingContext:
             if known is not None:
                 return known
         found = self.values.read(kind, text, at)
-        if found is None and text.words[at] in self.pronouns and self.types[kind].kind == "names":
-            found = self._referred(kind, text.words[at], at)
+        if found is None and text.words[at] in self.values.pronoun_words and self.types[kind].kind == "names":
+            found = self._referred(kind, text, at)
         chosen = self._chosen(kind, text, at) if text.words[at] in self.starts else None
         if kind in WORLD and not self.joiners.isdisjoint(text.words[max(at - 1, 0) : at + 4]):
             shared = self.values.shared_heads.read(kind, text, at)
@@ -249,8 +249,9 @@ class ReadingContext:
         choice = Choice(chosen[0].how, kind, self.keys.get(kind, kind), chosen[0].parts)
         return choice.text if self.values.listed(kind) or self.known is None else "", chosen[1]
 
-    def _referred(self, kind: str, word: str, at: int) -> tuple[str, int] | None:
+    def _referred(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """What a pronoun stands for."""
+        word, end = find(self.values.pronoun_words, text.words, at) or ("", at)
         is_one = kind in self.pronouns.get(word, ())
         self.lacked |= is_one and kind not in self.latest
-        return (self.latest[kind], at + 1) if is_one and kind in self.latest else None
+        return (self.latest[kind], end) if is_one and kind in self.latest else None

@@ -40,12 +40,13 @@ class Values(Measures):
 
     def __init__(self, types: Mapping[str, ValueType], language: Mapping[str, Any], nouns: Iterable[Noun] = ()) -> None:
         super().__init__(types, language)
-        self._orthography = Orthography(frozenset(language["articles"]))
+        self._orthography = Orthography(frozenset((*language["articles"], *language["titles"])))
         joining = (phrase for role in ("and", "or", "nor") for phrase in language["roles"].get(role, ()))
         self.joiners = frozenset((",", *(phrase.split()[0] for phrase in joining)))
         """The first words of what stands between the values of a list."""
         self.pronouns: Mapping[str, Sequence[str]] = language["pronouns"]
         """Words that stand for the latest value of a type, each with the types that it may be of."""
+        self.pronoun_words = tree_of((words, words) for words in self.pronouns)
         self._names: dict[str, WordTree] = {}
         self._listed: dict[str, dict[str, None]] = {}
         for kind in types.values():
@@ -128,7 +129,7 @@ class Values(Measures):
             numbers, firsts = self._number_starts, self.shared_heads.plural_firsts
             quantities = numbers | self._joiner | self._units.keys() | self._every_second
             self._openers = {
-                kind: frozenset(chain(tree, self.pronouns, self.choice_starts, self.group_starts, firsts(kind)))
+                kind: frozenset(chain(tree, self.pronoun_words, self.choice_starts, self.group_starts, firsts(kind)))
                 for kind, tree in self._names.items()
             }
             if PLACE in self._openers:

@@ -27,8 +27,8 @@ def test_a_diagnostic_of_a_misspelt_name(capsys: pytest.CaptureFixture[str]) -> 
         {
             "code": "BT013",
             "severity": "error",
-            "message": "There's no place or person or object called 'ktichen'.",
-            "hint": "I understood 'go to ...'. Similar: kitchen",
+            "message": "There's no place or person or object or door called 'ktichen'.",
+            "hint": "I understood 'go to ...'. Similar: kitchen, kitchen door",
             **place,
             "words": "ktichen",
             "fix": {"text": "kitchen", **place},

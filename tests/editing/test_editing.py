@@ -206,7 +206,7 @@ def test_hovering_over_a_tree() -> None:
 def test_completions_end_at_their_place() -> None:
     text = "go to the kit\nwave"
     found = complete(Source(text), SHIPPED, text.index("\n"))["completions"]
-    assert [(each["text"], each["start"]) for each in found] == [("kitchen", 10)]
+    assert [(each["text"], each["start"]) for each in found] == [("kitchen", 10), ("kitchen door", 10)]
     assert complete(Source(TREE), SHIPPED) == {"completions": []}
 
 

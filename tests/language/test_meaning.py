@@ -26,7 +26,9 @@ def in_one_line(mission: btlang.Mission) -> str:
     return " | ".join(plain(mission.tree).replace("  ", ">").splitlines())
 
 
-@pytest.mark.parametrize(("sentence", "tree"), [*rows("meaning.txt"), *rows("said.txt")], ids=lambda text: text)
+@pytest.mark.parametrize(
+    ("sentence", "tree"), [*rows("meaning.txt"), *rows("said.txt"), *rows("users.txt")], ids=lambda text: text
+)
 def test_meaning(sentence: str, tree: str) -> None:
     missions = [btlang.parse_tree(sentence, world=WORLD, parser=parser) for parser in PARSERS]
     assert [in_one_line(mission) for mission in missions] == [tree.strip()] * 2

@@ -159,7 +159,11 @@ def _about(inner: Trees) -> Trees:
     form = inner.map(lambda node: ast.Repeat("3", node, SPAN) if isinstance(node, ast.Chain) else node)
     perhaps = st.one_of(st.none(), commands, inner)
     few = st.lists(commands, max_size=2)
-    joined = st.builds(lambda left, node, right: [*left, node, *right], few, form, few).filter(lambda all: len(all) > 1)
+    some = st.lists(commands, min_size=1, max_size=2)
+    joined = st.one_of(
+        st.builds(lambda left, node, right: [*left, node, *right], few, form, some),
+        st.builds(lambda left, node: [*left, node], some, form),
+    )
     return st.one_of(
         st.builds(_chain, st.sampled_from(["sequence", "fallback", "parallel"]), joined, st.booleans()),
         st.builds(ast.If, st.booleans(), conditions, inner, perhaps, _span),

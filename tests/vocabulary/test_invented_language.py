@@ -49,7 +49,8 @@ def _entry(entry: Entry) -> Entry:
     said = entry.phrases, entry.quantity, entry.named
     phrases, quantity, named = (tuple(map(_pattern, patterns)) for patterns in said)
     verbs = tuple((tuple(map(invented, own)), tuple(map(_role, roles))) for own, roles in entry.verbs)
-    return entry.replace(phrases=phrases, quantity=quantity, named=named, slots=slots, verbs=verbs)  # type: ignore[no-any-return]
+    denied = tuple(map(_pattern, entry.denied))
+    return entry.replace(denied=denied, phrases=phrases, quantity=quantity, named=named, slots=slots, verbs=verbs)  # type: ignore[no-any-return]
 
 
 def _role(role: Role) -> Role:
@@ -73,6 +74,8 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
             made[key] = {kind: list(map(invented, words)) for kind, words in value.items()}
         elif key == "plural_endings":
             made[key] = {invented(ending): invented(other) for ending, other in value.items()}
+        elif key == "contractions":
+            made[key] = {invented(word): invented(read) for word, read in value.items()}
         elif key == "nodes":
             made[key] = {node_id: _pattern(words) for node_id, words in value.items()}
         elif key in ("negations", "negative_subjects", "plurals", "doing", "third_person", "synonyms", "direct"):

@@ -25,7 +25,7 @@ ACTION = '[[action]]\nphrase = "hop"\nid = "Hop"\n'
         ),
         ('[roles]\nthen.add = "x"', "then in [roles] must be a list of phrases, or a table"),
         ('[roles]\nwait.add = ["linger"]', "must contain {duration}"),
-        ('[roles]\nnothing.remove = ["do nothing"]', "no word is left of the role 'nothing'"),
+        ('[roles]\nnode.remove = ["node"]', "no word is left of the role 'node'"),
         ("shipped = 1", "shipped is true or false"),
         ("yields = 1", "yields is true or false"),
         ('[roles]\nfoo = ["zork"]', "there is no role 'foo'"),

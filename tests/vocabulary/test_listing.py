@@ -169,6 +169,9 @@ charge [to {percent}]
     Docks and waits until the battery is full or reaches the percentage.
     also: charge/recharge [up] [to {percent}]
           charge/recharge battery [to {percent}]
+          charge/recharge [fully] until full
+          charge/recharge [fully] until it is full/charged
+          charge/recharge fully
     {percent}: a number and one of %; 100% if left out
     needs: base
     node: Charge
@@ -182,7 +185,12 @@ charge [to {percent}]
     [
         (
             "go to",
-            ["go to {place} [through {via}] [{manner}]", "go to {person} [{manner}]", "approach {object} [{manner}]"],
+            [
+                "go to {place} [through {via}] [{manner}]",
+                "go to {person} [{manner}]",
+                "approach {object} [{manner}]",
+                "go to {door} [{manner}]",
+            ],
         ),
         ("wall in front", ["wall in front  (condition)"]),
         ("after", ["after", "after {duration}"]),
@@ -219,7 +227,7 @@ def test_the_overview_counts_what_each_topic_lists() -> None:
     for line in lines:
         topic, count = line[2:16].strip(), int(line[16:18])
         assert count == sum(item.topic == topic for item in ITEMS)
-    assert "  joining       23  then, and, but, or, one of, at the same time, after, ..." in lines
+    assert "  joining       25  then, and, but, or, one of, at the same time, after, ..." in lines
     assert f"{more} {last}" == (
         "btc words motion lists a topic, btc words battery finds a word, btc words --all lists everything."
     )

@@ -14,6 +14,7 @@ from btlang.frontends.mission.parsers.build import Builder
 from btlang.frontends.mission.symbols.includes import Included
 from btlang.frontends.mission.symbols.names import Load
 from btlang.frontends.mission.tokens.lexer import Lexer
+from btlang.frontends.mission.whole_rules import whole_rules, with_rules_first
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Ast, Definition, Nothing, Program
@@ -144,7 +145,8 @@ class _Reader:
         definitions: dict[str, Definition] = {}
         for unit in grouped.units:
             if unit.header is None:
-                body = build.alone(parse(unit.tokens, build)) if unit.tokens else None
+                rules = whole_rules(unit.tokens, source, frozenset(self._vocabulary.asking["whole"]))
+                body = with_rules_first(build.alone(parse(unit.tokens, build)) if unit.tokens else None, rules)
                 continue
             inner = build.alone(parse(unit.tokens, build))
             span = Span(source, unit.header.span.start, inner.span.end)

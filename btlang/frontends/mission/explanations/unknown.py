@@ -30,7 +30,7 @@ from btlang.vocabulary.references import DENIED
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import OBJECT, PLACE, WORLD, ValueType, with_unit
 from btlang.vocabulary.verbs import canonical
-from btlang.vocabulary.word_tree import SLOTS
+from btlang.vocabulary.word_tree import SLOTS, find
 
 _MOST_NAMES = 6  # that a message lists
 _KIND_NAMES = {"kinds": "kind"}
@@ -179,12 +179,13 @@ def _misfit(
     named = [kind for kind in types if kind.kind == "names"]
     following = frozenset().union(*(misfit.following for misfit in misfits))
     span = text.span(at, next((i for i in range(at + 1, end) if text.words[i] in following), max(end, at + 1)))
-    if named and text.words[at] in vocabulary.values.pronouns:
+    pronoun = find(vocabulary.values.pronoun_words, text.words, at) if named else None
+    if pronoun is not None:
         kinds = " or ".join(kind.name for kind in named)
         return diagnostic(
             "BT038",
-            text.span(at, at + 1),
-            words=text.words[at],
+            text.span(at, pronoun[1]),
+            words=pronoun[0],
             type=kinds,
             example=_value_example(named[0], vocabulary),
         )

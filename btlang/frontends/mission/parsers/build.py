@@ -169,7 +169,16 @@ class Builder:
             tried = self._paced(kind, value, body, tried_span)
         else:
             tried = self._counted(opener, body, tried_span)
+        if kind == "every" and isinstance(body, UntilTime | While) and self._is_next(opener.end, body):
+            inner: Ast = tried.replace(body=body.body, span=Span(self.source, body.body.span.start, span.end))
+            return body.replace(body=inner, span=span)  # type: ignore[no-any-return]
         return tried if otherwise is None else Try(tried, otherwise, span)
+
+    def _is_next(self, at: int, form: UntilTime | While) -> bool:
+        """Whether the words of a form begin there, before its body: `every 5 s until 6 pm, wave`."""
+        is_fronted = isinstance(form, UntilTime) or form.condition.span.start < form.body.span.start
+        between = self.source.text[at : form.span.start]
+        return is_fronted and form.span.start < form.body.span.start and not between.strip()
 
     def fronted(self, kind: str, head: Ast, body: Ast, start: int, end: int) -> Ast:
         """LOOP head DO body END: `before`, `after`, `while` and `if` with a command as their head."""

@@ -11,7 +11,9 @@ from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.pattern import forms
+from btlang.vocabulary.references import RELATIONS
 from btlang.vocabulary.trie import longest
+from btlang.vocabulary.value_type import PLACE, WORLD
 from btlang.vocabulary.values import key_of
 
 SEPARATORS = {"set": "set_to", "increase": "by", "decrease": "by", "remember": "remember_as", "each": "each_in"}
@@ -66,14 +68,15 @@ def _prefix(text: Words, role: str, at: int, vocabulary: Lexicon) -> Prefix | No
         last = _end_of_name(text, separator[1], vocabulary)
         words = _name(text, separator[1], last, vocabulary)
         return Prefix(role, key_of(words), words, at, last, separator[0]) if words else None
-    if separator is None and role == "each":
+    if role == "each":
         noun = vocabulary.values.noun(text, at)
-        words = tuple(text.words[at : noun[1]]) if noun is not None else ()
-        if noun is None:
-            return None
         wider = [way for way in vocabulary.values.groups(text, at, is_bare=True) if text.words[way[1]] in BEFORE_BODY]
-        meant, last = wider[-1] if wider else noun
-        return Prefix(role, key_of(words), words, at, last, noun=meant)
+        if separator is None or (noun is not None and wider and _is_described(wider[-1], text, vocabulary)):
+            if noun is None:
+                return None
+            words = tuple(text.words[at : noun[1]])
+            meant, last = wider[-1] if wider else noun
+            return Prefix(role, key_of(words), words, at, last, noun=meant)
     if separator is None:
         if role not in ("increase", "decrease"):
             return None
@@ -82,6 +85,15 @@ def _prefix(text: Words, role: str, at: int, vocabulary: Lexicon) -> Prefix | No
         return Prefix(role, key_of(words), words, -1, last) if words else None
     words = _name(text, at, separator[0], vocabulary)
     return Prefix(role, key_of(words), words, separator[1], separator[1]) if words else None
+
+
+def _is_described(way: tuple[Description, int], text: Words, vocabulary: Lexicon) -> bool:
+    """Whether `for each cup in the kitchen:` goes through what is there; `in the lab, the hall:` is a list."""
+    meant, end = way
+    is_list = text.words[end] == "," and any(
+        vocabulary.context.read(kind, text, end + 1) is not None for kind in WORLD if kind in vocabulary.types
+    )
+    return meant.type != PLACE and not is_list and not RELATIONS.keys().isdisjoint(dict(meant.parts))
 
 
 def _separator(text: Words, at: int, phrases: Iterable[str], within: int) -> tuple[int, int] | None:

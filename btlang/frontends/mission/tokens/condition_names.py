@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator, Sequence
 
-from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Called, Header, Listed, Token
+from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Called, Header, Listed, Token, begins_condition
 from btlang.vocabulary.entry import Entry
 
 
@@ -31,6 +31,20 @@ def condition_names(tokens: list[Token], included: Iterable[str]) -> set[str]:
                 if not waiting:
                     ready.append(user)
     return conditions
+
+
+def settle(tokens: Sequence[Token], conditions: Container[str]) -> None:
+    """Gives the tokens that are a command or a condition, or join or count, the kind that they have here."""
+    for at in range(len(tokens) - 1, -1, -1):
+        token = tokens[at]
+        if token.kind == "name":
+            token.kind = "condition" if called(token).id in conditions else "command"
+        elif token.kind == "followed_by":
+            token.kind = "then"
+        elif token.kind == "once":
+            if not begins_condition(tokens, at + 1):
+                token.value = "1"
+            token.kind = "count" if token.value else "as_soon_as"
 
 
 def called(token: Token) -> Entry:

@@ -10,9 +10,9 @@ from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.names import Load, Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_details, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
-from btlang.frontends.mission.token import RULES, Called, Token, begins_condition, constraint_of, go_on
+from btlang.frontends.mission.token import RULES, Called, Token, constraint_of, go_on
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
-from btlang.frontends.mission.tokens.condition_names import called, condition_names
+from btlang.frontends.mission.tokens.condition_names import condition_names, settle
 from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
 from btlang.frontends.mission.tokens.order_words import OrderWords
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
@@ -36,6 +36,7 @@ _NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
 _CONDITIONS = frozenset(("condition", *NEGATED))
 _JOINING = ("and", "or")
 _REPLIES = ("if_works", "otherwise")
+_BRANCHES = ("if", "unless")
 _BEFORE_CONDITIONS = frozenset(("if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "not"))
 """Behind these a polite word could be a misspelt one: `wave if now bumped`."""
 
@@ -101,16 +102,7 @@ class Lexer:
         self._lines()
         self.conditions = condition_names(self.tokens, self.names.included_conditions())
         """The defined names that stand for conditions."""
-        for at in range(len(self.tokens) - 1, -1, -1):
-            token = self.tokens[at]
-            if token.kind == "name":
-                token.kind = "condition" if called(token).id in self.conditions else "command"
-            elif token.kind == "followed_by":
-                token.kind = "then"
-            elif token.kind == "once":
-                if not begins_condition(self.tokens, at + 1):
-                    token.value = "1"
-                token.kind = "count" if token.value else "as_soon_as"
+        settle(self.tokens, self.conditions)
 
     def again(self, source: Source) -> Lexer:
         """Another text in the place of this one; it may include what this one does, and nothing is said about it."""
@@ -238,6 +230,7 @@ class Lexer:
                     or self._order.journey_of_constraint(at)
                     or self._partial.add_left_out(at)
                     or self._partial.add_without_theme(at)
+                    or self._requests.tell(at)
                 )
                 if end:
                     at = end
@@ -250,7 +243,7 @@ class Lexer:
                 tokens.append(Token("unknown", starts[at], ends[end - 1]))
                 at = end
             else:
-                if role == "politeness":
+                if role == "politeness" or (role == "following" and self._order.opens_nothing(match.last)):
                     at = after_politeness(tokens, words, match)
                     continue
                 if role == "after" and tokens and tokens[-1].kind == "until":
@@ -267,12 +260,11 @@ class Lexer:
                     if end:
                         at = end
                         continue
+                end = self._order.inspection(at, match.last) if role == "check" else 0
                 if role == "command" and at in articles:
                     end = self._partial.add_left_out(at, match.last)  # `then the dock`: with an article it is a name
-                    if end:
-                        at = end
-                        continue
-                end = self._partial.add_third(at + 1, None) if role == "condition" and begins(tokens) else 0
+                if role == "condition" and begins(tokens):
+                    end = self._partial.add_third(at + 1, None)
                 if end:
                     at = end
                     continue
@@ -287,6 +279,8 @@ class Lexer:
                         origin = (token, *origin[1:]) if shared and origin else (token, at, match, root)
                 else:
                     said = calls.token(match, at)
+                    if tokens and tokens[-1].kind == "not" and role == "command":
+                        self._requests.otherwise()
                     end = self._requests.value_in(match, at, said) if match.values and match.meaning.entry else 0
                     if end:
                         at = end
@@ -304,6 +298,8 @@ class Lexer:
                     tokens[-1].role = self.names.meanings.get(" ".join(words[at : match.last]), tokens[-1].role)
                 if role in RULES:
                     self._is_apart = True
+                if role in _BRANCHES:
+                    self._requests.finding_out()
                 if role == "if_fails":
                     tokens[-1].kind, tokens[-1].value = "or", role
                 if role in _ROLES:
@@ -341,7 +337,7 @@ class Lexer:
             return match.last + (text.words[match.last] == ",")
         if match is not None and role == "mind":
             return self._partial.add(match.last)
-        if match is not None and role == "keep" and self._partial.doing(match.last) is not None:
+        if match is not None and role == "keep" and self._order.is_doing(match.last):
             tokens.append(Token("repeat", text.starts[at], text.ends[match.last - 1], role="doing"))
             return match.last
         end = self._partial.add_doing(at, match) if at and may_be_doing(tokens) else 0

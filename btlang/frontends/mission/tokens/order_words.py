@@ -30,7 +30,13 @@ class OrderWords(SentenceReader):
             return self._on_way_to(at, match.last)
         if role == "on_way":
             return self._on_way(at, match.last)
-        return self._arrival(match, at)
+        if role == "wait_at":
+            return self._wait_at(match, at)
+        if role == "any_time":
+            return self._any_time(match.last)
+        if role == "tries":
+            return self._tries(match, at)
+        return self._back_and_forth(at, match.last) if role == "back_and_forth" else self._arrival(match, at)
 
     def _journey(self) -> Token | None:
         """The latest command that drives."""
@@ -91,6 +97,77 @@ class OrderWords(SentenceReader):
             return 0
         match = longest(self._vocabulary.trie, self._text, at + 1, self._context)
         return self._start(at, match.last) if match is not None and match.meaning.role == "start_at" else 0
+
+    def _back_and_forth(self, at: int, end: int) -> int:
+        """`go back and forth between the lab and the hall`: to each of them, again and again."""
+        journey = self._with_front(at, end, "journey")
+        if journey is None or not any(value.more for value in journey.values):
+            return 0
+        if not self._tokens or self._tokens[-1].kind != "repeat":
+            self._tokens.append(Token("repeat", self._text.starts[at], self._text.ends[end - 1]))
+        self._partial.append(journey, at)
+        return journey.last
+
+    def _wait_at(self, match: Match, at: int) -> int:
+        """`wait at the desk until somebody comes`: goes there, then waits."""
+        journey = self._with_front(at, match.last, "journey")
+        if journey is None:
+            return 0
+        waiting = self._partial.with_front(at, journey.last, self._text.words[at : at + 1])
+        self._partial.append(journey, at)
+        if waiting is None:
+            return journey.last
+        joint = self._text.ends[journey.last - 1]
+        self._tokens.append(Token("then", joint, joint))
+        self._partial.append(waiting, journey.last)
+        return waiting.last
+
+    def is_doing(self, at: int) -> bool:
+        """Whether the form of a verb stands at a word: `keep going back and forth`."""
+        match = longest(self._vocabulary.trie, self._text, at, self._context)
+        again = match is not None and match.meaning.role == "back_and_forth"
+        return again or self._partial.doing(at) is not None
+
+    def opens_nothing(self, at: int) -> bool:
+        """Whether words that open a block end a command: `take all cups to the sink, one after the other`."""
+        is_behind = bool(self._tokens) and self._tokens[-1].kind in ("command", "comma")
+        return is_behind and (self._is_end(at) or self._text.words[at] == ",")
+
+    def inspection(self, at: int, end: int) -> int:
+        """`check the lab`: no condition, but a place that is looked at."""
+        found = self._with_front(at, end, "inspecting")
+        if found is None:
+            return 0
+        behind = longest(self._vocabulary.trie, self._text, found.last, self._context)
+        joint = behind is not None and behind.meaning.role in ("then", "and")
+        if not (joint or self._is_end(found.last) or self._text.words[found.last] == ","):
+            return 0
+        self._partial.append(found, at)
+        return found.last
+
+    def _any_time(self, end: int) -> int:
+        """`if the battery is low at any time, A`: whenever it is."""
+        for token in reversed(self._tokens):
+            if token.kind in BEGINS and token.kind != "comma":
+                break
+            if token.kind == "if":
+                token.kind = "whenever"
+                return end
+        return 0
+
+    def _tries(self, match: Match, at: int) -> int:
+        """`pick up the cup, at most 3 attempts`: again if it fails, so many times in all."""
+        tokens = self._tokens
+        before = next((number for number in (-1, -2) if tokens[number:] and tokens[number].kind == "command"), 0)
+        if not before or (before == -2 and tokens[-1].kind != "comma"):
+            return 0
+        del tokens[len(tokens) + before + 1 :]
+        if len(tokens) < 2 or tokens[-2].kind not in ("try", "retry"):
+            tokens.insert(-1, Token("retry", tokens[-1].start, tokens[-1].start))
+        count = self._calls.token(match, at)
+        count.kind = "count"
+        tokens.append(count)
+        return match.last
 
     def journey_of_constraint(self, at: int) -> int:
         """`avoid the hall until the lab`, `until you have been in the lab`: a constraint that a journey ends.

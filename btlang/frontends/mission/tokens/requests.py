@@ -24,6 +24,8 @@ _NEXT = "may be a part of it, or go on with the mission"
 _NO_QUESTION = "begins no question that I know"
 _PERSON = "is a person, and the question is missing"
 _BEHIND = ("politeness", "then", "and")
+_BETWEEN = frozenset(("semi", "newline", "comma", "then", "and", "stop"))
+_OF_CONDITIONS = frozenset(("condition", "not", "and", "or", "either", "neither", "nor", "both"))
 
 
 class Requests(SentenceReader):
@@ -221,6 +223,33 @@ class Requests(SentenceReader):
         yes = Called(entry, ((entry.slots[0].name, self._vocabulary.asking["answers"][0]),))
         self._if(Token("condition", start, end, yes), found[0])
         return found[1] + (self._text.words[found[1]] == ",")
+
+    def tell(self, at: int) -> int:
+        """`tell me "hello"`: says it."""
+        told, words = find(self._vocabulary.telling, self._text.words, at), self._text.words
+        if told is None or words[told[1]][0] != '"' or self._saying is None:
+            return 0
+        said = self._saying_of(words[told[1]][1:])
+        self._tokens.append(Token("command", self._text.starts[at], self._text.ends[told[1]], said))
+        return told[1] + 1
+
+    def finding_out(self) -> None:
+        """`check whether A. If B, C`: what is checked decides nothing by itself, behind the `if` at the end."""
+        tokens, at = self._tokens, len(self._tokens) - 2
+        while at >= 0 and tokens[at].kind in _BETWEEN:
+            at -= 1
+        while at >= 0 and tokens[at].kind in _OF_CONDITIONS:
+            at -= 1
+        if at >= 0 and tokens[at].kind == "check":
+            written = self._text.source.text[tokens[at].start : tokens[at].end].lower()
+            if " ".join(written.split()) in self._vocabulary.asking["finding_out"]:
+                tokens.insert(at, Token("try", tokens[at].start, tokens[at].start))
+
+    def otherwise(self) -> None:
+        """`check that A, if not do B`: the `if not` at the end is for a command."""
+        tokens = self._tokens
+        if len(tokens) > 2 and tokens[-2].kind == "if" and tokens[-3].kind in ("comma", "condition", "command"):
+            tokens[-2:] = [Token("otherwise", tokens[-2].start, tokens[-1].end)]
 
     def _length(self, at: int) -> int:
         """How many words of the statement stand behind one."""

@@ -52,6 +52,10 @@ def without_meaning(
 
     What a command is for goes on as `then` would, and as `and` behind a constraint. `first` moves `but B` to the front.
     """
+    if text.words[at] in vocabulary.asking["going"] and at + 1 not in text.articles:
+        follows = longest(vocabulary.trie, text, at + 1, context)
+        if follows is not None and follows.meaning.role == "command":
+            return at + 1  # `go charge`
     if not tokens:
         return 0
     before = tokens[-1]
