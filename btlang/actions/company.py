@@ -70,6 +70,11 @@ def _somebody(robot: Meeting, person: str | None) -> str:
     return found
 
 
+def come_to_me(robot: Meeting, manner: str | None = None) -> Steps:
+    """Goes to who spoke last, else to the nearest person in view."""
+    yield from paced(robot, manner, travel(robot, _somebody(robot, None)))
+
+
 def follow(
     robot: Following,
     person: str | None = None,

@@ -8,13 +8,20 @@ from btlang.actions.joints import take
 from btlang.actions.motion import Steps
 from btlang.actions.navigation import accomplish, travel
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Hands, Joints, Navigation
-from btlang.robots.robot import Hand
+from btlang.robots.capabilities import Base, Hands, Joints, Navigation
+from btlang.robots.robot import Hand, RobotError
 from btlang.robots.world import said
+
+BESIDE = 1.0
+"""Metres from the robot within which something that it doesn't hold has been put down."""
 
 
 class Reaching(Joints, Hands, Protocol):
     """Arms with hands."""
+
+
+class Placing(Base, Reaching, Protocol):
+    """Arms with hands on a base."""
 
 
 class Fetching(Navigation, Reaching, Protocol):
@@ -62,8 +69,12 @@ def pick_up(robot: Fetching, object: str) -> Steps:
     yield from take(robot, "right arm carrying")
 
 
-def put_down(robot: Reaching, object: str | None = None) -> Steps:
-    """Lowers the arm that holds the object (or anything) and opens its hand. Fails where none does."""
+def put_down(robot: Placing, object: str | None = None) -> Steps:
+    """Lowers the arm that holds the object (or anything) and opens its hand. Fails where none does, unless the object
+    lies within reach: then it has been put down.
+    """
+    if object is not None and hand_with(robot, object) is None and _lies_here(robot, object):
+        return
     hand = _full_hand(robot, object)
     yield from take(robot, f"{hand} arm reaching")
     yield from accomplish(robot.release(hand))
@@ -78,6 +89,16 @@ def hand_with(robot: Hands, object: str | None = None) -> Hand | None:
         if held is not None and object in (None, held):
             return hand
     return None
+
+
+def _lies_here(robot: Placing, object: str) -> bool:
+    """Whether an object lies within reach, as far as the robot knows."""
+    if not robot.body.has("pose"):
+        return False
+    try:
+        return robot.pose.distance_to(robot.locate(object)) <= BESIDE
+    except RobotError:
+        return False
 
 
 def _full_hand(robot: Hands, object: str | None) -> Hand:

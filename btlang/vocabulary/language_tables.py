@@ -37,7 +37,8 @@ CHANGING = ("increase", "decrease")
 
 ASKING = (
     "journey", "search", "whereabouts", "counting", "asking_be", "asking_do", "answers", "feeling", "there",
-    "very", "states", "subject", "been", "towards", "going", "finding_out", "inspecting", "telling", "whole",
+    "very", "states", "subject", "been", "towards", "going", "finding_out",
+    "inspecting", "telling", "whole", "located", "wishing", "wished", "resuming", "interrupting",
     "if_yes", "if_no",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
@@ -88,7 +89,7 @@ EXPLAINED = (*(role for role in ROLES if role not in _UNEXPLAINED), "compare", "
 SWITCHES = frozenset(("decimal_comma",))
 
 WORD_LISTS = frozenset((
-    "articles", "titles", "politeness", "unit_joiner", "one_each", "every_second", "quantifiers",
+    "articles", "titles", "plural_pronouns", "politeness", "unit_joiner", "one_each", "every_second", "quantifiers",
     "halting", "asked_once", "relatives",
     "relative_denials", "particles", "fillers", "speaker", "subjects", "purpose", "determiners", "denials",
     "possessive_endings", "ones", "directions", "clause_openers", "clause_words", "sayings", "of_persons", "colored",
@@ -226,7 +227,8 @@ def _phrase_problems(kind: str, name: str, phrases: list[str], known: Mapping[st
 
 _LANGUAGE: dict[str, Any] = {
     "language": "", "decimal_comma": False,
-    "articles": [], "titles": [], "politeness": [], "unit_joiner": [], "one_each": [], "every_second": [],
+    "articles": [], "titles": [], "plural_pronouns": [], "politeness": [], "unit_joiner": [], "one_each": [],
+    "every_second": [],
     "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},
     "relations_to_self": {},
     "determiners": [], "denials": [], "possessive_endings": [], "ones": [], "directions": [],

@@ -120,6 +120,10 @@ class Lexicon:
         """The words of remarks: how somebody feels, that there is something, and what may be felt."""
         self.been = tree_of((words, True) for words in self.asking["been"])
         """The words of a journey that is behind somebody: `have been in`."""
+        self.asides: tuple[WordTree, ...] = tuple(
+            tree_of((words, True) for words in self.asking[name]) for name in ("interrupting", "resuming")
+        )
+        """What says in a standing rule that the rest waits, and that it goes on."""
         self.telling = tree_of((words, True) for words in self.asking["telling"])
         """The words before a text in quotes that is to be said: `tell me`."""
         self.replies = tree_of((words, is_yes) for name, is_yes in _REPLIES for words in self.asking[name])

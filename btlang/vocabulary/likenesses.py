@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from btlang.vocabulary.nouns import Description, Features
-from btlang.vocabulary.references import ALL, COUNT, DENIED, RELATIONS, Choice, Parts
+from btlang.vocabulary.references import ALL, COUNT, DENIED, NAMES, RELATIONS, Choice, Parts
 from btlang.vocabulary.value_type import OBJECT, PLACE
 
 
@@ -72,6 +72,8 @@ class Likenesses:
     def members(self, choice: Choice) -> tuple[str, ...] | None:
         """The names of a set where what is known of the world decides; None where only the robot can tell."""
         parts = dict(choice.parts)
+        if NAMES in parts:
+            return tuple(parts[NAMES].split(";"))
         denied = {part: parts.pop(part).split("; ") for part in DENIED if part in parts}
         if COUNT in parts or parts.keys() & RELATIONS.keys() or choice.type not in self.features:
             return None

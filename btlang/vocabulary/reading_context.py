@@ -10,7 +10,7 @@ from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.references import ALL, CHOICES, Choice, Parts, choice_of
-from btlang.vocabulary.value_type import WORLD, format_number
+from btlang.vocabulary.value_type import PLACE, WORLD, format_number
 from btlang.vocabulary.values import Values, key_of
 from btlang.vocabulary.word_tree import find
 
@@ -37,14 +37,16 @@ class ReadingContext:
     """
 
     __slots__ = (
-        "_most_words", "before", "deniable", "denials", "joiners", "keys", "known", "lacked", "latest", "manners",
-        "met", "modifiers", "openers", "pronouns", "same", "set_starts", "starts", "types", "untyped", "values",
+        "_most_words", "before", "deniable", "denials", "joiners", "keys", "known", "lacked", "latest", "listed",
+        "manners", "met", "modifiers", "openers", "pronouns", "same", "set_starts", "starts", "types", "untyped",
+        "values",
     )  # fmt: skip
 
     def __init__(self, values: Values, known: Mapping[str, Known] | None = None) -> None:
         self.values = values
         self.types, self.joiners, self.pronouns = values.types, values.joiners, values.pronouns
-        self.starts, self.modifiers = values.choice_starts, values.modifiers.starts
+        self.starts = values.choice_starts
+        self.modifiers = values.modifiers.starts | {word for word, of in self.pronouns.items() if tuple(of) == (PLACE,)}
         self.set_starts = values.choice_starts | values.group_starts
         """The words of letters alone at which a set of names may begin."""
         self.denials, self.deniable = frozenset(values.adjectives.denials), values.deniable
@@ -54,6 +56,8 @@ class ReadingContext:
         self.latest: dict[str, str] = {}
         self.same: dict[int, int] = {}
         """Where what is read is the latest of its type once more, with the words that it ends at."""
+        self.listed: dict[str, str] = {}
+        """Where the latest values of a type are a list, the set of them."""
         self.lacked = False
         self.met: set[str] = set()
         self.keys: Mapping[str, str] = {}
@@ -136,7 +140,12 @@ class ReadingContext:
         if choice is None and written[:1] in ("", "{", "("):
             return
         how, parts = (choice.how, choice.parts) if choice is not None else ("nearest", ((NAME, written),))
+        there = self.latest.get(PLACE, "") if kind == PLACE and PLACE in self.pronouns.get(text.words[end], ()) else ""
+        if there and there[:1] != "{" and self.values.likenesses.may_say(kind, parts, (("inside", there),)):
+            yield self._described(kind, how, (*parts, ("inside", there))), end + 1  # `on the table there`
         for more, last in self.values.modifiers.behind(kind, text, end, self.values.names_tree):
+            if text.words[at] in self.values.pronoun_words and any(part != "off" for part, _ in more):
+                continue  # `put it on the table` isn't about what is on the table
             if self.values.likenesses.may_say(kind, parts, more):
                 yield self._described(kind, how, (*parts, *more)), last
 
@@ -253,5 +262,7 @@ class ReadingContext:
         """What a pronoun stands for."""
         word, end = find(self.values.pronoun_words, text.words, at) or ("", at)
         is_one = kind in self.pronouns.get(word, ())
+        if is_one and kind in self.listed and word in self.values.plural_pronouns:
+            return self.listed[kind], end
         self.lacked |= is_one and kind not in self.latest
         return (self.latest[kind], end) if is_one and kind in self.latest else None

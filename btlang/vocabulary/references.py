@@ -17,6 +17,8 @@ CHOICES = ("nearest", "seen", "random", *SIZED)
 ALL = "all"
 """In place of such a way: all names that are meant, one after the other. The part "count" says how many."""
 COUNT = "count"
+NAMES = "names"
+"""The part of such a choice that lists its names itself, with a semicolon between them."""
 Parts = tuple[tuple[str, str], ...]
 """What something is like, sorted: ("color", "red")."""
 _PIECE = r"(?P<mark>\{\{|\}\})|\{(?P<name>[^{}]+)\}|(?P<text>[^{}]+|[{}])"  # compiled when a text needs it

@@ -65,7 +65,7 @@ class Texts:
     def _end_of_several(self, text: Words, at: int) -> int:
         """Where a clause or saying ends that begins at a word, 0 for none."""
         if at and text.words[at - 1] in self._openers:
-            return self._end_of_clause(text, at)
+            return self.end_of_clause(text, at)
         found = find(self._sayings, text.words, at) if text.words[at] in self._sayings else None
         return found[1] if found is not None else 0
 
@@ -90,7 +90,8 @@ class Texts:
         behind = text.source.text[text.begin(front[1]) : text.ends[last - 1]]
         return f"{front[0][0].upper()}{front[0][1:]} {behind}?"
 
-    def _end_of_clause(self, text: Words, at: int) -> int:
+    def end_of_clause(self, text: Words, at: int) -> int:
+        """Where the clause ends that begins at a word, 0 where it is one word."""
         end = at
         while text.words[end] not in _ENDS:
             if find(self._then, text.words, end + (text.words[end] == ",")) is not None:

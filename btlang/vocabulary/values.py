@@ -46,6 +46,8 @@ class Values(Measures):
         """The first words of what stands between the values of a list."""
         self.pronouns: Mapping[str, Sequence[str]] = language["pronouns"]
         """Words that stand for the latest value of a type, each with the types that it may be of."""
+        self.plural_pronouns = frozenset(language["plural_pronouns"])
+        """Those that stand for a list, too."""
         self.pronoun_words = tree_of((words, words) for words in self.pronouns)
         self._names: dict[str, WordTree] = {}
         self._listed: dict[str, dict[str, None]] = {}

@@ -33,6 +33,7 @@ NEEDS = {
     "TakePictureOfPerson": ("I don't see Alice", "go to Alice"),
     "TakePictureOfObject": ("I don't see the cup", "approach the cup"),
     "Ask": ("Alice didn't answer", "go to Alice"),
+    "ComeToMe": ("I see nobody", "go to Alice"),
     "LookAtObject": ("the cup is behind the robot; the head can't turn that far", "face the cup"),
 }
 UNKNOWN_AT_THE_START = {"Answer", "Count"}
@@ -167,7 +168,7 @@ def test_help_on_a_phrase_tells_all() -> None:
     expected = """\
 charge [to {percent}]
     Docks and waits until the battery is full or reaches the percentage.
-    also: charge/recharge [up] [to {percent}]
+    also: charge/recharge [up] [to [at least] {percent}]
           charge/recharge battery [to {percent}]
           charge/recharge [fully] until full
           charge/recharge [fully] until it is full/charged

@@ -1,6 +1,7 @@
 """BT068: conditions that are asked only once, where people expect the robot to keep an eye on them.
 
-`When C, A` as a whole statement, and `stop when C`, which can stop nothing: the commands before it have ended.
+`When C, A` as a whole statement, and `stop when C`, which can stop nothing: the commands before it have ended. The same
+where C is about a journey that is over: `bring the cup to Bob. If he isn't there, ...`.
 """
 
 from __future__ import annotations
@@ -11,7 +12,10 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.text.source import Span
 from btlang.tree import ast
+from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.lexicon import Lexicon
+
+_ON_THE_WAY = "SomeoneInTheWay"
 
 
 def asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
@@ -23,7 +27,31 @@ def asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
             if type(node) is ast.Chain and node.operator == "sequence":
                 before.update((id(item), other) for other, item in zip(node.items, node.items[1:], strict=False))
             if type(node) is ast.If and not node.negated and node.otherwise is None and _is_statement(node):
-                yield from _warning(node, before.get(id(node)), vocabulary)
+                warnings = list(_warning(node, before.get(id(node)), vocabulary))
+                yield from warnings or _too_late(node, before.get(id(node)), vocabulary)
+
+
+def _too_late(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+    """A condition that decides about the journey before it, or watches what happens on it."""
+    asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
+    if not (isinstance(before, ast.Phrase) and isinstance(asked, ast.Phrase) and MOVES in before.entry.resources):
+        return
+    words = node.span.source.text[node.span.start : node.condition.span.end]
+    if asked.entry.id == _ON_THE_WAY:
+        word = words.split(maxsplit=1)[0]
+        each = f"{vocabulary.word('whenever')} {node.span.text[len(word) :].lstrip()}"
+        advice = f"'{before.span.text}' is over by then. To do it on the way, write: {each}"
+        yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((node.span, each),))
+    elif isinstance(node.condition, ast.Not) and _people(before) & _people(asked):
+        advice = (
+            f"'{before.span.text}' comes first, and fails if it can't be done. What decides about it stands before it."
+        )
+        yield diagnostic("BT068", node.span, words=words, advice=advice)
+
+
+def _people(phrase: ast.Phrase) -> set[str]:
+    types = {slot.name: slot.type for slot in phrase.entry.slots}
+    return {text for name, text in phrase.arguments if types.get(name) == "person"}
 
 
 def _is_statement(node: ast.If) -> bool:

@@ -171,6 +171,10 @@ def _header(
         start == at and text.words[at] in asking["asking_be"] and (start == first or text.words[start - 1] == ",")
     ):
         return None
+    telling = {phrase.split()[0] for phrase in asking["telling"]}
+    said = text.words[start : max(at - 2, start)]
+    if is_weak and "{" not in said and not telling.isdisjoint(said):
+        return None  # `tell Bob dinner is ready`
     if " ".join(text.words[start : at + 1]) in (*asking["there"], *asking["feeling"]):
         return None  # a remark
     values = phrases.vocabulary.values

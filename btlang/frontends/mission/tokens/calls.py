@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.symbols.nodes import read_details
 from btlang.frontends.mission.token import Called, Listed, Token
 from btlang.frontends.mission.tokens.two_goals import two_goals
 from btlang.text.source import Span
@@ -14,7 +15,8 @@ from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.references import choice_of, keys_in, point_ports, renamed
+from btlang.vocabulary.references import ALL, NAMES, Choice, choice_of, keys_in, point_ports, renamed
+from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.value_type import PLACE, WORLD
 from btlang.vocabulary.values import key_of
 
@@ -40,6 +42,7 @@ class Calls:
 
     def __init__(self, text: Words, vocabulary: Lexicon, context: ReadingContext, problems: list[Diagnostic]) -> None:
         self._text, self._vocabulary, self._context, self.problems = text, vocabulary, context, problems
+        self._lists: dict[str, tuple[Token, SlotValue]] = {}
         self._owners = not text.distinct.isdisjoint(vocabulary.values.names_tree(OWNER))
 
     def token(self, match: Match, at: int) -> Token:
@@ -56,10 +59,67 @@ class Calls:
             end = text.articles[match.last][1]
         if meaning.entry is not None:
             kind = "condition" if meaning.role in NEGATED else meaning.role
-            return Token(kind, start, end, self._called(meaning.entry, match, at))
+            match = self._with_lists(match) if self._context.listed else match
+            made = Token(kind, start, end, self._called(meaning.entry, match, at))
+            if isinstance(made.value, Listed) and made.value.joiner in ("and", "") and kind == "command":
+                listed = next(value for value in match.values if value.more)
+                self._lists = {listed.type: (made, listed)}
+            return made
         if values:
             return Token(meaning.role, start, end, values[0].text)
         return Token(meaning.role, start, end, str(meaning.value) if meaning.role == "count" else None, meaning.between)
+
+    def with_details(self, token: Token, at: int, names: TrieNode) -> int:
+        """Adds what `called` and `with` say of the phrase before a word to its token. Returns where to go on."""
+        said = token.value
+        if not isinstance(said, Called) or said.entry.sort not in ("action", "condition"):
+            return at
+        if longest(self._vocabulary.trie, self._text, at, self._context) is not None:
+            return at  # `with 5 s in between`
+        read = read_details(self._text, at, dict(said.arguments), self._vocabulary, names)
+        if read is None:
+            return at
+        token.value, token.end = said.replace(details=read[0]), self._text.ends[read[1] - 1]
+        return read[1]
+
+    def end_statement(self) -> None:
+        """A round doesn't reach beyond its statement: there `them` is another one of the same things."""
+        self._lists.clear()
+
+    def is_round(self, token: Token, goal: str) -> bool:
+        """Whether a command is done once for each thing of a set, or of a list that is made one: `goal`."""
+        choice = choice_of(goal)
+        if choice is not None and choice.type in self._lists and self._lists[choice.type][0] is token:
+            self._make_round(choice, self._lists.pop(choice.type))
+            return True
+        said = token.value
+        texts = [text for _, text in said.arguments] if isinstance(said, Called) else []
+        return any(of is not None and of.how == ALL and f"{{{of.key}}}" == goal for of in map(choice_of, texts))
+
+    def _make_round(self, choice: Choice, made: tuple[Token, SlotValue]) -> None:
+        """Makes a set of the list that a command has, whose thing is from there on that of the round."""
+        token, value = made
+        assert isinstance(token.value, Listed)
+        arguments = dict(token.value.arguments[0]) | {value.name: choice.text}
+        token.value = Called(token.value.entry, tuple(arguments.items()))
+        self._context.latest[choice.type] = f"{{{choice.key}}}"
+        self._context.listed.pop(choice.type, None)
+
+    def _with_lists(self, match: Match) -> Match:
+        """The same, with the thing of each round in the place of a pronoun for a list."""
+        values = []
+        for value in match.values:
+            if value.text in self._context.listed.values():
+                choice, made = choice_of(value.text), self._lists.pop(value.type, None)
+                assert choice is not None
+                if made is not None and isinstance(made[0].value, Listed):
+                    self._make_round(choice, made)
+                    value = value.replace(text=f"{{{choice.key}}}")
+                else:
+                    value = value.replace(group=value.text)
+            values.append(value)
+        changed: Match = match.replace(values=tuple(values))
+        return changed
 
     def note(self, match: Match, is_alternative: bool = False) -> None:
         """What pronouns stand for from here on: of alternatives only the run knows which one it was."""
@@ -75,6 +135,11 @@ class Calls:
             if value.more and (value.joiner == "or" or (entry is not None and entry.first and value.type == PLACE)):
                 self._context.latest.pop(value.type, None)
                 continue
+            self._context.listed.pop(value.type, None)
+            if value.more and not value.group and not any(text[:1] in _ODD for text in (value.text, *value.more)):
+                names = (NAMES, ";".join((value.text, *value.more)))
+                key = self._context.keys.get(value.type, value.type)
+                self._context.listed[value.type] = Choice(ALL, value.type, key, (names,)).text
             latest = value.group or (value.more[-1] if value.more else value.text)
             choice = choice_of(latest) if latest[:1] == "{" else None
             if choice is not None:

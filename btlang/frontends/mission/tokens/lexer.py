@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.names import Load, Names
-from btlang.frontends.mission.symbols.nodes import Unreadable, read_details, read_node, unreadable
+from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
-from btlang.frontends.mission.token import RULES, Called, Token, constraint_of, go_on
+from btlang.frontends.mission.token import RULES, Token, constraint_of, go_on
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_names import condition_names, settle
 from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
@@ -18,7 +18,14 @@ from btlang.frontends.mission.tokens.order_words import OrderWords
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
 from btlang.frontends.mission.tokens.remarks import Remarks
 from btlang.frontends.mission.tokens.requests import Requests
-from btlang.frontends.mission.tokens.silent_words import MARKS, after_politeness, begins, begins_item, without_meaning
+from btlang.frontends.mission.tokens.silent_words import (
+    MARKS,
+    after_politeness,
+    begins,
+    begins_item,
+    begins_question,
+    without_meaning,
+)
 from btlang.frontends.mission.tokens.unknown_words import UnknownWords
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, Words, split
@@ -37,6 +44,7 @@ _CONDITIONS = frozenset(("condition", *NEGATED))
 _JOINING = ("and", "or")
 _REPLIES = ("if_works", "otherwise")
 _BRANCHES = ("if", "unless")
+_JOINTS = ("comma", "and", "then")
 _BEFORE_CONDITIONS = frozenset(("if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "not"))
 """Behind these a polite word could be a misspelt one: `wave if now bumped`."""
 
@@ -163,9 +171,13 @@ class Lexer:
                 else:
                     header = headers[at]
                     context.latest.clear()
+                    context.listed.clear()
                     self._is_apart = True
                     tokens.append(Token("define", starts[at], ends[header.body - 1], header))
                     at = header.body
+                continue
+            if self._is_apart and tokens and tokens[-1].kind in _JOINTS and (end := self._order.aside(at)):
+                at = end
                 continue
             if word in MARKS:
                 tokens.append(Token(MARKS[word], starts[at], ends[at]))
@@ -201,7 +213,7 @@ class Lexer:
             if match is not None and role == "never" and word in self._before_doing:
                 if self._unknown.lack_name(at, match.last):
                     match, role = None, ""
-            if (role in QUESTIONS or word in asking) and begins(tokens):
+            if (role in QUESTIONS or word in asking) and begins_question(tokens, role in QUESTIONS):
                 end = self._requests.question(match, role, at)
                 if end:
                     at = end
@@ -215,6 +227,11 @@ class Lexer:
                     continue
             if role in NOT_ALONE or word in verb_forms:
                 end = self._in_its_place(match, role, at)
+                if end:
+                    at = end
+                    continue
+            if (match is None or role == "condition") and tokens and tokens[-1].kind == "command":
+                end = self._order.at_goal(at)
                 if end:
                     at = end
                     continue
@@ -291,7 +308,7 @@ class Lexer:
                     if len(tokens) > 1 and tokens[-2].kind == "while" and constraint_of(tokens[-1]) is not None:
                         tokens[-2].kind = "while_doing"  # `while avoiding the kitchen`
                 if words[match.last] in self._details and match.meaning.entry is not None:
-                    at = self._with_details(match.last)
+                    at = calls.with_details(tokens[-1], match.last, self.names.definitions.trie)
                     calls.note(match)
                     continue
                 if role in meanings_of:
@@ -299,7 +316,7 @@ class Lexer:
                 if role in RULES:
                     self._is_apart = True
                 if role in _BRANCHES:
-                    self._requests.finding_out()
+                    self._requests.finding_out(match.last)
                 if role == "if_fails":
                     tokens[-1].kind, tokens[-1].value = "or", role
                 if role in _ROLES:
@@ -310,28 +327,17 @@ class Lexer:
 
     def _end_statement(self) -> None:
         """Pronouns reach back to earlier statements, but not out of a definition or a standing rule."""
+        self._calls.end_statement()
         if self._is_apart:
             self.context.latest.clear()
+            self.context.listed.clear()
             self._is_apart = False
-
-    def _with_details(self, at: int) -> int:
-        """Adds what `called` and `with` say of the phrase before a word to its token. Returns where to go on."""
-        token, text = self.tokens[-1], self.text
-        said = token.value
-        if not isinstance(said, Called) or said.entry.sort not in ("action", "condition"):
-            return at
-        if longest(self.vocabulary.trie, text, at, self.context) is not None:
-            return at  # `with 5 s in between`
-        read = read_details(text, at, dict(said.arguments), self.vocabulary, self.names.definitions.trie)
-        if read is None:
-            return at
-        token.value, token.end = said.replace(details=read[0]), text.ends[read[1] - 1]
-        return read[1]
 
     def _in_its_place(self, match: Match | None, role: str, at: int) -> int:
         """Words that say something in one place only, and forms of verbs. Returns where to go on, 0 for any other."""
         text, tokens = self.text, self.tokens
         if match is not None and role in ORDER:
+            self._is_apart |= role == "any_time"
             return self._order.read(match, at)
         if role == "ordinal" and match is not None and at not in text.articles and begins_item(tokens):
             return match.last + (text.words[match.last] == ",")

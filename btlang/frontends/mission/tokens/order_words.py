@@ -5,12 +5,15 @@ An arrival goes on as `then` would. A journey behind `on the way to` or `from` b
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from btlang.frontends.mission.token import RULES, Called, Listed, Token, constraint_of
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
+from btlang.vocabulary.value_type import PLACE
 from btlang.vocabulary.word_tree import find
 
 _JOINTS = frozenset(("and", "comma", "then"))
@@ -38,9 +41,9 @@ class OrderWords(SentenceReader):
             return self._tries(match, at)
         return self._back_and_forth(at, match.last) if role == "back_and_forth" else self._arrival(match, at)
 
-    def _journey(self) -> Token | None:
+    def _journey(self, tokens: Sequence[Token] | None = None) -> Token | None:
         """The latest command that drives."""
-        for token in reversed(self._tokens):
+        for token in reversed(self._tokens if tokens is None else tokens):
             if token.kind == "define":
                 return None
             value = token.value
@@ -87,9 +90,10 @@ class OrderWords(SentenceReader):
         if journey is None or self._is_end(journey.last) or any("{" in value.text for value in journey.values):
             return 0  # `from your room` isn't where it starts
         behind = journey.last + (words[journey.last] == ",")
+        joint = longest(self._vocabulary.trie, self._text, behind, self._context)
         self._partial.append(journey, at)
         tokens.append(Token("then", self._text.ends[journey.last - 1], self._text.ends[journey.last - 1]))
-        return behind
+        return joint.last if joint is not None and joint.meaning.role in ("and", "then") else behind
 
     def start_of_leg(self, at: int) -> int:
         """`go from the lab to the hall`, by the verb at a word."""
@@ -121,6 +125,45 @@ class OrderWords(SentenceReader):
         self._tokens.append(Token("then", joint, joint))
         self._partial.append(waiting, journey.last)
         return waiting.last
+
+    def at_goal(self, at: int) -> int:
+        """`go to the lab and wave there`, `visit every room and wave in each of them`: where the robot is by then."""
+        tokens, text, context = self._tokens, self._text, self._context
+        first = at + (text.words[at] in self._vocabulary.asking["located"])
+        pronoun = find(context.values.pronoun_words, text.words, first)
+        if pronoun is None or PLACE not in context.pronouns[pronoun[0]]:
+            return 0
+        journey = self._journey(tokens[:-1])
+        if journey is None or not (self._is_end(pronoun[1]) or text.words[pronoun[1]] == ","):
+            return 0
+        is_plural = pronoun[0] in context.values.plural_pronouns
+        goal = (context.listed.get(PLACE) if is_plural else None) or context.latest.get(PLACE)
+        if goal is None:
+            return 0
+        if goal[:1] == "{":
+            if tokens[-2].kind != "and" or not self._calls.is_round(journey, goal):
+                return 0
+        elif not _leads_to(journey, goal):
+            return 0
+        return pronoun[1]
+
+    def aside(self, at: int) -> int:
+        """`whenever A, interrupt, B, then continue`: what a standing rule does by itself."""
+        tokens, words = self._tokens, self._text.words
+        interrupting, resuming = self._vocabulary.asides
+        found = find(resuming, words, at)
+        if found is not None and self._is_end(found[1]) and any(token.kind == "command" for token in tokens[-3:]):
+            while tokens[-1].kind in _JOINTS:
+                tokens.pop()
+            return found[1]
+        found = find(interrupting, words, at) if tokens[-1].kind == "comma" else None
+        if found is None or tokens[-2].kind != "condition":
+            return 0
+        behind = found[1] + (words[found[1]] == ",")
+        joint = longest(self._vocabulary.trie, self._text, behind, self._context)
+        if joint is not None and joint.meaning.role in ("and", "then"):
+            return joint.last
+        return behind if behind > found[1] else 0
 
     def is_doing(self, at: int) -> bool:
         """Whether the form of a verb stands at a word: `keep going back and forth`."""

@@ -13,12 +13,12 @@ from btlang.vocabulary.entry import COUNT, SAY, Entry
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.references import free_key
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import TEXT
+from btlang.vocabulary.value_type import OBJECT, TEXT
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import find
 
 _MOST_WORDS = 8  # of the subject of a question
-_ASK, _ANSWERED = "Ask", "AnswerIs"
+_ASK, _ANSWERED, _TELL = "Ask", "AnswerIs", "TellPerson"
 _SOMEBODY = "may be somebody else for whoever hears it"
 _NEXT = "may be a part of it, or go on with the mission"
 _NO_QUESTION = "begins no question that I know"
@@ -26,6 +26,10 @@ _PERSON = "is a person, and the question is missing"
 _BEHIND = ("politeness", "then", "and")
 _BETWEEN = frozenset(("semi", "newline", "comma", "then", "and", "stop"))
 _OF_CONDITIONS = frozenset(("condition", "not", "and", "or", "either", "neither", "nor", "both"))
+
+
+def _text(argument: tuple[str, str]) -> str:
+    return argument[1]
 
 
 class Requests(SentenceReader):
@@ -60,6 +64,13 @@ class Requests(SentenceReader):
         if asked is not None and asked.meaning.role == "ask_how_many":
             counted = self._counted(asked.last)
             return self._say_count(at, counted, command, value.name) if counted is not None else 0
+        if entry.id == _TELL and value.last == match.last and self._goes_on(match.last):
+            return self._tell(entry, value, command)
+        if text.words[at] in self._vocabulary.asking["wishing"] and first in text.articles and value.last > first + 1:
+            have = self._vocabulary.asking["wished"][0].capitalize()
+            wish = text.source.text[text.begin(first) : text.ends[value.last - 1]]
+            self._set_text(command, value.name, f"{have} {wish}")
+            return 0
         if first not in text.articles or value.last != first + 1:
             return 0
         is_last = value.last == match.last
@@ -79,6 +90,22 @@ class Requests(SentenceReader):
         self._say(at, measured, command, value.name)
         return measured.last if is_last else match.last
 
+    def _goes_on(self, at: int) -> bool:
+        """Whether words follow that are neither a mark nor begin anything."""
+        is_mark = self._is_end(at) or self._text.words[at] in (",", ":")
+        return not is_mark and longest(self._vocabulary.trie, self._text, at, self._context) is None
+
+    def _tell(self, entry: Entry, value: SlotValue, command: Token) -> int:
+        """`tell Bob dinner is ready`: a clause without a word before it."""
+        text, texts = self._text, self._vocabulary.values.texts
+        end = texts.end_of_clause(text, value.first)
+        if not end or self._doubt(entry, texts.doubt(text, value.first, end)):
+            return 0
+        self._set_text(command, value.name, text.source.text[text.begin(value.first) : text.ends[end - 1]])
+        command.end = text.ends[end - 1]
+        self._tokens.append(command)
+        return end
+
     def _ask(self, entry: Entry, value: SlotValue, command: Token) -> None:
         """`ask Bob if he is hungry`: the question that the clause stands for."""
         values, text, at = self._vocabulary.values, self._text, value.first
@@ -87,6 +114,11 @@ class Requests(SentenceReader):
                 self._doubt(entry, at, _PERSON)
             return
         question = values.texts.direct(text, at, value.last)
+        for place in range(at, value.last):  # `ask Bob if he wants the cup. If so, bring it`
+            for kind in (OBJECT, "door"):
+                named = find(values.names_tree(kind), text.words, place)
+                if named is not None:
+                    self._context.latest[kind] = named[0]
         if question is not None:
             self._set_text(command, value.name, question)
         elif not self._doubt(entry, values.texts.doubt(text, at + 1, value.last)):
@@ -141,7 +173,18 @@ class Requests(SentenceReader):
     def _how_many(self, at: int, end: int) -> int:
         """`how many people are there?`"""
         counted = self._counted(end)
-        return self._say_count(at, counted) if counted is not None and self._ends(counted.last) else 0
+        if counted is None:
+            return self._say_last_count(at, end)
+        return self._say_count(at, counted) if self._ends(counted.last) else 0
+
+    def _say_last_count(self, at: int, end: int) -> int:
+        """`count the boxes, then tell me how many there are`: what was counted."""
+        behind, count = longest(self._vocabulary.trie, self._text, end, self._context), self._vocabulary.entry(COUNT)
+        if behind is None or behind.meaning.role != "there_are" or count is None or not self._ends(behind.last):
+            return 0
+        measured = Match(behind.meaning.replace(role="quantity", entry=count), behind.last)
+        self._say(at, measured)
+        return behind.last
 
     def _counted(self, at: int) -> Match | None:
         """The command that counts what words name, with the words that may stand behind that."""
@@ -233,8 +276,11 @@ class Requests(SentenceReader):
         self._tokens.append(Token("command", self._text.starts[at], self._text.ends[told[1]], said))
         return told[1] + 1
 
-    def finding_out(self) -> None:
-        """`check whether A. If B, C`: what is checked decides nothing by itself, behind the `if` at the end."""
+    def finding_out(self, end: int) -> None:
+        """`check whether A. If B, C`: what is checked decides nothing by itself, behind the `if` that ends at a word.
+
+        `check that A. If B, C` is the same where both are about one thing.
+        """
         tokens, at = self._tokens, len(self._tokens) - 2
         while at >= 0 and tokens[at].kind in _BETWEEN:
             at -= 1
@@ -242,7 +288,10 @@ class Requests(SentenceReader):
             at -= 1
         if at >= 0 and tokens[at].kind == "check":
             written = self._text.source.text[tokens[at].start : tokens[at].end].lower()
-            if " ".join(written.split()) in self._vocabulary.asking["finding_out"]:
+            following = longest(self._vocabulary.trie, self._text, end, self._context)
+            asked = {value.text for value in following.values} if following is not None else set()
+            same = any(asked.intersection(map(_text, getattr(token.value, "arguments", ()))) for token in tokens[at:])
+            if " ".join(written.split()) in self._vocabulary.asking["finding_out"] or same:
                 tokens.insert(at, Token("try", tokens[at].start, tokens[at].start))
 
     def otherwise(self) -> None:

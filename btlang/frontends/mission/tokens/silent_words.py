@@ -30,6 +30,11 @@ def begins_item(tokens: Sequence[Token]) -> bool:
     return not tokens or tokens[-1].kind in BEGINS
 
 
+def begins_question(tokens: Sequence[Token], has_word: bool) -> bool:
+    """Whether a question may begin behind these tokens; one that `has_word` of its own may be joined, too."""
+    return begins(tokens) or (has_word and tokens[-1].kind in ("comma", "then", "and"))
+
+
 def after_politeness(tokens: list[Token], words: Sequence[str], match: Match) -> int:
     """Politeness is left out with the comma beside it: `Robot, go home, please`. Returns where to go on."""
     if tokens and tokens[-1].kind == "comma" and words[match.last] in (",", ";", ")", END_OF_TEXT):
