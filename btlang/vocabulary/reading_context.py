@@ -10,7 +10,7 @@ from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.references import ALL, CHOICES, Choice, Parts, choice_of
-from btlang.vocabulary.value_type import PLACE, WORLD, format_number
+from btlang.vocabulary.value_type import DOOR, PLACE, WORLD, format_number
 from btlang.vocabulary.values import Values, key_of
 from btlang.vocabulary.word_tree import find
 
@@ -100,6 +100,7 @@ class ReadingContext:
             named = self._named_after(kind, text, at) if text.words[at] in self.before else None
             if named is None and not self.values.ones.isdisjoint(text.distinct):
                 named = self.values.antecedents.named(kind, text, at)
+            named = named or self._said_again(kind, text, at)
             return named if named is not None and (chosen is None or named[1] > chosen[1]) else chosen
         return chosen if found is None or (chosen is not None and chosen[1] > found[1]) else found
 
@@ -258,10 +259,26 @@ class ReadingContext:
         choice = Choice(chosen[0].how, kind, self.keys.get(kind, kind), chosen[0].parts)
         return choice.text if self.values.listed(kind) or self.known is None else "", chosen[1]
 
+    def _said_again(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
+        """`the door` for the door that was said before, by the last word of its name."""
+        latest = self.latest.get(kind, "") if kind == DOOR and at in text.articles else ""
+        return (latest, at + 1) if latest.lower().endswith(f" {text.words[at]}") else None
+
+    def _another(self, kind: str, text: Words, end: int) -> tuple[str, int] | None:
+        """What `one` alone is: a thing of the kind of the latest one, or the thing itself where it has no kind."""
+        latest, behind = self.latest.get(kind, "{"), text.words[end]
+        goes_on = behind in self.modifiers or not behind[0].isalpha() or behind in self.joiners
+        if latest[:1] == "{" or not goes_on:
+            return None
+        of = self.values.likenesses.kind_of(kind, latest)
+        return self._described(kind, "nearest", (("kind", of),)) if of else latest, end
+
     def _referred(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """What a pronoun stands for."""
         word, end = find(self.values.pronoun_words, text.words, at) or ("", at)
         is_one = kind in self.pronouns.get(word, ())
+        if is_one and word in self.values.ones:
+            return self._another(kind, text, end)
         if is_one and kind in self.listed and word in self.values.plural_pronouns:
             return self.listed[kind], end
         self.lacked |= is_one and kind not in self.latest

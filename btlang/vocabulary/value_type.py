@@ -10,6 +10,7 @@ TEXT = "text"
 PLACE = "place"
 """The type whose values can be points, too."""
 OBJECT = "object"
+DOOR = "door"
 WORLD = (PLACE, "person", OBJECT, "zone", "door")
 """The types of names that have a place: robots know where each one is."""
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import chain
 from marshal import dumps, loads  # a copy of a trie, at a tenth of the time that importing `copy` takes
 
 from btlang.text.source import Source
@@ -24,7 +23,7 @@ from btlang.vocabulary.references import ALL, COUNT, DENIED, RELATIONS, Choice, 
 from btlang.vocabulary.role_words import role_words
 from btlang.vocabulary.shared_heads import SharedHeads
 from btlang.vocabulary.texts import Texts
-from btlang.vocabulary.value_type import PLACE, ValueType, format_number
+from btlang.vocabulary.value_type import DOOR, PLACE, ValueType, format_number
 from btlang.vocabulary.word_tree import END, WordTree, find, insert, tree_of
 
 TYPE_CHECKING = False
@@ -131,11 +130,13 @@ class Values(Measures):
             numbers, firsts = self._number_starts, self.shared_heads.plural_firsts
             quantities = numbers | self._joiner | self._units.keys() | self._every_second
             self._openers = {
-                kind: frozenset(chain(tree, self.pronoun_words, self.choice_starts, self.group_starts, firsts(kind)))
+                kind: frozenset((*tree, *self.pronoun_words, *self.choice_starts, *self.group_starts, *firsts(kind)))
                 for kind, tree in self._names.items()
             }
             if PLACE in self._openers:
                 self._openers[PLACE] |= {"("}
+            if DOOR in self._openers:  # `the kitchen door`, then `the door`
+                self._openers[DOOR] |= {name.lower().rpartition(" ")[2] for name in self.listed(DOOR) if " " in name}
             for kind, value_type in self.types.items():
                 if value_type.kind in ("number", "quantity"):
                     self._openers[kind] = numbers if value_type.kind == "number" else quantities

@@ -15,7 +15,7 @@ from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.mission.grouping import constraints, lists, operands, operators, problems
 from btlang.frontends.mission.grouping.conditions import CONDITION_FORMS, STARTS_OPERAND, after_condition
 from btlang.frontends.mission.grouping.scan import Scan, Unit
-from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Token
+from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, RULES, Token
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.vocabulary.language_tables import CONNECTIVES
@@ -86,6 +86,7 @@ _OPERATOR: dict[str, Callable[[Scan, Token], None]] = {
     ),
     **dict.fromkeys(CONDITION_FORMS, operators.form_after),
     **dict.fromkeys(STARTS_OPERAND, problems.side_by_side),
+    **dict.fromkeys(RULES, operators.rule_after),
     "in_parallel": operators.at_the_same_time,
     "nor": lists.stray,
     "never": problems.without,

@@ -279,6 +279,23 @@ def form_after(scan: Scan, token: Token) -> None:
     scan.next(token, True)
 
 
+def rule_after(scan: Scan, token: Token) -> None:
+    """`stop whenever C`: a standing rule whose one command stands before its condition."""
+    entry = scan.stack[-1]
+    is_statement = entry.kind in ("top", "block") and entry.separator == "SEMI" and entry.statement == "open"
+    end = next(at for at in range(scan.at, len(scan.raw)) if scan.raw[at].kind in ENDS)
+    is_condition = all(each.kind not in ("then", "comma", "command", "otherwise") for each in scan.raw[scan.at : end])
+    is_one = len(scan.out) == entry.begins + 1 and scan.out[-1].kind == "COMMAND"
+    if not (is_statement and is_condition and is_one):
+        side_by_side(scan, token)
+        return
+    is_first = entry.commands == entry.begins
+    entry.mixed |= not is_first
+    form_after(scan, token)
+    if is_first:
+        entry.commands = None
+
+
 def repeat_after(scan: Scan, token: Token) -> None:
     """`go home repeat until C`: the word belongs to `until`."""
     following = scan.raw[scan.at + 1]

@@ -43,7 +43,6 @@ _NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
 _CONDITIONS = frozenset(("condition", *NEGATED))
 _JOINING = ("and", "or")
 _REPLIES = ("if_works", "otherwise")
-_BRANCHES = ("if", "unless")
 _JOINTS = ("comma", "and", "then")
 _BEFORE_CONDITIONS = frozenset(("if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "not"))
 """Behind these a polite word could be a misspelt one: `wave if now bumped`."""
@@ -101,6 +100,7 @@ class Lexer:
             self._verb_forms |= {word for word in self.text.distinct if word.endswith(endings)}
         self._before_doing = {phrase.split()[0] for phrase in self.vocabulary.roles["without_entering"]}
         self._asking = {*self.vocabulary.asking["asking_be"], *self.vocabulary.asking["asking_do"]}
+        self._once = frozenset(self.vocabulary.roles["once"])
         self._joint = self.vocabulary.word("and")
         self._is_apart = False  # the statement that is read runs at another time than the next one
         self._unknown = UnknownWords(
@@ -191,6 +191,8 @@ class Lexer:
                     match = longest(trie, text, at, context, names)  # a name may end the list
             else:
                 match = longest(trie, text, at, context, names)
+            if match is not None and words[match.last - 1] in self._once and match.meaning.role == "command":
+                match = self._order.before_once(match, at)
             if match is not None and match.meaning.role in NODE_ROLES:
                 end = self._node(match, at)
                 if end:
@@ -315,7 +317,7 @@ class Lexer:
                     tokens[-1].role = self.names.meanings.get(" ".join(words[at : match.last]), tokens[-1].role)
                 if role in RULES:
                     self._is_apart = True
-                if role in _BRANCHES:
+                if role in ("if", "unless"):
                     self._requests.finding_out(match.last)
                 if role == "if_fails":
                     tokens[-1].kind, tokens[-1].value = "or", role

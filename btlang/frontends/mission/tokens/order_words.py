@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from btlang.frontends.mission.token import RULES, Called, Listed, Token, constraint_of
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.silent_words import BEGINS
+from btlang.text.words import END_OF_TEXT
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
@@ -164,6 +165,16 @@ class OrderWords(SentenceReader):
         if joint is not None and joint.meaning.role in ("and", "then"):
             return joint.last
         return behind if behind > found[1] else 0
+
+    def before_once(self, match: Match, at: int) -> Match | None:
+        """`turn around once you see Bob`: the last word of a command that says when."""
+        last, trie = match.last - 1, self._vocabulary.trie
+        when = longest(trie, self._text, last, self._context)
+        behind = longest(trie, self._text, match.last, self._context)
+        is_when = when is not None and when.last > match.last
+        if is_when or (behind is not None and behind.meaning.role in ("condition", "negated")):
+            return longest(trie, self._text.with_word(last, END_OF_TEXT), at, self._context)
+        return match
 
     def is_doing(self, at: int) -> bool:
         """Whether the form of a verb stands at a word: `keep going back and forth`."""

@@ -13,7 +13,7 @@ from btlang.vocabulary.entry import COUNT, SAY, Entry
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.references import free_key
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import OBJECT, TEXT
+from btlang.vocabulary.value_type import DOOR, OBJECT, TEXT
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import find
 
@@ -99,6 +99,8 @@ class Requests(SentenceReader):
         """`tell Bob dinner is ready`: a clause without a word before it."""
         text, texts = self._text, self._vocabulary.values.texts
         end = texts.end_of_clause(text, value.first)
+        if any(word[0] == '"' for word in text.words[value.first : end]):
+            return 0  # `tell her quietly "Hello"`
         if not end or self._doubt(entry, texts.doubt(text, value.first, end)):
             return 0
         self._set_text(command, value.name, text.source.text[text.begin(value.first) : text.ends[end - 1]])
@@ -115,7 +117,7 @@ class Requests(SentenceReader):
             return
         question = values.texts.direct(text, at, value.last)
         for place in range(at, value.last):  # `ask Bob if he wants the cup. If so, bring it`
-            for kind in (OBJECT, "door"):
+            for kind in (OBJECT, DOOR):
                 named = find(values.names_tree(kind), text.words, place)
                 if named is not None:
                     self._context.latest[kind] = named[0]
