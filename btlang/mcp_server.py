@@ -16,6 +16,7 @@ from btlang.diagnostics.data import as_data
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError, in_order
 from btlang.diagnostics.reading import MOST_BYTES
+from btlang.editing.partial import partial_reading
 from btlang.recording.trial import simulated
 from btlang.run.lines import Lines
 from btlang.text.source import Source, Span
@@ -32,7 +33,8 @@ _NAME = "<mission>"
 _INSTRUCTIONS = """\
 btlang compiles missions for robots, written in plain English, into behavior trees. Search the words with `words`, write
 a mission, check it with `check`, apply the `fix` of each message, see with `explain` how each sentence is understood,
-and run it with `simulate`."""
+and run it with `simulate`. Give what a person has said to `understand`: rewrite only the sentences that it doesn't
+understand, with its forms and names, and show the person the `reading` of every sentence before a robot does it."""
 
 
 def serve(options: argparse.Namespace) -> int:
@@ -43,7 +45,7 @@ def serve(options: argparse.Namespace) -> int:
 
     tools = Tools(options.keywords, options.world, options.language)
     server = MCPServer("btlang", instructions=_INSTRUCTIONS, version=btlang.__version__, log_level="ERROR")
-    for tool in (tools.words, tools.check, tools.explain, tools.simulate, tools.grammar):
+    for tool in (tools.words, tools.check, tools.explain, tools.understand, tools.simulate, tools.grammar):
         server.tool()(tool)
     server.run("stdio")
     return 0
@@ -86,6 +88,14 @@ class Tools:
         """How each sentence of a mission is understood, with brackets, and as a behavior tree."""
         mission = self._mission(text)
         return {"ok": True, "explanation": mission.explain(), "messages": _messages(mission.warnings)}
+
+    @_answering
+    def understand(self, text: str) -> dict[str, object]:
+        """Each sentence of what a person has said: its reading in controlled English, or what isn't understood of it.
+
+        A sentence that isn't understood has the phrases that may fit; `names` are those that the robot knows.
+        """
+        return partial_reading(text, self._vocabulary, self._mission)
 
     @_answering
     def simulate(self, text: str, seconds: float = 600.0, ticks: int = 12_000) -> dict[str, object]:

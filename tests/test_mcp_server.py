@@ -57,7 +57,7 @@ def mended(text: str, fix: dict[str, Any]) -> str:
 def test_a_model_writes_checks_mends_and_simulates_a_mission() -> None:
     async def script(ask: Ask, client: Any) -> None:
         tools = {tool.name for tool in (await client.list_tools()).tools}
-        assert tools == {"words", "check", "explain", "simulate", "grammar"}
+        assert tools == {"words", "check", "explain", "understand", "simulate", "grammar"}
         assert any("wave [at {person}]" in line for line in (await ask("words", search="wave"))["lines"])
         text = 'go to the ktichen, then say "tea is ready"\nprint done'
         checked = await ask("check", text=text)
@@ -164,3 +164,33 @@ def test_other_verbs_import_nothing_of_it() -> None:
 
 def test_an_unknown_grammar_is_told() -> None:
     assert "gbnf" in Tools().grammar("bnf")["reason"]
+
+
+SAID = "Go to the lab. Dust the book. Put it on the red ball. If someone is near, wave."
+
+
+def test_a_model_rewrites_what_is_not_understood_and_shows_how_the_rest_is_read() -> None:
+    async def script(ask: Ask, client: Any) -> None:
+        answer = await ask("understand", text=SAID)
+        assert not answer["ok"]
+        assert [each["understood"] for each in answer["sentences"]] == [True, False, False, True]
+        assert [each.get("reading") for each in answer["sentences"]] == [
+            "go to lab", None, None, "if someone is near, wave",
+        ]  # fmt: skip
+        [unknown] = answer["sentences"][1]["not_understood"]
+        assert unknown["words"] == "Dust the book"
+        assert "depends on the sentence before" in answer["sentences"][2]["not_understood"][0]["message"]
+        assert "book" in answer["names"]["object"]
+        again = await ask("understand", text=SAID.replace("Dust", "Pick up"))
+        assert again["ok"]
+        assert again["sentences"][2]["reading"] == "put book in red ball"
+
+    served(script)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "((", "wave", "a\n  b", "\0", "wave. nod", "greet is fly\ngreet", "if", "{", ";;"]
+)
+def test_any_text_is_understood_in_part(text: str) -> None:
+    answer = Tools().understand(text)
+    assert answer["ok"] in (True, False)

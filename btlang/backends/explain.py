@@ -27,6 +27,7 @@ _READ_AS = f"{INDENT}read as: "
 _BRANCH = "├── "
 _MORE = "\N{HORIZONTAL ELLIPSIS}"
 LEAST_WIDTH = 40
+_NO_LIMIT = 10_000
 
 
 class Statement(Record):
@@ -38,6 +39,22 @@ class Statement(Record):
     joined: str = ""  # the operator of the chain that all statements make
 
 
+class Understood(Record):
+    """How one sentence was understood: its number, and English whose brackets show it."""
+
+    number: int
+    english: str
+
+
+def understood(mission: ast.Program, tree: Tree, vocabulary: Lexicon, sentences: Sentences) -> list[Understood]:
+    """Every statement and definition, in the order of the text; `sentences` are those of the text as it was written."""
+    printer = printer_of(mission, vocabulary, "all")
+    return [
+        Understood(each.at, "\n".join(_reading(each, printer, _NO_LIMIT)).removeprefix(_READ_AS))
+        for each in _all_statements(mission, tree, sentences)
+    ]
+
+
 def explain_mission(
     mission: ast.Program, tree: Tree, vocabulary: Lexicon, label: Callable[[Node], str], width: int = 100
 ) -> str:
@@ -46,12 +63,10 @@ def explain_mission(
     `tree` is what the mission was compiled to; a line of it that is wider is cut, and its words stand above it.
     """
     width = max(width, LEAST_WIDTH)
-    sentences = _Sentences(mission.span.source, vocabulary)
+    sentences = Sentences(mission.span.source, vocabulary)
     printer = printer_of(mission, vocabulary, "all")
-    facts = [Statement(sentences.number(part.span.start), (part,)) for part in (*mission.includes, *mission.facts)]
-    found = [*facts, *_definitions(mission, tree, sentences), *_commands(mission.body, tree.root, sentences)]
     blocks = []
-    for statement in sorted(found, key=lambda statement: statement.at):
+    for statement in _all_statements(mission, tree, sentences):
         number, written = sentences.written(statement.at)
         lines = textwrap.wrap(f"line {number}: {written}", width, subsequent_indent=INDENT * 2)
         lines += _reading(statement, printer, width)
@@ -63,13 +78,19 @@ def explain_mission(
     return "\n\n".join(blocks)
 
 
-def _definitions(mission: ast.Program, tree: Tree, sentences: _Sentences) -> Iterator[Statement]:
+def _all_statements(mission: ast.Program, tree: Tree, sentences: Sentences) -> list[Statement]:
+    facts = [Statement(sentences.number(part.span.start), (part,)) for part in (*mission.includes, *mission.facts)]
+    found = [*facts, *_definitions(mission, tree, sentences), *_commands(mission.body, tree.root, sentences)]
+    return sorted(found, key=lambda statement: statement.at)
+
+
+def _definitions(mission: ast.Program, tree: Tree, sentences: Sentences) -> Iterator[Statement]:
     roots = dict(tree.subtrees)
     for definition in mission.definitions:
         yield Statement(sentences.number(definition.name_span.start), (definition,), roots[definition.name])
 
 
-def _commands(body: ast.Ast | None, root: Node, sentences: _Sentences) -> Iterator[Statement]:
+def _commands(body: ast.Ast | None, root: Node, sentences: Sentences) -> Iterator[Statement]:
     """The commands of a mission by the sentence in which they stand."""
     if body is None:
         return
@@ -130,7 +151,7 @@ def _cut(line: str, width: int) -> str:
     return line if len(line) <= width else line[: width - 1] + _MORE
 
 
-class _Sentences:
+class Sentences:
     """The sentences of a text: what stands between line ends, `;` and full stops outside brackets and blocks."""
 
     def __init__(self, source: Source, vocabulary: Lexicon) -> None:
@@ -152,9 +173,18 @@ class _Sentences:
                     self._sentences.append((words.starts[first], first, at))
                 first = at + 1
 
+    def __len__(self) -> int:
+        return len(self._sentences)
+
     def number(self, offset: int) -> int:
         """The sentence that a character belongs to, counted from 0."""
         return bisect_right(self._sentences, (offset, math.inf, 0)) - 1
+
+    def reach(self, number: int) -> tuple[int, int]:
+        """The characters of a sentence, with the block below it."""
+        text = self._words.source.text
+        end = self._sentences[number + 1][0] if number + 1 < len(self._sentences) else len(text)
+        return self._words.begin(self._sentences[number][1]), end
 
     def written(self, number: int) -> tuple[int, str]:
         """The line (from 1) and the text of a sentence."""

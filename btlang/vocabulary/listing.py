@@ -66,6 +66,15 @@ def help_on(vocabulary: Lexicon, text: str = "", width: int = _WIDTH) -> list[st
     return [line for item in found for line in ("", *_whole(item, width))][1:] or _unknown(known, wanted)
 
 
+def phrases_with(vocabulary: Lexicon, text: str, most: int = 8) -> list[dict[str, str]]:
+    """The phrases that begin with a word of a text, each with an example; else some that anybody can begin with."""
+    spoken = set(split(Source(text), vocabulary.orthography).distinct)
+    known = [item for item in items(vocabulary) if item.sort in ("command", "condition") and item.example]
+    fitting = [item for item in known if any(set(way.split()[0].lower().split("/")) & spoken for way in item.ways)]
+    chosen = fitting or [item for item in known if item.sort == "command"]
+    return [{"phrase": item.ways[0], "example": item.example} for item in chosen[:most]]
+
+
 def _is_called(item: Item, search: str) -> bool:
     """Whether the search is its topic or sort, as "conditions"."""
     return search.lower() in (item.topic, item.sort, item.sort + "s")
