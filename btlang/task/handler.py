@@ -344,7 +344,7 @@ class Handler:
                 raise wrong(command.tag, "it needs 'text' or 'name'")
             found = self._store.text(name)
             if found is None:
-                raise unknown(name)
+                raise unknown(name, is_asked_for=True)
             text, revision = found.text, found.number
         mission = MissionText(text, name, revision, dict(command.values), command.keywords)
         check_values(self._admit(mission), mission.values)

@@ -115,6 +115,9 @@ def kept_text(store: Store, name: str, kind: Kind) -> Source:
     return Source(found.text, one_line(name), roots=())
 
 
-def unknown(name: str, kind: Kind = Kind.MISSION) -> MissionError:
-    """BT187: there's no such text."""
-    return refused(f"The {_CALLED[kind]} '{name}'", "isn't in the library")
+def unknown(name: str, kind: Kind = Kind.MISSION, is_asked_for: bool = False) -> MissionError:
+    """BT187: there's no such text. One that `is_asked_for` as a task may be meant as the mission itself."""
+    reason = "isn't in the library"
+    if is_asked_for and " " in name:
+        reason += f"; to give a mission as text, write -c before it: btc task add -c '{one_line(name)}'"
+    return refused(f"The {_CALLED[kind]} '{name}'", reason)

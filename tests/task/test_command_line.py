@@ -267,6 +267,9 @@ def test_what_is_not_there_is_called_so(robot: TaskLayer, btc: Btc) -> None:
         code, text = btc("task", *words.split())
         assert code == 1
         assert "isn't known" in text or "The mission 'nosuch' isn't in the library" in text
+    code, text = btc("task", "add", "go to the kitchen")
+    assert "The mission 'go to the kitchen' isn't in the library; to give a mission as text, write -c before it" in text
+    assert "btc task add -c 'go to the kitchen'" in text
     assert btc("task", "list", "--limit", huge) == (0, "There are no tasks.\n")
     assert btc("task", "library") == (0, "The library is empty.\n")
     assert "isn't the number of a task" in btc("task", "show", "9" * 5000)[1]
