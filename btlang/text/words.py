@@ -221,6 +221,10 @@ def split(source: Source, orthography: Orthography) -> Words:
                 indent, is_item = below
             held = -1
         if kind == _WORD:
+            if len(words) > first and words[-1][0] == '"' and words[-1][-1] in ".!?" and word[0].isupper():
+                words.append(END_OF_STATEMENT)  # `ask "Tea?" If so, wave`
+                starts.append(ends[-1])
+                ends.append(ends[-1])
             word = word.lower() if word.isascii() and not spellings else orthography.word(word)
             if word in contracted and len(words) > first and words[-1] in contracted[word]:
                 word, start, end = contracted[word][words.pop()], starts.pop(), max(end, ends.pop())

@@ -89,7 +89,8 @@ EXPLAINED = (*(role for role in ROLES if role not in _UNEXPLAINED), "compare", "
 SWITCHES = frozenset(("decimal_comma",))
 
 WORD_LISTS = frozenset((
-    "articles", "titles", "plural_pronouns", "politeness", "unit_joiner", "one_each", "every_second", "quantifiers",
+    "articles", "titles", "plural_pronouns", "further", "politeness",
+    "unit_joiner", "one_each", "every_second", "quantifiers",
     "halting", "asked_once", "relatives",
     "relative_denials", "particles", "fillers", "speaker", "subjects", "purpose", "determiners", "denials",
     "possessive_endings", "ones", "directions", "clause_openers", "clause_words", "sayings", "of_persons", "colored",
@@ -227,7 +228,8 @@ def _phrase_problems(kind: str, name: str, phrases: list[str], known: Mapping[st
 
 _LANGUAGE: dict[str, Any] = {
     "language": "", "decimal_comma": False,
-    "articles": [], "titles": [], "plural_pronouns": [], "politeness": [], "unit_joiner": [], "one_each": [],
+    "articles": [], "titles": [], "plural_pronouns": [], "further": [],
+    "politeness": [], "unit_joiner": [], "one_each": [],
     "every_second": [],
     "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},
     "relations_to_self": {},

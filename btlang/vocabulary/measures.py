@@ -27,6 +27,7 @@ class Measures:
         self._multipliers: Mapping[str, float] = language["multipliers"]
         self._joiner = frozenset(language["unit_joiner"])
         self._one_each, self._every_second = frozenset(language["one_each"]), frozenset(language["every_second"])
+        self._further = frozenset(language["further"])
         self._parts_of_day: dict[str, int] = language["parts_of_day"]
         self._fractions = tree_of(language["fractions"].items())
         self._times = tree_of(language["times"].items())
@@ -79,6 +80,8 @@ class Measures:
 
     def quantity(self, text: Words, at: int) -> tuple[float, str, int] | None:
         """A number with a unit: its value in the base unit, the name of the type, and where it ends."""
+        if text.words[at] in self._further:
+            return self.quantity(text, at + 1)  # `another 2 m`
         number = self.number(text, at)
         if number is None:
             if at not in text.articles and not (at and text.words[at - 1] in self._one_each):

@@ -11,6 +11,7 @@ PLACE = "place"
 """The type whose values can be points, too."""
 OBJECT = "object"
 DOOR = "door"
+PERSON = "person"
 WORLD = (PLACE, "person", OBJECT, "zone", "door")
 """The types of names that have a place: robots know where each one is."""
 

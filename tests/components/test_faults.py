@@ -76,7 +76,7 @@ def test_twenty_components_in_a_storm(tmp_path: Path) -> None:
             if many > len(NAMES):  # else they come back while others are hit
                 wait_until(lambda keeper=keeper: keeper.state == ACTIVE)
                 back.append(time.monotonic() - began)
-        wait_until(lambda: all(status.state == ACTIVE for status in manager.statuses()))
+        wait_until(lambda: all(status.state == ACTIVE for status in manager.statuses()), 90.0)
         processes |= {status.process for status in manager.statuses()}
     wait_until(lambda: not running_in(processes))
     if many > len(NAMES):

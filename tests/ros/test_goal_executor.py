@@ -295,6 +295,7 @@ def test_some_of_them():
     ids = servable(vocabulary, ros=False)
     assert chosen(["speech", "move_forward", "TurnLeft"], ids, vocabulary) == [
         "Say",
+        "ReportBack",
         "SpeakLanguage",
         "Print",
         *("Ask", "ListenForYesOrNo", "ListenFor", "Obey", "CallStaff", "RaiseAlarm", "GreetPerson", "TellPerson"),

@@ -63,7 +63,8 @@ def test_answers_have_places_as_pages_count_them() -> None:
     changes = answer("rename", TEXT, Words(), at)["changes"]
     assert [in_utf16(TEXT, each["start"], each["end"]) for each in changes] == ["patrol", "patrol"]
     offered = answer("complete", TEXT + "go to the kit", Words())["completions"]
-    assert [each["start"] for each in offered] == [Units(TEXT).length + len("go to the ")]
+    assert [each["text"] for each in offered] == ["kitchen", "kitchen door"]
+    assert {each["start"] for each in offered} == {Units(TEXT).length + len("go to the ")}
 
 
 def test_a_selection_behind_changes_is_counted_in_the_new_text() -> None:

@@ -14,6 +14,7 @@ from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.value_type import PERSON
 
 _ON_THE_WAY = "SomeoneInTheWay"
 
@@ -51,7 +52,7 @@ def _too_late(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Iter
 
 def _people(phrase: ast.Phrase) -> set[str]:
     types = {slot.name: slot.type for slot in phrase.entry.slots}
-    return {text for name, text in phrase.arguments if types.get(name) == "person"}
+    return {text for name, text in phrase.arguments if types.get(name) == PERSON}
 
 
 def _is_statement(node: ast.If) -> bool:

@@ -135,7 +135,7 @@ def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
 
 _NOT_OFFERED = NOT_ALONE | {
     *NODE_ROLES, "never", "called", "with", "giving", "node", "newline", "character", "main_name", "given",
-    "needs_world", "needs_words",
+    "needs_world", "needs_words", "set_to", "by", "remember_as", "each_in", "all_names", "except", "may", "or_stay",
 }  # fmt: skip
 """Roles that say nothing alone or are for texts that programs write: what is like their words was hardly meant so."""
 
@@ -284,9 +284,11 @@ def _unknown_phrase(
     near = dict(inside) | dict(_nearest_phrases(tuple(text.words[at:end]), vocabulary, tuple(names))) | dict(inside)
     if not near:  # a value alone, in a list or where the other words are left out: `if Allice or Bob is near`
         values = [name for kind in WORLD if kind in vocabulary.types for name in vocabulary.values.said_names(kind)]
-        value = nearest(text.words[at], values) if text.words[at].isalpha() else []
+        word = text.words[at]
+        near_values = nearest(word, values) if word.isalpha() else []
+        value = [one for one in near_values if any(is_respelling(word, of, vocabulary) for of in one.lower().split())]
         fix = (text.span(at, at + 1), value[0]) if value else None
-        advice = nearest_known(value) if value else _examples(vocabulary)
+        advice = nearest_known(value) if value else _examples(vocabulary, kind)
         return diagnostic("BT010", span, fix=fix, kind=kind, words=span.text, help=advice)
     likely, words = next(iter(near.items()))
     fix = (text.span(at, min(at + words, end)), likely.partition(" {")[0])
@@ -306,9 +308,16 @@ def _asks(before: list[Token]) -> bool:
     return next((kind for kind in kinds if kind not in _BEFORE_ANY), "") in _ASKING
 
 
-def _examples(vocabulary: Lexicon) -> str:
-    """Three commands about what there is in the world, where nothing is like the words that are unknown."""
+def _examples(vocabulary: Lexicon, sort: str = "command") -> str:
+    """Three commands, or conditions, about what there is in the world, where nothing is like the words."""
     found: list[str] = []
+    for kind in (OBJECT, "person", "door") if sort == "condition" else ():
+        names = vocabulary.values.said_names(kind) if kind in vocabulary.types else []
+        asking = (entry for entries in vocabulary.entries.values() for entry in entries if entry.sort == "condition")
+        said = next((way for entry in asking for way in entry.phrases[:1] if re.findall(r"{(\w+)}", way) == [kind]), "")
+        found += [re.sub(r"\{\w+\}", names[0], said)] if said and names else []
+    if found:
+        return f"I understand for example: {'; '.join(found)}"
     for kind in (PLACE, OBJECT, "person"):
         names = vocabulary.values.said_names(kind) if kind in vocabulary.types else []
         entries = (entry for entries in vocabulary.entries.values() for entry in entries if entry.verbs)

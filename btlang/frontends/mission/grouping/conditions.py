@@ -28,8 +28,8 @@ _CHOOSING = frozenset(("if", "unless", "while", "until"))  # forms that may have
 def after_condition(scan: Scan, token: Token) -> None:
     entry = scan.stack[-1]
     joined = connective_of(scan, token)
-    if token.kind == "again":
-        scan.next(token, False)
+    if token.kind == "again" or (token.kind == "then" and scan.raw[scan.at + 1].kind == "comma"):
+        scan.next(token, False)  # `if the battery is low after that, charge`
     elif entry.kind == "condition list":
         after_item(scan, entry, token)
     elif joined:

@@ -69,7 +69,7 @@ _OPERAND: dict[str, Callable[[Scan, Token], None]] = {
     "one_of": lists.choice,
     "nor": lists.stray,
     "open": operands.open_bracket,
-    "then": operands.leading_then,
+    **dict.fromkeys(("then", "and"), operands.leading_then),
     **dict.fromkeys(("do_that", "repeat_that", "following"), operands.do_block),
     **dict.fromkeys(("before", "after", "while_doing", "if_doing"), operands.fronted),
     **dict.fromkeys(("start_over", "everything"), operands.whole_block),

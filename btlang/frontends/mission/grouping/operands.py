@@ -232,9 +232,10 @@ def whole_block(scan: Scan, token: Token) -> None:
 
 
 def leading_then(scan: Scan, token: Token) -> None:
-    """`After that, go home` at the start of a statement joins it as the line end does already."""
+    """`After that, go home`, `And wave` at the start of a statement join it as the line end does already."""
     entry = scan.stack[-1]
-    if not entry.is_group or entry.last is not None or entry.statement == "open":
+    is_first = token.kind == "and" and not scan.out
+    if is_first or not entry.is_group or entry.last is not None or entry.statement == "open":
         no_operand(scan, token)
         return
     scan.next(token, True)

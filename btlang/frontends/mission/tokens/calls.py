@@ -17,7 +17,7 @@ from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import ALL, NAMES, Choice, choice_of, keys_in, point_ports, renamed
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.value_type import PLACE, WORLD
+from btlang.vocabulary.value_type import PERSON, PLACE, WORLD
 from btlang.vocabulary.values import key_of
 
 NEGATED = frozenset(("negated", "negated_twice"))
@@ -43,6 +43,9 @@ class Calls:
     def __init__(self, text: Words, vocabulary: Lexicon, context: ReadingContext, problems: list[Diagnostic]) -> None:
         self._text, self._vocabulary, self._context, self.problems = text, vocabulary, context, problems
         self._lists: dict[str, tuple[Token, SlotValue]] = {}
+        # in most missions nobody is spoken of by a pronoun
+        people = (word for word, types in vocabulary.values.pronouns.items() if PERSON in types)
+        self.speaks_of_people = not text.distinct.isdisjoint(people)
         self._owners = not text.distinct.isdisjoint(vocabulary.values.names_tree(OWNER))
 
     def token(self, match: Match, at: int) -> Token:
@@ -124,10 +127,21 @@ class Calls:
     def note(self, match: Match, is_alternative: bool = False) -> None:
         """What pronouns stand for from here on: of alternatives only the run knows which one it was."""
         before = dict(self._context.latest) if is_alternative else {}
+        if self.speaks_of_people and match.meaning.entry is not None and match.meaning.role != "negated":
+            self._note_somebody(match.meaning.entry)
         self._note_values(match)
         for kind, value in before.items():
             if self._context.latest.get(kind, value) != value:
                 del self._context.latest[kind]
+
+    def _note_somebody(self, entry: Entry) -> None:
+        """`wait until someone comes, then greet them`: the nearest person."""
+        somebody = self._vocabulary.negative_subjects.keys()
+        names_none = all(slot.type != PERSON for slot in entry.slots)
+        if names_none and entry.phrases and not somebody.isdisjoint(entry.phrases[0].split()):
+            key = self._context.keys.get(PERSON, PERSON)
+            self._context.latest[PERSON] = Choice("nearest", PERSON, key).text
+            self._context.listed.pop(PERSON, None)
 
     def _note_values(self, match: Match) -> None:
         for value in sorted(match.values, key=lambda value: value.name == value.type):  # a theme last: `it` prefers it

@@ -100,7 +100,6 @@ class Lexer:
             self._verb_forms |= {word for word in self.text.distinct if word.endswith(endings)}
         self._before_doing = {phrase.split()[0] for phrase in self.vocabulary.roles["without_entering"]}
         self._asking = {*self.vocabulary.asking["asking_be"], *self.vocabulary.asking["asking_do"]}
-        self._once = frozenset(self.vocabulary.roles["once"])
         self._joint = self.vocabulary.word("and")
         self._is_apart = False  # the statement that is read runs at another time than the next one
         self._unknown = UnknownWords(
@@ -191,8 +190,6 @@ class Lexer:
                     match = longest(trie, text, at, context, names)  # a name may end the list
             else:
                 match = longest(trie, text, at, context, names)
-            if match is not None and words[match.last - 1] in self._once and match.meaning.role == "command":
-                match = self._order.before_once(match, at)
             if match is not None and match.meaning.role in NODE_ROLES:
                 end = self._node(match, at)
                 if end:
@@ -323,7 +320,7 @@ class Lexer:
                     tokens[-1].kind, tokens[-1].value = "or", role
                 if role in _ROLES:
                     tokens[-1].kind = _ROLES[role][len(tokens) > 1 and tokens[-2].kind == "stop"]
-                if match.values:
+                if match.values or calls.speaks_of_people:
                     calls.note(match, len(tokens) > 1 and tokens[-2].kind in ("or", "otherwise"))
                 at = match.last
 

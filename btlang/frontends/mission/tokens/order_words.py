@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from btlang.frontends.mission.token import RULES, Called, Listed, Token, constraint_of
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.silent_words import BEGINS
-from btlang.text.words import END_OF_TEXT
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
@@ -135,7 +134,9 @@ class OrderWords(SentenceReader):
         if pronoun is None or PLACE not in context.pronouns[pronoun[0]]:
             return 0
         journey = self._journey(tokens[:-1])
-        if journey is None or not (self._is_end(pronoun[1]) or text.words[pronoun[1]] == ","):
+        behind = longest(self._vocabulary.trie, text, pronoun[1], context)
+        is_polite = behind is not None and behind.meaning.role == "politeness"  # `there, too`
+        if journey is None or not (is_polite or self._is_end(pronoun[1]) or text.words[pronoun[1]] == ","):
             return 0
         is_plural = pronoun[0] in context.values.plural_pronouns
         goal = (context.listed.get(PLACE) if is_plural else None) or context.latest.get(PLACE)
@@ -165,16 +166,6 @@ class OrderWords(SentenceReader):
         if joint is not None and joint.meaning.role in ("and", "then"):
             return joint.last
         return behind if behind > found[1] else 0
-
-    def before_once(self, match: Match, at: int) -> Match | None:
-        """`turn around once you see Bob`: the last word of a command that says when."""
-        last, trie = match.last - 1, self._vocabulary.trie
-        when = longest(trie, self._text, last, self._context)
-        behind = longest(trie, self._text, match.last, self._context)
-        is_when = when is not None and when.last > match.last
-        if is_when or (behind is not None and behind.meaning.role in ("condition", "negated")):
-            return longest(trie, self._text.with_word(last, END_OF_TEXT), at, self._context)
-        return match
 
     def is_doing(self, at: int) -> bool:
         """Whether the form of a verb stands at a word: `keep going back and forth`."""
