@@ -38,7 +38,7 @@ CHANGING = ("increase", "decrease")
 ASKING = (
     "journey", "search", "whereabouts", "counting", "asking_be", "asking_do", "answers", "feeling", "there",
     "very", "states", "subject", "been", "towards", "going", "finding_out",
-    "inspecting", "telling", "whole", "located", "wishing", "wished", "resuming", "interrupting",
+    "inspecting", "telling", "whole", "located", "wishing", "wished", "fetching", "begging", "resuming", "interrupting",
     "if_yes", "if_no",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
@@ -134,6 +134,10 @@ def _time(value: object) -> bool:
     return not isinstance(value, bool) and value in (0, 12)
 
 
+def _hour(value: object) -> bool:
+    return not isinstance(value, bool) and value in range(24)
+
+
 def _about(value: object) -> bool:
     return isinstance(value, dict) and value.keys() == set(About.fields) and all(map(_is_text, value.values()))
 
@@ -173,7 +177,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "numbers": (_number, "a number"),
     "multipliers": (_number, "a number"),
     "fractions": (_number, "a number"),
-    "parts_of_day": (_time, "the hours to add: 0 or 12"),
+    "parts_of_day": (_hour, "an hour from 0 to 23"),
     "times": (_time, 'a time such as "12:00", or the hours to add: 0 or 12'),
 }
 """Each table, whether a value fits it, and what does."""

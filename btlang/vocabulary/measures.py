@@ -60,10 +60,10 @@ class Measures:
         hour, end = number
         half = self.half_of_day(text, end)
         part = self._parts_of_day.get(text.words[at - 2]) if half is None and at > 1 else None
-        if part is not None and (hour <= 12 or part == 0):
-            half = part, end  # `every evening at 8`
         if half is not None:
             hour, end = (hour % 12 + half[0] if 1 <= hour <= 12 else -1), half[1]
+        elif part is not None and (hour <= 12 or part == 0):  # `every evening at 8`, `every night at 2`
+            hour, half = (part + (hour - part) % 12) % 24 if 1 <= hour <= 12 else -1, (part, end)
         if hour not in range(24) or not (minutes or half):
             return None
         return f"{int(hour):02}:{int(minutes or 0):02}", end

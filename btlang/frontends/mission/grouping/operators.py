@@ -14,7 +14,7 @@ from btlang.frontends.mission.grouping.bodies import (
     set_pace,
 )
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, STARTS_OPERAND, closes_statement
-from btlang.frontends.mission.grouping.problems import both_readings, found_words, is_alone, side_by_side
+from btlang.frontends.mission.grouping.problems import both_readings, found_words, is_alone, prohibition, side_by_side
 from btlang.frontends.mission.grouping.readings import otherwise_of_another, repeated, twice_more, waits_first
 from btlang.frontends.mission.grouping.scan import ENDS, Scan, Unit
 from btlang.frontends.mission.grouping.stack import StackEntry
@@ -120,6 +120,8 @@ def but(scan: Scan, token: Token) -> None:
         scan.raw[scan.at] = Token("after", token.start, token.end)
         scan.stack[-1].settle()
         connective(scan, scan.raw[scan.at])
+    elif following.kind == "never":
+        prohibition(scan, following)
     else:
         words = scan.words(token)
         scan.fail("BT020", scan.span(token), wanted="command", word=words, found=found_words(scan, following))

@@ -46,13 +46,14 @@ class Permissions:
                 stays = None  # `stay with Bob`
             if allows is None and stays is None:
                 continue
-            if stays is None and not self._may_begin(text, first, at):
+            is_behind = allows is not None and allows[1] == last and words[at] in self._asking
+            if stays is None and not (is_behind or self._may_begin(text, first, at)):
                 continue  # `if you can see somebody`, `until you can`
             said = longest(self._trie, text, at, self._context) if stays is None else None
             if said is not None and said.meaning.entry is not None:
                 continue  # `you may enter the reading corner`
             begin = first if text.words[first] in self._asking else self._begin(text, first, at)
-            if begin == 0:
+            if begin == 0 and not is_behind:
                 continue  # `you may go to the lab` asks for it
             if stays is not None and allows is None and not self._offers(text, begin, last):
                 continue

@@ -212,11 +212,20 @@ class Lexer:
             if match is not None and role == "never" and word in self._before_doing:
                 if self._unknown.lack_name(at, match.last):
                     match, role = None, ""
+            if match is not None and role == "never":
+                forbidden = self._partial.forbidden(at, match.last)
+                if forbidden is not None:
+                    self._partial.append(forbidden, at)
+                    at = forbidden.last
+                    continue
             if (role in QUESTIONS or word in asking) and begins_question(tokens, role in QUESTIONS):
-                end = self._requests.question(match, role, at)
+                end = self._requests.question(match, role, at) if role != "command" else 0
                 if end:
                     at = end
                     continue
+            if role != "command" and begins(tokens) and (end := self._requests.begged(at)):
+                at = end
+                continue
             if remarks is not None and begins(tokens) and (match is None or role in ("condition", "there_are")):
                 end = remarks.end(at)
                 if end:

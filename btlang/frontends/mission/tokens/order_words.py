@@ -266,6 +266,8 @@ class OrderWords(SentenceReader):
             return journey.last
         behind = journey.last + (text.words[journey.last] == ",")
         match = longest(self._vocabulary.trie, text, behind, self._context)
+        if match is not None and match.meaning.role == "never":
+            match = self._partial.forbidden(behind, match.last)
         if (tokens and tokens[-1].kind not in BEGINS) or match is None or match.meaning.entry is None:
             return 0
         following = self._calls.token(match, behind)

@@ -19,7 +19,7 @@ from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.value_type import OBJECT, WORLD
 
-BEFORE_DOING = frozenset(("before", "after", "while", "until", "never", "followed_by"))
+BEFORE_DOING = frozenset(("before", "after", "while", "until", "never", "followed_by", "meanwhile"))
 """The kinds of tokens behind which a command may have the form of its verb: `after waving`."""
 JOINTS = frozenset(("then", "and", "or", "comma", "otherwise"))
 """Behind these a command may leave out words of the one before it."""
@@ -120,6 +120,12 @@ class PartialCommands:
         token.role = "third"
         tokens.append(token)
         return match.last
+
+    def forbidden(self, at: int, end: int) -> Match | None:
+        """A constraint, by the word for `never` in the place of those at a word: `you must not enter the hall`."""
+        match = self.with_front(at, end, (self._vocabulary.word("never"),))
+        entry = match.meaning.entry if match is not None else None
+        return match if entry is not None and entry.constrains else None
 
     def add_left_out(self, at: int, least: int = 0) -> int:
         """A command whose first words are those of the one before it, and which ends at a word `least` or behind it."""

@@ -50,8 +50,10 @@ class Requests(SentenceReader):
         """`say the battery`, `say how many people there are`: an article or a question word asks for a value."""
         entry = match.meaning.entry
         value = next((value for value in match.values if value.type == TEXT), None)
-        if value is None or entry is None or entry.sort != "action" or self._text.words[value.first][0] == '"':
+        if value is None or entry is None or entry.sort != "action":
             return 0
+        if self._text.words[value.first][0] == '"':
+            return self._value_behind(value.last, value.name, at, command) if value.last == match.last else 0
         if entry.id == _ASK:
             self._ask(entry, value, command)
             return 0
@@ -89,6 +91,33 @@ class Requests(SentenceReader):
             return 0
         self._say(at, measured, command, value.name)
         return measured.last if is_last else match.last
+
+    def _value_behind(self, at: int, slot: str, first: int, command: Token) -> int:
+        """`say "it is" and the time`: the text, then the value."""
+        text = self._text
+        if text.words[at] not in self._vocabulary.roles["and"] or at + 1 not in text.articles:
+            return 0
+        known, measured = self._context.named(text, at + 1), self._measured(at + 1)
+        if known is not None and known[0] is not None and (measured is None or known[1] >= measured.last):
+            self._set_text(command, slot, f"{{{known[0].key}}}", adds=True)
+            self._tokens.append(command)
+            return known[1]
+        if measured is None or not self._ends(measured.last):
+            return 0
+        self._say(first, measured, command, slot, adds=True)
+        return measured.last
+
+    def begged(self, at: int) -> int:
+        """`the cup, please`: brings it."""
+        text, begging = self._text, self._vocabulary.asking["begging"]
+        wanted = self._with_front(at, at, "fetching") if not text.distinct.isdisjoint(begging) else None
+        if wanted is None:
+            return 0
+        end = wanted.last + (text.words[wanted.last] == ",")
+        if text.words[end] not in begging or not self._is_end(end + 1):
+            return 0
+        self._partial.append(wanted, at)
+        return end + 1
 
     def _goes_on(self, at: int) -> bool:
         """Whether words follow that are neither a mark nor begin anything."""
@@ -160,7 +189,7 @@ class Requests(SentenceReader):
     def _where(self, at: int, end: int) -> int:
         """`where is the cup?`: looks for it and says where it is."""
         search = self._with_front(at, end, "search")
-        if search is None or not self._ends(search.last):
+        if search is None or not self._ends(search.last) or any(value.more or value.group for value in search.values):
             return 0
         measured = self._partial.with_front(
             at, end, self._vocabulary.asking["whereabouts"], self._vocabulary.quantities
@@ -330,7 +359,7 @@ class Requests(SentenceReader):
     def _then(self, at: int) -> None:
         self._tokens.append(Token("then", self._text.starts[at], self._text.starts[at]))
 
-    def _say(self, at: int, measured: Match, command: Token | None = None, slot: str = "") -> None:
+    def _say(self, at: int, measured: Match, command: Token | None = None, slot: str = "", adds: bool = False) -> None:
         """Remembers what is measured and says it, with a command or the one that says."""
         entry, text = measured.meaning.entry, self._text
         assert entry is not None
@@ -342,13 +371,15 @@ class Requests(SentenceReader):
         if command is None:
             command = Token("command", start, end, self._saying_of(f"{{{key}}}"))
         else:
-            self._set_text(command, slot, f"{{{key}}}")
+            self._set_text(command, slot, f"{{{key}}}", adds)
         self._tokens.append(command)
 
-    def _set_text(self, command: Token, slot: str, text: str) -> None:
+    def _set_text(self, command: Token, slot: str, text: str, adds: bool = False) -> None:
+        """Makes a text that of a command, or `adds` it to the one that it has."""
         value = command.value
         assert isinstance(value, Called)
-        arguments = tuple((name, text if name == slot else given) for name, given in value.arguments)
+        new = {name: f"{given} {text}" if adds else text for name, given in value.arguments if name == slot}
+        arguments = tuple((name, new.get(name, given)) for name, given in value.arguments)
         command.value = value.replace(arguments=arguments)
 
     def _key(self, entry: Entry) -> str:
