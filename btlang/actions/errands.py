@@ -44,6 +44,11 @@ def _fetch(robot: Fetching, object: str) -> Steps:
     yield from accomplish(robot.navigate_to_pose(here))
 
 
+def hold(robot: Fetching, object: str) -> Steps:
+    """Picks up an object unless a hand holds it."""
+    yield from _hold(robot, object)
+
+
 def carry(
     robot: Fetching,
     object: str,

@@ -12,10 +12,12 @@ from btlang.robots.capabilities import Base, Navigation
 from btlang.robots.geometry import Pose
 from btlang.robots.likeness import unseen
 from btlang.robots.relations import related_words
-from btlang.robots.robot import Operation
+from btlang.robots.robot import Operation, RobotError
+from btlang.robots.world import said
 
 PASSED = 0.5
 """Metres from a place at which the robot has come past it."""
+_SPOTS = 12  # that are tried to get in or out of a zone
 
 
 def go_to(
@@ -27,7 +29,7 @@ def go_to(
     manner: str | None = None,
     via: str | None = None,
 ) -> Steps:
-    """Drives to a place and faces as the place says, or to a point; past the places of `via` (`hall; lobby`) first."""
+    """Drives to a place and faces as the place says, or to a point; past those of `via` (`hall; lobby`) first."""
     steps = travel(robot, place) if place is not None else _go_to_point(robot, x, y, facing)
     yield from paced(
         robot, manner, _past(robot, [name.strip() for name in (via or "").split(";") if name.strip()], steps)
@@ -35,9 +37,13 @@ def go_to(
 
 
 def _past(robot: Navigation, places: list[str], steps: Steps) -> Steps:
-    """Passes each of the places without a stop, then takes the steps."""
+    """Passes each of the places, or zones, without a stop, then takes the steps."""
     for name in places:
-        point = robot.locate(name)
+        try:
+            point = robot.locate(name)
+        except RobotError:  # no place has the name
+            yield from over_border(robot, name, inside=True)
+            continue
         operation = robot.navigate_to(name)
         try:
             while not operation.done and robot.pose.distance_to(point) > PASSED:
@@ -47,6 +53,27 @@ def _past(robot: Navigation, places: list[str], steps: Steps) -> Steps:
         finally:
             operation.cancel()
     yield from steps
+
+
+def over_border(robot: Navigation, zone: str, *, inside: bool) -> Steps:
+    """Drives until the robot is inside a zone, or outside. Fails where no way leads there."""
+    here = robot.pose.x, robot.pose.y
+    if robot.zones.contains(zone, here) == inside:
+        return
+    failure = f"there's no room {'in' if inside else 'around'} {said(zone)}"
+    for spot in robot.zones.spots(zone, here, inside)[:_SPOTS]:
+        operation = robot.navigate_to_pose(Pose(*spot, robot.pose.heading + robot.pose.bearing_to(spot)), said(zone))
+        try:
+            while not operation.done:
+                if robot.zones.is_over(zone, (robot.pose.x, robot.pose.y), inside):
+                    return
+                yield
+        finally:
+            operation.cancel()
+        if operation.failure is None:
+            return
+        failure = operation.failure
+    raise ActionFailed(failure)
 
 
 def _go_to_point(robot: Navigation, x: float | None, y: float | None, facing: float | None) -> Steps:

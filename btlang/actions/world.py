@@ -6,7 +6,7 @@ from typing import Protocol
 
 from btlang.actions.manner import paced
 from btlang.actions.motion import Steps, turn
-from btlang.actions.navigation import accomplish, travel
+from btlang.actions.navigation import accomplish, over_border, travel
 from btlang.actions.points import where
 from btlang.actions.watch import Driving
 from btlang.engine.leaves.leaf import ActionFailed
@@ -96,6 +96,16 @@ def is_switched_on(robot: Handling, object: str) -> bool:
 def is_switched_off(robot: Handling, object: str) -> bool:
     """Whether something is switched off."""
     return not robot.is_on(object)
+
+
+def enter_zone(robot: Cautious, zone: str, manner: str | None = None) -> Steps:
+    """Drives into a zone, the nearest way first. Does nothing where the robot is in it."""
+    yield from paced(robot, manner, over_border(robot, zone, inside=True))
+
+
+def leave_zone(robot: Cautious, zone: str, manner: str | None = None) -> Steps:
+    """Drives out of a zone, the nearest way first. Does nothing where the robot is outside."""
+    yield from paced(robot, manner, over_border(robot, zone, inside=False))
 
 
 def avoid_zone(robot: Cautious, zone: str) -> None:

@@ -167,7 +167,8 @@ class Base(Machine, Protocol):
     def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
         """The "nearest" or a "random" name of the type "place", "object" (not carried) or "person".
 
-        "seen" is the nearest in view, else the nearest known; objects are also chosen as "largest" and "smallest".
+        "seen" is the nearest in view, else the nearest known; there are "furthest", "leftmost", "rightmost" and numbers
+        ("2" is the second one, "-1" the last), and for objects "largest" and "smallest".
         `parts` are what it is like, by "color", "kind" and so on. Raises RobotError if there is none.
         """
 
@@ -193,6 +194,10 @@ class Navigation(Base, Protocol):
 
     def place_names(self) -> list[str]:
         """The names of all places, those of the mission among them."""
+
+    @property
+    def zones(self) -> Zones:
+        """Where it may not go, or only slowly."""
 
     def navigate_to(self, name: str) -> Operation:
         """Starts to a place, an object (within arm's reach) or a person (within talking distance), and faces it.
@@ -332,11 +337,7 @@ class Handling(Base, Protocol):
 
 
 class Cautious(Navigation, Protocol):
-    """Zones, and others in the way."""
-
-    @property
-    def zones(self) -> Zones:
-        """Where it may not go, or only slowly."""
+    """Others in the way, and what was seen."""
 
     @property
     def held_up(self) -> str:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 
 from btlang.robots.likeness import unseen
 from btlang.robots.relations import related_words
 from btlang.robots.robot import OnEvent, RobotError
+from btlang.vocabulary.references import ordinal
 
 PICKY = ("seen", "largest", "smallest")
 """The ways to choose that look at what something is like."""
+_AHEAD = 90.0  # degrees to either side
 
 
 class Choices:
@@ -34,14 +37,30 @@ class Choices:
         on_event: OnEvent | None,
         distance: Callable[[str], float],
         size: Callable[[str], float],
+        bearing: Callable[[str], float],
+        by_name: bool = False,
     ) -> str:
-        """The nearest of the names, a random one and so on. Raises RobotError where nothing has these parts."""
+        """The nearest of the names, a random one and so on. Raises RobotError where nothing has these parts.
+
+        A number counts them from the nearest one on, or `by_name`.
+        """
         if not names:
             raise RobotError(
                 unseen(kind, parts, related_words(parts)) if parts or how == "seen" else f"there's no {kind} to choose"
             )
         if how in ("nearest", "seen"):
             data: dict[str, str | int] = {"type": kind, "how": "nearest", "name": min(names, key=distance)}
+        elif how == "furthest":
+            data = {"type": kind, "how": how, "name": max(names, key=distance)}
+        elif how in ("leftmost", "rightmost"):
+            ahead = [name for name in names if abs(bearing(name)) <= _AHEAD] or names
+            chosen = max(ahead, key=bearing) if how == "leftmost" else min(ahead, key=bearing)
+            data = {"type": kind, "how": how, "name": chosen}
+        elif number := ordinal(how):
+            line = sorted(names, key=_natural) if by_name else sorted(names, key=distance)
+            if abs(number) > len(line):
+                raise RobotError(f"number {abs(number)} is asked for, but there's only {', '.join(line)}")
+            data = {"type": kind, "how": _nth(number), "name": line[number - 1 if number > 0 else number]}
         elif how in ("largest", "smallest"):
             chosen = max(names, key=size) if how == "largest" else min(names, key=size)
             data = {"type": kind, "how": how, "name": chosen}
@@ -58,3 +77,17 @@ class Choices:
 
         self._made += 1
         return Random(f"{self.seed} {self._made}").choice(names)
+
+
+def _nth(number: int) -> str:
+    """`2nd`, `last`, `2nd last`."""
+    if number == -1:
+        return "last"
+    size = abs(number)
+    ending = "th" if size % 100 in (11, 12, 13) else {1: "st", 2: "nd", 3: "rd"}.get(size % 10, "th")
+    return f"{size}{ending}{' last' if number < 0 else ''}"
+
+
+def _natural(name: str) -> tuple[tuple[int, str], ...]:
+    """A key that sorts `room 2` before `room 10`."""
+    return tuple((int(part), "") if part.isdecimal() else (0, part) for part in re.split(r"(\d+)", name.lower()))

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 
 from btlang.robots.choices import PICKY, Choices
 from btlang.robots.doors import spots_beside
-from btlang.robots.geometry import Point, Pose
+from btlang.robots.geometry import Point, Pose, wrap
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.relations import Relations, without_relations
 from btlang.robots.robot import OnEvent, RobotError
@@ -14,6 +14,7 @@ from btlang.robots.sight import Sight
 from btlang.robots.world import Door, Place, World, said
 from btlang.robots.zones import Zones
 from btlang.run.robot_state import Whereabouts
+from btlang.vocabulary.references import SELF, ordinal
 
 
 class Knowledge:
@@ -81,9 +82,15 @@ class Knowledge:
             fitting = [place.name for place in places if set(like.items()) <= set(place.parts)]
             names = fitting if like else list(self.world.names.of(kind))
         if len(like) < len(parts):
-            relations = Relations(self.world, things, self.where)
+            relations = Relations(
+                self.world, things, self.where, lambda name: self.sight.sees(name, pose), self._holder
+            )
             names = [name for name in names if relations.holds(name, parts, pose)]
         return sorted(names, key=lambda name: pose.distance_to(self.locate(name, pose)))
+
+    def _holder(self, name: str) -> str:
+        """Who holds a thing, SELF for the robot, "" for nobody."""
+        return SELF if self.obstacles.is_carried(name) else self._given_to.get(name, "")
 
     def choose(
         self,
@@ -91,19 +98,25 @@ class Knowledge:
         how: str,
         parts: Mapping[str, str],
         where: Callable[[], Pose],
+        began: Callable[[], Pose],
         choices: Choices,
         on_event: OnEvent | None,
     ) -> str:
-        """One of the names of a type. Raises RobotError if there is none with these parts."""
+        """One of the names of a type. Raises RobotError if there is none with these parts.
+
+        Places are counted from where the mission `began`: the third one isn't another one behind the second.
+        """
         listed = not parts and how not in PICKY
-        pose = Pose(0.0, 0.0) if listed and how != "nearest" else where()
+        pose = Pose(0.0, 0.0) if listed and how == "random" else where()
+        start = began() if kind == "place" and ordinal(how) else pose
         names = self.free(kind) if listed else self.described(kind, parts, pose)
         if how == "seen":
             names = [name for name in self.sight.seen(kind, pose) if name in names] or names
         things = self.obstacles.things
         return choices.choose(
             kind, how, names, parts, on_event,
-            lambda name: pose.distance_to(self.locate(name, pose)), lambda name: getattr(things[name], "size", 0.0),
+            lambda name: start.distance_to(self.locate(name, pose)), lambda name: getattr(things[name], "size", 0.0),
+            lambda name: wrap(pose.bearing_to(self.locate(name, pose))), self.world.ordinals == "name",
         )  # fmt: skip
 
     def nearby_people(self, within: float, pose: Pose) -> list[str]:

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import dist
 
-from btlang.robots.geometry import Point, Pose, wrap
+from btlang.robots.geometry import Point, Pose, segment_distance, wrap
 from btlang.robots.likeness import Parts
 from btlang.robots.robot import RobotError
 from btlang.robots.world import World, WorldObject, said
-from btlang.vocabulary.references import DENIED, RELATIONS, SELF
+from btlang.vocabulary.references import DENIED, RELATIONS, SECOND, SELF
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 NEAR = 2.0
 """Metres within which something is near, beside, behind, left or right of another thing."""
+BETWEEN = 0.25
+"""Of the distance between two things: what is no further from the line between them is between them."""
 _SIDES = {"in_front_of": 0.0, "left_of": 90.0, "behind": 180.0, "right_of": -90.0}
 """The bearings of the sides of the robot, in degrees to the left."""
 _HALF_SIDE = 60.0  # degrees: what is ahead to the left is on both of these sides
@@ -30,7 +32,8 @@ _ON_THING = 0.5
 _AT_PLACE = 4.0
 _TOGETHER = frozenset(("on", "inside", "at", "off", "part_of"))
 _WORDS = {"inside": "in", "off": "on", "in_front_of": "in front of", "left_of": "left of", "right_of": "right of",
-          "beside": "next to", "part_of": "of"}  # fmt: skip
+          "beside": "next to", "part_of": "of", "other_than": "different from", "seen_by": "seen by",
+          "held_by": "held by"}  # fmt: skip
 
 
 def without_relations(parts: Mapping[str, str]) -> dict[str, str]:
@@ -40,7 +43,11 @@ def without_relations(parts: Mapping[str, str]) -> dict[str, str]:
 
 def related_words(parts: Mapping[str, str]) -> str:
     """The words for what the parts say beyond what a thing is like: ` on the table that isn't red`."""
-    words = [f" {_WORDS.get(name, name)} {_thing(text)}" for name, text in parts.items() if name in RELATIONS]
+    words = [
+        f" {_WORDS.get(name, name)} {' and '.join(map(_thing, text.split(SECOND)))}"
+        for name, text in parts.items()
+        if name in RELATIONS
+    ]
     words += [f" that isn't {' or '.join(text.split('; '))}" for name, text in parts.items() if name in DENIED]
     return "".join(words)
 
@@ -61,12 +68,21 @@ def _thing(value: str) -> str:
 
 
 class Relations:
-    """Judges relations in one world. `things` are its objects and people, `where` gives the point of a name."""
+    """Judges relations in one world. `things` are its objects and people, `where` gives the point of a name.
 
-    def __init__(self, world: World, things: Mapping[str, Thing], where: Callable[[str], Point | None]) -> None:
-        self._world = world
-        self._things = things
-        self._where = where
+    `is_seen` says whether the robot has a name in view, `holder` who holds it.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        things: Mapping[str, Thing],
+        where: Callable[[str], Point | None],
+        is_seen: Callable[[str], bool],
+        holder: Callable[[str], str],
+    ) -> None:
+        self._world, self._things, self._where = world, things, where
+        self._is_seen, self._holder = is_seen, holder
 
     def holds(self, name: str, parts: Mapping[str, str], pose: Pose) -> bool:
         """Whether a thing stands as the parts say, and is nothing that they deny, as seen from a pose."""
@@ -75,11 +91,25 @@ class Relations:
                 return False
             if part in DENIED and self._is_like(name, DENIED[part], text.split("; ")):
                 return False
-            if part in RELATIONS and not any(
-                self._stands(name, part, other, pose) for other in self._meant(text, pose)
-            ):
+            if part in RELATIONS and not self._is_so(name, part, text, pose):
                 return False
         return True
+
+    def _is_so(self, name: str, relation: str, value: str, pose: Pose) -> bool:
+        if relation == "other_than":
+            return name not in self._meant(value, pose)
+        if relation == "between":
+            first, _, second = value.partition(SECOND)
+            pairs = ((one, other) for one in self._meant(first, pose) for other in self._meant(second, pose))
+            return any(self._is_between(name, one, other) for one, other in pairs)
+        return any(self._stands(name, relation, other, pose) for other in self._meant(value, pose))
+
+    def _is_between(self, name: str, one: str, other: str) -> bool:
+        points = [self._point(each) for each in (name, one, other)]
+        if None in points or len({name, one, other}) < 3:
+            return False
+        point, start, end = points
+        return segment_distance(point, (*start, *end)) <= BETWEEN * dist(start, end)  # type: ignore[arg-type,misc]
 
     def _is_like(self, name: str, part: str, values: list[str]) -> bool:
         wanted = {value.lower() for value in values}
@@ -115,6 +145,12 @@ class Relations:
         """Whether one named thing stands so to another. Raises RobotError for what a map can't tell."""
         if relation in ("under", "above"):
             raise RobotError(f"I can't tell what is {relation} {said(other)}")
+        if relation == "held_by":
+            return self._holder(name) == other
+        if relation == "seen_by":
+            if other != SELF:
+                raise RobotError(f"I can't tell what {said(other)} sees")
+            return self._is_seen(name)
         if other == SELF:
             return _is_beside(relation, self._point(name), pose)
         zone = next((zone for zone in self._world.zones if zone.name == other), None)

@@ -294,7 +294,9 @@ class SimulatedRobot(Guarded):
 
     def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
         """A name that is the "nearest", "random" and so on. Raises RobotError if there is none."""
-        return self._surroundings.choose(kind, how, parts, lambda: self.pose, self._choices, self.on_event)
+        return self._surroundings.choose(
+            kind, how, parts, lambda: self.pose, lambda: self.set_out_from, self._choices, self.on_event
+        )
 
     def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
         """The objects or people with these parts that the robot knows, nearest first."""

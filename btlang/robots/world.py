@@ -10,7 +10,7 @@ from btlang.robots.geometry import Point, Pose, Segment, contains
 from btlang.robots.likeness import Parts, of_person, of_thing, wears
 from btlang.robots.visits import Visits
 from btlang.text.time_of_day import USUAL_START
-from btlang.vocabulary.references import PARTS
+from btlang.vocabulary.references import HOME, PARTS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -270,7 +270,8 @@ class World(Record):
     `docks` the place of its name.
 
     `clock` is the time of day at its start, in seconds since midnight, on a `weekday` (0: Monday); `seed` is that of
-    runs which are given none.
+    runs which are given none. `ordinals` says what `the second room` counts by: the "way" from the robot, or the
+    "name". `home` is the place that is meant by that word.
     """
 
     start: Pose
@@ -288,6 +289,8 @@ class World(Record):
     seed: int | None = None
     weekday: int = 0
     docks: tuple[Place, ...] = ()
+    ordinals: str = "way"
+    home: str = ""
 
     @property
     def all_docks(self) -> tuple[Place, ...]:
@@ -304,6 +307,9 @@ class World(Record):
         named = (self.places, self.objects, self.people, self.zones, self.doors)
         likes = (("object", self.objects), ("person", self.people), ("place", self.places))
         features = {kind: tuple((thing.name, thing.parts) for thing in things) for kind, things in likes}
+        if self.home:
+            at_home = ((name, (*parts, HOME) if name == self.home else parts) for name, parts in features["place"])
+            features["place"] = tuple(at_home)
         places, objects, people, zones, doors = (tuple(each.name for each in kind) for kind in named)
         return WorldNames(places, objects, people, zones, doors, features)
 

@@ -109,13 +109,15 @@ def _world(top: Table, radius: float | None, bounded: bool = False) -> World:
     faults = _made(problems.rows(top, "faults", lambda table: _fault(table, names, docks)))
     clock, weekday = problems.part(lambda: _clock(top) if top.has("clock") else (USUAL_START, 0), (USUAL_START, 0))
     seed = problems.part(lambda: int(top.number("seed", low=0.0)) if top.has("seed") else None, None)
+    ordinals = problems.part(lambda: top.choice("ordinals", ("way", "name"), "way"), "way")
+    home = problems.part(lambda: top.choice("home", names, ""), "")
     problems.part(lambda: top.finish(None), None)
     objects, people, zones, doors = (_made(rows[key]) for key in ("objects", "people", "zones", "doors"))
     zones += tuple(each[1] for each in with_areas if each and each[1] is not None)
     people += tuple(person for crowd in _made(rows["crowds"]) for person in crowd)
     world = World(
         start or Pose(0.0, 0.0), battery, _made(pieces), boxes, places, objects, people, faults, dock, clock, zones,
-        doors, seed, weekday, _made(rows["docks"]),
+        doors, seed, weekday, _made(rows["docks"]), ordinals, home,
     )  # fmt: skip
     problems.found += _names_given_twice(rows)
     problems.found += _without_room(world, rows, radius)

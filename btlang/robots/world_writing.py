@@ -30,6 +30,9 @@ def as_data(world: World) -> dict[str, Any]:
         data["clock"] = f"2026-01-{_MONDAY + world.weekday:02} {shown(world.clock)}"
     if world.seed is not None:
         data["seed"] = world.seed
+    data |= {
+        key: value for key, value in (("ordinals", world.ordinals), ("home", world.home)) if value not in ("", "way")
+    }
     if dock is not None:
         data["dock"] = {"x": dock.x, "y": dock.y, "facing": dock.facing}
     if world.walls:

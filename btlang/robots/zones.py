@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import partial
+from math import dist
 
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.geometry import Point
+from btlang.robots.geometry import Point, edges, segment_distance
 from btlang.robots.world import Zone, said
+
+CLEAR = 0.8
+"""Metres from the border of a zone at which the robot goes that enters or leaves it."""
+_OVER, _APART = 0.4, 0.5  # metres from the border at which it has done so; between two points along it
 
 
 class Restriction:
@@ -96,6 +102,28 @@ class Zones:
     def contains(self, name: str, point: Point) -> bool:
         """Whether a point lies in a zone. Raises ActionFailed for an unknown one."""
         return self._zone(name).contains(point)
+
+    def spots(self, name: str, point: Point, inside: bool) -> list[Point]:
+        """Points a little inside or outside the border of a zone, the nearest to a point first."""
+        zone = self._zone(name)
+        found: list[Point] = []
+        for (ax, ay), (bx, by) in edges(zone.points):
+            length = dist((ax, ay), (bx, by)) or 1.0
+            for number in range(int(length / _APART) + 1):
+                share = min(1.0, (number + 0.5) * _APART / length) if length > _APART else 0.5
+                x, y = ax + share * (bx - ax), ay + share * (by - ay)
+                away = CLEAR * (by - ay) / length, CLEAR * (bx - ax) / length
+                found += [(x - away[0], y + away[1]), (x + away[0], y - away[1])]
+        if inside:
+            xs, ys = zip(*zone.points, strict=True)
+            found.append((sum(xs) / len(xs), sum(ys) / len(ys)))
+        return sorted((spot for spot in found if zone.contains(spot) == inside), key=partial(dist, point))
+
+    def is_over(self, name: str, point: Point, inside: bool) -> bool:
+        """Whether a point is in a zone, or outside, and not right at its border."""
+        zone = self._zone(name)
+        border = min(segment_distance(point, (*start, *end)) for start, end in edges(zone.points))
+        return zone.contains(point) == inside and border >= _OVER
 
     def _say(self, name: str, closed: bool) -> None:
         self._said[self._zone(name).name] = closed

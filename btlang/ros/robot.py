@@ -408,7 +408,9 @@ class RosRobot(Guarded):
 
     def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
         """A name of the world file or the mission, or of who was seen. Raises RobotError if there is none."""
-        return self._places.choose(kind, how, parts, lambda: self.pose, self._choices, self.on_event)
+        return self._places.choose(
+            kind, how, parts, lambda: self.pose, lambda: self.set_out_from, self._choices, self.on_event
+        )
 
     def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
         """The objects or people with these parts that the robot knows, nearest first."""

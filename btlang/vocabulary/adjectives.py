@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from btlang.text.words import Words
-from btlang.vocabulary.references import DENIED, Parts
+from btlang.vocabulary.references import DENIED, LATEST, Parts
 from btlang.vocabulary.word_tree import WordTree, find, tree_of
 
 TYPE_CHECKING = False
@@ -36,6 +36,7 @@ class Adjectives:
 
     def __init__(self, language: Mapping[str, Any]) -> None:
         self._determiners = tree_of((phrase, "") for phrase in language["determiners"])
+        self._different = tree_of((phrase, "") for phrase in language["others"])
         self.denials: tuple[str, ...] = tuple(language["denials"])
         """The words before an adjective that deny it; one that ends in a hyphen is a part of the word."""
         self._colored: list[str] = language["colored"]
@@ -86,6 +87,9 @@ class Adjectives:
             if found is not None and not any(i in text.articles for i in range(at + 1, last)):
                 value = _only_person(text, at, names) if found[0] == _SOMEBODY else found[0]
                 yield (((part, value),) if value else ()), found[1]
+        other = find(self._different, text.words, at)
+        if other is not None:
+            yield (("other_than", LATEST),), other[1]
         skipped = find(self._determiners, text.words, at) if determined else None
         if skipped is not None:
             yield (), skipped[1]
@@ -110,7 +114,7 @@ class Adjectives:
     def starts(self, names: Names, is_told: Callable[[str], bool]) -> frozenset[str]:
         """The words at which one may begin that says a part which can be judged."""
         trees = [names(part) for part in (*_BEFORE, OWNER) if is_told(part)]
-        return frozenset(word for tree in (*trees, self._determiners) for word in tree)
+        return frozenset(word for tree in (*trees, self._determiners, self._different) for word in tree)
 
 
 def _only_person(text: Words, at: int, names: Names) -> str:

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping
 from btlang.text.words import Words
 from btlang.vocabulary.adjectives import Adjectives
 from btlang.vocabulary.pattern import ways
-from btlang.vocabulary.references import ADJECTIVES, DENIED, RELATIONS, SELF, Parts
+from btlang.vocabulary.references import ADJECTIVES, DENIED, RELATIONS, SECOND, SELF, Parts
 from btlang.vocabulary.word_tree import WordTree, find, tree_of
 
 TYPE_CHECKING = False
@@ -49,6 +49,7 @@ class Modifiers:
         clauses = (*((phrase, True) for phrase in self._relatives), *((phrase, False) for phrase in self._denials))
         self._clauses = tree_of(clauses)
         self._either = frozenset(language["roles"].get("or", ()))
+        self._both: list[str] = language["roles"].get("and", [])
         self.starts = frozenset((*self._relations, *self._clauses, *self._self_relations))
         """The words with which something behind a head may begin."""
 
@@ -108,7 +109,8 @@ class Modifiers:
             if name in RELATIONS and value == SELF:
                 words.append(self._to_self[name][0])
             elif name in RELATIONS:
-                words.append(f"{self._words[name][0]} {self._said_thing(value, spoken)}")
+                things = (self._said_thing(each, spoken) for each in value.split(SECOND))
+                words.append(f"{self._words[name][0]} {f' {self._both[0]} '.join(things)}")
             elif name in DENIED:
                 kind = DENIED[name]
                 word = f" {self._first_or} ".join(spoken(kind, each) for each in value.split("; "))
@@ -144,11 +146,15 @@ class Modifiers:
         found = find(self._relations, text.words, at)
         if found is not None and kind in RELATIONS[found[0]]:
             for value, end in self._thing(text, found[1], names, depth):
-                yield ((found[0], value),), end
+                if found[0] != "between":
+                    yield ((found[0], value),), end
+                elif depth == 1 and text.words[end] in self._both:
+                    for second, last in self._thing(text, end + 1, names, depth):
+                        yield ((found[0], f"{value}{SECOND}{second}"),), last
 
     def _thing(self, text: Words, at: int, names: Names, depth: int) -> Iterator[tuple[str, int]]:
         """What a relation leads to: a name, or a kind with its adjectives; the shortest first."""
-        head = self._head(text, at, names)
+        head = self._head(text, at, names) or _in_braces(text, at)
         if head is None:
             return
         kind, value, end = head
@@ -187,3 +193,13 @@ class Modifiers:
                 if text.words[end] not in self._either:
                     break
                 end += 1
+
+
+def _in_braces(text: Words, at: int) -> tuple[str, str, int] | None:
+    """A value of the mission in the place of a name: `different from {object}`."""
+    end = at + 1
+    if text.words[at] != "{" or "}" not in text.words[end : end + _LONGEST_CLAUSE]:
+        return None
+    while text.words[end] != "}":
+        end += 1
+    return "", f"{{{'_'.join(text.words[at + 1 : end])}}}", end + 1

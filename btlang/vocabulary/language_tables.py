@@ -27,7 +27,8 @@ GOES_ON = frozenset((
 NO_PHRASES = frozenset((
     "define_strong", "define", "fact", "facing", "set_to", "by", "remember_as", "each_in",
     "called", "with", "giving", "node", "newline", "character", "main_name", "given", "here",
-    "needs_world", "needs_words", "all_names", "except", "nearest", "random", "largest", "smallest",
+    "needs_world", "needs_words", "all_names", "except", "nearest", "random", "largest", "smallest", "furthest",
+    "leftmost", "rightmost",
     "without_entering", "without_leaving", "may", "or_stay",
 ))  # fmt: skip
 """Roles whose words are looked for where definitions, facts and nodes are, and nowhere else."""
@@ -38,7 +39,8 @@ CHANGING = ("increase", "decrease")
 ASKING = (
     "journey", "search", "whereabouts", "counting", "asking_be", "asking_do", "answers", "feeling", "there",
     "very", "states", "subject", "been", "towards", "going", "finding_out",
-    "inspecting", "telling", "whole", "located", "wishing", "wished", "fetching", "begging", "resuming", "interrupting",
+    "inspecting", "telling", "whole", "located", "wishing", "wished", "fetching", "begging", "home",
+    "resuming", "interrupting",
     "if_yes", "if_no",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
@@ -67,7 +69,8 @@ _NO_SLOT = (
     "define_strong", "define", "fact", "facing",
     "set", "set_to", "increase", "decrease", "by", "remember", "remember_as", "each", "each_in", "include",
     "do", "test", "called", "with", "giving", "node", "newline", "character", "main_name", "given",
-    "needs_world", "needs_words", "all_names", "except", "nearest", "random", "largest", "smallest",
+    "needs_world", "needs_words", "all_names", "except", "nearest", "random", "largest", "smallest", "furthest",
+    "leftmost", "rightmost",
 )  # fmt: skip
 ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),
@@ -92,7 +95,8 @@ WORD_LISTS = frozenset((
     "articles", "titles", "plural_pronouns", "further", "politeness",
     "unit_joiner", "one_each", "every_second", "quantifiers",
     "halting", "asked_once", "relatives",
-    "relative_denials", "particles", "fillers", "speaker", "subjects", "purpose", "determiners", "denials",
+    "relative_denials", "particles", "fillers", "speaker", "subjects", "purpose", "determiners", "others",
+    "denials",
     "possessive_endings", "ones", "directions", "clause_openers", "clause_words", "sayings", "of_persons", "colored",
 ))  # fmt: skip
 
@@ -134,6 +138,10 @@ def _time(value: object) -> bool:
     return not isinstance(value, bool) and value in (0, 12)
 
 
+def _ordinal(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value != 0
+
+
 def _hour(value: object) -> bool:
     return not isinstance(value, bool) and value in range(24)
 
@@ -173,6 +181,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "nodes": (_is_text, "the words of a node"),
     "contractions": (_is_contracted, "a word, or two"),
     "direct": (_patterns, "a list of patterns"),
+    "ordinals": (_ordinal, "a whole number, below 0 from the last one on"),
     "counts": (_rounds, "a whole number from 1 on, or -1 for endless"),
     "numbers": (_number, "a number"),
     "multipliers": (_number, "a number"),
@@ -237,11 +246,12 @@ _LANGUAGE: dict[str, Any] = {
     "every_second": [],
     "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},
     "relations_to_self": {},
-    "determiners": [], "denials": [], "possessive_endings": [], "ones": [], "directions": [],
+    "determiners": [], "others": [], "denials": [], "possessive_endings": [], "ones": [], "directions": [],
     "clause_openers": [], "clause_words": [], "sayings": [], "of_persons": [], "colored": [],
     "possessives": {"speaker": [], "others": []},
     "prepositions": {}, "synonyms": {}, "particles": [], "fillers": [], "speaker": [], "subjects": [], "purpose": [],
-    "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {}, "doing": {},
+    "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "ordinals": {}, "counts": {}, "negations": {},
+    "doing": {},
     "third_person": {}, "direct": {},
     "negative_subjects": {}, "plurals": {}, "asking": {}, "plural_endings": {}, "nouns": {}, "everyone": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {}, "times": {},

@@ -27,8 +27,9 @@ from btlang.vocabulary.language_tables import (
 from btlang.vocabulary.nouns import Features, with_plurals
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants, ways
 from btlang.vocabulary.reading_context import Known, ReadingContext
+from btlang.vocabulary.references import HOME
 from btlang.vocabulary.trie import TrieNode, add, collisions
-from btlang.vocabulary.value_type import PLACE, WORLD, ValueType
+from btlang.vocabulary.value_type import PLACE, WORLD, ZONE, ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import Frame, parts_of, phrases_of
 from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS, WordTree, tree_of
@@ -97,7 +98,7 @@ class Lexicon:
             for kind, words, name in file.names:
                 if self.types[kind].kind == "names":
                     self.values.add_name(kind, self._bare(words), name)
-        nouns = chain(*(language["nouns"].get(kind, (kind,)) for kind in (PLACE, "zone")))
+        nouns = chain(*(language["nouns"].get(kind, (kind,)) for kind in (PLACE, ZONE)))
         self._heads = sorted({*self.values.ones, *nouns})
         own = {kind: [(name, name) for name in self.values.listed(kind)] for kind in WORLD if kind in self.types}
         for kind, pairs in self._colors(own).items():
@@ -190,6 +191,9 @@ class Lexicon:
 
         def made() -> Lexicon:
             pairs = {kind: [(self._bare(name), name) for name in listed] for kind, listed in names.items()}
+            home = next((name for name, parts in (features or {}).get(PLACE, ()) if HOME in parts), "")
+            if home:
+                pairs[PLACE] = [*pairs[PLACE], *((words, home) for words in self.asking["home"])]
             colors = self._colors(pairs)
             pairs = with_plurals({kind: [*own, *colors.get(kind, ())] for kind, own in pairs.items()}, self._endings)
             values = self.values.with_names(pairs, features)
@@ -204,7 +208,7 @@ class Lexicon:
         """`the green`, `the green one` and `the green area` for the green room, where no other name has that color."""
         names = {name.lower() for pairs in named.values() for _, name in pairs}
         made = {}
-        for kind in (PLACE, "zone"):
+        for kind in (PLACE, ZONE):
             firsts = [(words.lower().partition(" ")[0], name) for words, name in named.get(kind, ()) if " " in words]
             colors = [(color, name) for color, name in firsts if self.values.takes_word("color", color)]
             own = [pair for pair in colors if sum(f"{name} ".startswith(f"{pair[0]} ") for name in names) == 1]

@@ -9,8 +9,8 @@ from btlang.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.adjectives import UNSLOTTED, Adjectives
 from btlang.vocabulary.pattern import Form, Slot, forms
-from btlang.vocabulary.references import ALL, CHOICES, DENIED, SIZED, Parts
-from btlang.vocabulary.value_type import OBJECT, WORLD
+from btlang.vocabulary.references import ALL, CHOICES, DENIED, PLACED, SIZED, Parts, ordinal
+from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE, WORLD
 from btlang.vocabulary.word_tree import END, SLOTS, WordTree, find, insert
 
 TYPE_CHECKING = False
@@ -219,8 +219,9 @@ def noun_phrases(
     roles: Mapping[str, list[str]] = language["roles"]
     every = [(tuple(words.split()), ALL) for words in roles.get("all_names", ())]
     chosen = [(tuple(words.split()), how) for how in CHOICES for words in roles.get(how, ())]
+    chosen += [(tuple(words.split()), str(number)) for words, number in language["ordinals"].items()]
     for kind in (kind for kind in kinds if kind not in _FORMS):
-        ways = every + [way for way in chosen if kind in WORLD and (way[1] not in SIZED or kind == OBJECT)]
+        ways = every + [way for way in chosen if _may_choose(kind, way[1])]
         for words in language["nouns"].get(kind, (kind,)):
             found.add_type(words, kind)
             for before, how in ways:
@@ -236,6 +237,13 @@ def noun_phrases(
                     )
                     _add_declared(found, noun, form, ways if takes_more else ())
     return found
+
+
+def _may_choose(kind: str, how: str) -> bool:
+    """Whether names of a type can be chosen so: objects alone have a size, and not every type has a point to see."""
+    if how in SIZED:
+        return kind == OBJECT
+    return kind in (WORLD if not (how in PLACED or ordinal(how)) else (OBJECT, PLACE, PERSON))
 
 
 def _add_declared(nouns: Nouns, noun: Noun, form: Form, ways: Iterable[tuple[Form, str]]) -> None:

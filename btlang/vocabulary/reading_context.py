@@ -9,7 +9,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.nouns import Description
-from btlang.vocabulary.references import ALL, CHOICES, Choice, Parts, choice_of
+from btlang.vocabulary.references import ALL, CHOICES, LATEST, Choice, Parts, choice_of, ordinal
 from btlang.vocabulary.value_type import DOOR, PLACE, WORLD, format_number
 from btlang.vocabulary.values import Values, key_of
 from btlang.vocabulary.word_tree import find
@@ -118,7 +118,7 @@ class ReadingContext:
         """
         for meant, end in self.values.groups(text, at, kind) if kind in WORLD else ():
             if meant.type == kind:
-                choice = Choice(ALL, kind, self.keys.get(kind, kind), meant.parts)
+                choice = Choice(ALL, kind, self.keys.get(kind, kind), self._settled(kind, meant.parts))
                 yield "" if self.values.likenesses.members(choice) == () else choice.text, meant, end
 
     def without(self, group: str, text: Words, at: int) -> tuple[str, int] | None:
@@ -160,7 +160,15 @@ class ReadingContext:
         return best
 
     def _described(self, kind: str, how: str, parts: Parts) -> str:
-        return Choice(how, kind, self.keys.get(kind, kind), tuple(sorted(parts))).text
+        return Choice(how, kind, self.keys.get(kind, kind), self._settled(kind, tuple(sorted(parts)))).text
+
+    def _settled(self, kind: str, parts: Parts) -> Parts:
+        """With the latest value of a type in the place of `another`, which says nothing where there is none."""
+        if all(value != LATEST for _, value in parts):
+            return parts  # as nearly always
+        latest = self.latest.get(kind, "")
+        known = latest if latest and choice_of(latest) is None else ""
+        return tuple((name, known if value == LATEST else value) for name, value in parts if known or value != LATEST)
 
     def any(self, text: Words, at: int) -> tuple[tuple[str, ...], str, int] | None:
         """A value of any type: the types that it can be, its port text, and where it ends."""
@@ -254,10 +262,10 @@ class ReadingContext:
     def _chosen(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """What is chosen of the type, to be put into a key; without a text where there is no name."""
         chosen = self.choice(text, at, kind)
-        if chosen is None or chosen[0].how not in CHOICES:
+        if chosen is None or not (chosen[0].how in CHOICES or ordinal(chosen[0].how)):
             return None
-        choice = Choice(chosen[0].how, kind, self.keys.get(kind, kind), chosen[0].parts)
-        return choice.text if self.values.listed(kind) or self.known is None else "", chosen[1]
+        choice = self._described(kind, chosen[0].how, chosen[0].parts)
+        return choice if self.values.listed(kind) or self.known is None else "", chosen[1]
 
     def _said_again(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """`the door` for the door that was said before, by the last word of its name."""

@@ -12,8 +12,11 @@ from btlang.record import Record
 from btlang.vocabulary.entry import POINT
 
 SIZED = ("largest", "smallest")
-CHOICES = ("nearest", "seen", "random", *SIZED)
-"""The ways to choose a name; "seen" is the nearest in view, else the nearest known."""
+PLACED = ("furthest", "leftmost", "rightmost")
+CHOICES = ("nearest", "seen", "random", *SIZED, *PLACED)
+"""The ways to choose a name; "seen" is the nearest in view, else the nearest known. A number is one more: "2" is the
+second one, "-1" the last.
+"""
 ALL = "all"
 """In place of such a way: all names that are meant, one after the other. The part "count" says how many."""
 COUNT = "count"
@@ -31,11 +34,18 @@ RELATIONS: dict[str, tuple[str, ...]] = {
     "on": ("object",), "inside": ("object", "person", "place"), "at": ("object", "person"), "off": ("object",),
     "near": _EVERYTHING, "beside": _EVERYTHING, "behind": _EVERYTHING, "in_front_of": _EVERYTHING,
     "left_of": _EVERYTHING, "right_of": _EVERYTHING, "under": ("object", "place"), "above": ("object", "place"),
-    "part_of": ("object", "place"),
+    "part_of": ("object", "place"), "between": _EVERYTHING, "other_than": _EVERYTHING, "seen_by": ("object", "person"),
+    "held_by": ("object",),
 }  # fmt: skip
 """How a thing may stand to another one that describes it, each with the types of things of which that can be said."""
 SELF = "robot"
 """The robot itself, as what a relation leads to: the counter on its left."""
+LATEST = "{}"
+"""The latest value of the type, as what a relation leads to, until it is known which one that is: `another cup`."""
+HOME = ("home", "")
+"""The part of the place that is meant by the word for home."""
+SECOND = "; and "
+"""What stands between both things that something is between."""
 DENIED = {"not_color": "color", "not_kind": "kind", "not_size": "size", "not_state": "state"}
 """What a thing is said not to be, each with the type of the value; several values stand between semicolons."""
 _NO_PARTS = ("type", "how", "output")  # the other ports of a choice
@@ -65,6 +75,11 @@ class Choice(Record):
         return f"{{{self.how} {self.type} {self.key}{''.join(f'|{name}={value}' for name, value in self.parts)}}}"
 
 
+def ordinal(how: str) -> int:
+    """The number that a way to choose is, from 1 on or from -1 back; 0 for any other way."""
+    return int(how) if how.lstrip("-").isdecimal() else 0
+
+
 def names_key(key: str) -> str:
     """The key for the names of a set, one of which is in the other key in each round."""
     return f"{key}_names"
@@ -84,7 +99,7 @@ def choice_of(text: str) -> Choice | None:
         return None
     first, *parts = text[1:-1].split("|")
     words = first.split(" ")
-    if len(words) != 3 or words[0] not in (*CHOICES, ALL):
+    if len(words) != 3 or not (words[0] in (*CHOICES, ALL) or ordinal(words[0])):
         return None
     named = (part.partition("=") for part in parts)
     return Choice(words[0], words[1], words[2], tuple((name, value) for name, _, value in named))

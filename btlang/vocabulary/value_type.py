@@ -12,7 +12,8 @@ PLACE = "place"
 OBJECT = "object"
 DOOR = "door"
 PERSON = "person"
-WORLD = (PLACE, "person", OBJECT, "zone", "door")
+ZONE = "zone"
+WORLD = (PLACE, PERSON, OBJECT, ZONE, DOOR)
 """The types of names that have a place: robots know where each one is."""
 
 

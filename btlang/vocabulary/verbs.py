@@ -13,6 +13,7 @@ from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.entry import GOAL, MANNER, PATH, RECIPIENT, THEME, UNMARKED, Entry, Meaning, Role
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.role_words import RoleWords
+from btlang.vocabulary.value_type import ZONE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -27,6 +28,11 @@ class Frame(Record):
     entry: Entry
     roles: tuple[Role, ...]
     particle: str = ""
+
+    @property
+    def is_about_zone(self) -> bool:
+        """Whether one of the roles takes a zone."""
+        return any(role.type == ZONE for role in self.roles)
 
     def role(self, name: str) -> Role | None:
         """The role of this name, if the verb has it."""
@@ -77,15 +83,17 @@ def fill(
 ) -> Match | None:
     """The frame that takes most of the words behind its verb, which ends at a word; `before` is the manner before it.
 
-    Of frames that take as many the one with fewer empty roles, then the first.
+    Of frames that take as many one about anything but a zone, as one goes to a place that is a zone, too; then the one
+    with fewer empty roles, then the first.
     """
     best: Match | None = None
-    empty = 0
+    empty = False, 0
     for frame in frames:
         taken = _Filling(frame, text, context, words, list_of).taken(at, before)
         if taken is None:
             continue
-        last, values, left = taken
+        last, values, number = taken
+        left = frame.is_about_zone, number
         if best is None or last > best.last or (last == best.last and left < empty):
             best, empty = Match(Meaning("command", frame.entry), last, values), left
     return best

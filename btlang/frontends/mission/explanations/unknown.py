@@ -151,7 +151,7 @@ def _misfit(
 ) -> Diagnostic:
     at = misfits[0].at
     types = [vocabulary.types[misfit.kind] for misfit in misfits]
-    wanted = " or ".join(f"{_article(kind.name)} {kind.name.replace('_', ' ')}" for kind in types)
+    wanted = either([f"{_article(kind.name)} {kind.name.replace('_', ' ')}" for kind in types])
     head = text.span(first, at).text
     example = f"{head} {_value_example(types[0], vocabulary)}"
     if text.words[at] == "(" and end > at and any(kind.name == PLACE for kind in types):
@@ -181,7 +181,7 @@ def _misfit(
     span = text.span(at, next((i for i in range(at + 1, end) if text.words[i] in following), max(end, at + 1)))
     pronoun = find(vocabulary.values.pronoun_words, text.words, at) if named else None
     if pronoun is not None:
-        kinds = " or ".join(kind.name for kind in named)
+        kinds = either([kind.name for kind in named])
         return diagnostic(
             "BT038",
             text.span(at, pronoun[1]),
@@ -191,7 +191,7 @@ def _misfit(
         )
     if named:
         known = [name for kind in named for name in vocabulary.values.said_names(kind.name)]
-        kinds = " or ".join(dict.fromkeys(_KIND_NAMES.get(kind.name, kind.name) for kind in named))
+        kinds = either([*dict.fromkeys(_KIND_NAMES.get(kind.name, kind.name) for kind in named)])
         near = nearest(span.text.lower(), known)
         fix = (span, near[0]) if near else None
         understood = f"I understood '{head} ...'. " if at > first else ""
@@ -383,3 +383,9 @@ def _value_example(kind: ValueType, vocabulary: Lexicon) -> str:
 
 def _article(word: str) -> str:
     return "an" if word[0] in "aeiou" else "a"
+
+
+def either(words: list[str]) -> str:
+    """Several words as alternatives: "a place, a person or a door"."""
+    *others, last = words
+    return f"{', '.join(others)} or {last}" if others else last

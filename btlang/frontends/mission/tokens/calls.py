@@ -17,7 +17,7 @@ from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import ALL, NAMES, Choice, choice_of, keys_in, point_ports, renamed
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.value_type import PERSON, PLACE, WORLD
+from btlang.vocabulary.value_type import PERSON, PLACE, WORLD, ZONE
 from btlang.vocabulary.values import key_of
 
 NEGATED = frozenset(("negated", "negated_twice"))
@@ -159,6 +159,8 @@ class Calls:
             if choice is not None:
                 self._context.met.add(choice.key)
             self._context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
+            if value.type == PLACE and latest in self._vocabulary.values.listed(ZONE):
+                self._context.latest[ZONE] = latest  # `go to the lab, then leave it`
 
     def _note_owners(self, value: SlotValue) -> None:
         """BT177 for each owner of whom it isn't known what they own: `my cup`, but not the cup called "my cup"."""
