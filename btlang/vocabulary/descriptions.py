@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping
 from btlang.text.words import Words
 from btlang.vocabulary.adjectives import Adjectives
 from btlang.vocabulary.pattern import ways
-from btlang.vocabulary.references import ADJECTIVES, DENIED, RELATIONS, SECOND, SELF, Parts
+from btlang.vocabulary.references import ADJECTIVES, DENIED, LATEST, RELATIONS, SECOND, SELF, Parts
 from btlang.vocabulary.word_tree import WordTree, find, tree_of
 
 TYPE_CHECKING = False
@@ -167,6 +167,8 @@ class Modifiers:
         """The longest name, or kind where no name is as long; both may have adjectives before them."""
         best: tuple[str, str, int] | None = None
         for parts, start in ((), at), *self.before(text, at, names):
+            if ("other_than", LATEST) in parts:
+                continue  # than which one depends on what is described
             heads = [(kind, "", find(names(kind), text.words, start)) for kind in _HEADS]
             for kind, of, found in (*heads, ("object", "kind ", find(names("kind"), text.words, start))):
                 if found is not None and (best is None or found[1] > best[2]):

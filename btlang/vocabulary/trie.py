@@ -15,7 +15,7 @@ from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.pattern import Form, Slot
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import RELATIONS, choice_of
-from btlang.vocabulary.value_type import TEXT, WORLD, ValueType
+from btlang.vocabulary.value_type import TEXT, WORLD, ZONE, ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import fill
 from btlang.vocabulary.word_tree import END, NO_WORDS, SLOTS, VERBS
@@ -131,10 +131,12 @@ def longest(
             break
         node, i, found = paths.pop()
     holds_place = any(map(_is_related, best_values)) if verbs else False
-    if verbs and (best is None or holds_place or _may_be_longer(words, best_last, context)):
+    is_about_zone = any(map(_is_zone, best_values)) if verbs else False
+    if verbs and (best is None or holds_place or is_about_zone or _may_be_longer(words, best_last, context)):
         for node, i in verbs:
             match = _filled(root, node, text, i, context, names)
             says_more = match is not None and holds_place and len(match.values) > len(best_values)
+            says_more |= match is not None and is_about_zone and not any(map(_is_zone, match.values))
             if match is not None and (
                 best is None or match.last > best_last or (says_more and match.last == best_last)
             ):
@@ -144,6 +146,11 @@ def longest(
         if match is not None and match.last > best_last:
             return match
     return Match(best, best_last, best_values) if best is not None else None
+
+
+def _is_zone(value: SlotValue) -> bool:
+    """Whether a value gives way to a place of the same name."""
+    return value.type == ZONE
 
 
 def _is_related(value: SlotValue) -> bool:
