@@ -184,6 +184,8 @@ _ALL = (
     Code("BT159", "It isn't clear what is to be said: '{word}' {reason}.", "Put it in quotes, for example: {example}"),
     Code("BT158", "'{words}' only says something, so nothing is done about it.", "", "note", "remark"),
     Code("BT160", "'{words}' {problem}.", "Write for example: {example}"),
+    Code("BT161", "'{words}' can't end so: a condition ends what is forbidden.", "Write for example: {example}"),
+    Code("BT162", "'{words}' leads where the robot may not go: it keeps out of '{zone}'."),
     Code("BT170", "'{words}' starts again each time it has ended.",
          "To keep that, write: {again}\nTo do it once, write: {once}", "warning", "starts again"),
     Code("BT171", "All that follows waits for '{condition}', too.",

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.errors import MissionError, in_order
+from btlang.passes.closed_goals import check_goals
 from btlang.passes.compilation import Compilation, Pass
 from btlang.passes.lint.allow import silence, silence_in_xml
 from btlang.passes.lint.asked_once import asked_once
@@ -36,6 +37,7 @@ CHECKS = (
     Pass("types", check_types),
     Pass("size", check_size, goes_on=True),
     Pass("resources", check_resources, goes_on=True),
+    Pass("goals", check_goals, goes_on=True),
 )
 PASSES = (
     *CHECKS,

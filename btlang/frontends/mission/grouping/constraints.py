@@ -38,7 +38,7 @@ def taken(scan: Scan, token: Token) -> bool:
         entry.constraints.append(constraint)
         scan.next(token, False)
         return True
-    behind = _behind_joint(scan)
+    behind = _behind_joint(scan, constraint.kind == "keep in")
     if not behind:
         return False
     if scan.raw[behind - 1].kind in _UNTIL and scan.raw[behind + 1].kind not in ENDS:
@@ -86,8 +86,11 @@ def _enclose(scan: Scan, command: int) -> None:
     scan.raw[scan.at : scan.at] = [Token("open", start, start)]
 
 
-def _behind_joint(scan: Scan) -> int:
-    """The place of the first command that a constraint in front is about; 0 where there is none."""
+def _behind_joint(scan: Scan, stays: bool) -> int:
+    """The place of the first command that a constraint in front is about; 0 where there is none.
+
+    What is avoided is so on a journey; who `stays` somewhere does so whatever is done.
+    """
     at, raw = scan.at + 1, scan.raw
     if raw[scan.at].role == "fronted" and raw[at].kind == "command":
         return at if _has_journey(scan, at) else 0  # `without entering the kitchen go to the lab`
@@ -97,11 +100,13 @@ def _behind_joint(scan: Scan) -> int:
     if not (ends or raw[at].kind in _FRONTED):
         return 0
     at += 1
+    if stays and raw[at].kind == "wait_until":
+        return at  # `stay in the kitchen and wait until Bob comes`
     while constraint_of(raw[at]) is not None and raw[at + 1].kind in _FRONTED:
         return at if _has_journey(scan, at) else 0  # `avoid A and avoid B and go to C`
     if raw[at].kind != "command" and (ends or raw[at].kind not in ("open", "repeat", "try", "retry", "if", "unless")):
         return 0
-    return at if _has_journey(scan, at) else 0
+    return at if stays or _has_journey(scan, at) else 0
 
 
 def _has_journey(scan: Scan, at: int) -> bool:

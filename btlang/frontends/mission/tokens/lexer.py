@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Mapping
+from functools import partial
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
@@ -14,6 +15,7 @@ from btlang.frontends.mission.token import RULES, Token, constraint_of, go_on
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_names import condition_names, settle
 from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
+from btlang.frontends.mission.tokens.ended_rules import OPEN, with_ends
 from btlang.frontends.mission.tokens.order_words import OrderWords
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
 from btlang.frontends.mission.tokens.remarks import Remarks
@@ -107,6 +109,8 @@ class Lexer:
             self._verb_forms,
         )  # fmt: skip
         self._lines()
+        spans = partial(Span, source)
+        self.problems += with_ends(self.tokens, self.vocabulary.entry(OPEN), spans, self.vocabulary.word)
         self.conditions = condition_names(self.tokens, self.names.included_conditions())
         """The defined names that stand for conditions."""
         settle(self.tokens, self.conditions)
