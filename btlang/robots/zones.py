@@ -119,6 +119,14 @@ class Zones:
             found.append((sum(xs) / len(xs), sum(ys) / len(ys)))
         return sorted((spot for spot in found if zone.contains(spot) == inside), key=partial(dist, point))
 
+    def has(self, name: str) -> bool:
+        """Whether there is a zone of this name."""
+        return name.lower() in self._zones
+
+    def corners(self, name: str) -> Sequence[Point]:
+        """The corners of a zone. Raises ActionFailed for an unknown one."""
+        return self._zone(name).points
+
     def is_over(self, name: str, point: Point, inside: bool) -> bool:
         """Whether a point is in a zone, or outside, and not right at its border."""
         zone = self._zone(name)

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping
 from btlang.text.words import Words
 from btlang.vocabulary.adjectives import Adjectives
 from btlang.vocabulary.pattern import ways
-from btlang.vocabulary.references import ADJECTIVES, DENIED, LATEST, RELATIONS, SECOND, SELF, Parts
+from btlang.vocabulary.references import ADJECTIVES, ALL, DENIED, LATEST, RELATIONS, SECOND, SELF, Parts
 from btlang.vocabulary.word_tree import WordTree, find, tree_of
 
 TYPE_CHECKING = False
@@ -49,6 +49,7 @@ class Modifiers:
         clauses = (*((phrase, True) for phrase in self._relatives), *((phrase, False) for phrase in self._denials))
         self._clauses = tree_of(clauses)
         self._either = frozenset(language["roles"].get("or", ()))
+        self._nearest = frozenset(language["roles"].get("nearest", ()))
         self._both: list[str] = language["roles"].get("and", [])
         self.starts = frozenset((*self._relations, *self._clauses, *self._self_relations))
         """The words with which something behind a head may begin."""
@@ -57,6 +58,10 @@ class Modifiers:
     def relative(self) -> str:
         """The words that begin a relative clause: `that is`."""
         return next(iter(self._relatives), "")
+
+    def is_picked(self, how: str, text: Words, at: int) -> bool:
+        """Whether words at a place mean one thing that depends on where the robot is: `the nearest cup`."""
+        return how not in (ALL, "nearest", "seen") or text.words[at] in self._nearest
 
     def relates(self, text: Words, at: int) -> bool:
         """Whether words that say how things stand to each other begin at a word."""

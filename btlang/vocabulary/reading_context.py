@@ -10,7 +10,7 @@ from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.references import ALL, CHOICES, LATEST, Choice, Parts, choice_of, ordinal
-from btlang.vocabulary.value_type import DOOR, PLACE, WORLD, format_number
+from btlang.vocabulary.value_type import DOOR, OBJECT, PLACE, WORLD, format_number
 from btlang.vocabulary.values import Values, key_of
 from btlang.vocabulary.word_tree import find
 
@@ -57,7 +57,7 @@ class ReadingContext:
         self.same: dict[int, int] = {}
         """Where what is read is the latest of its type once more, with the words that it ends at."""
         self.listed: dict[str, str] = {}
-        """Where the latest values of a type are a list, the set of them."""
+        """Where the latest values of a type are a list, the set of them; "" where no word stands for it."""
         self.lacked = False
         self.met: set[str] = set()
         self.keys: Mapping[str, str] = {}
@@ -272,6 +272,11 @@ class ReadingContext:
         latest = self.latest.get(kind, "") if kind == DOOR and at in text.articles else ""
         return (latest, at + 1) if latest.lower().endswith(f" {text.words[at]}") else None
 
+    def _stands_for_several(self, kind: str) -> bool:
+        """Whether a word in the plural can't be the latest value alone: `the cup. Put them down`."""
+        latest = self.latest.get(kind, "")
+        return kind in self.listed or (kind == OBJECT and latest[:1] not in ("", "{") and not latest.endswith("s"))
+
     def _another(self, kind: str, text: Words, end: int) -> tuple[str, int] | None:
         """What `one` alone is: a thing of the kind of the latest one, or the thing itself where it has no kind."""
         latest, behind = self.latest.get(kind, "{"), text.words[end]
@@ -287,7 +292,8 @@ class ReadingContext:
         is_one = kind in self.pronouns.get(word, ())
         if is_one and word in self.values.ones:
             return self._another(kind, text, end)
-        if is_one and kind in self.listed and word in self.values.plural_pronouns:
-            return self.listed[kind], end
+        if is_one and word in self.values.plural_pronouns and self._stands_for_several(kind):
+            self.lacked |= not self.listed.get(kind)
+            return (self.listed[kind], end) if self.listed.get(kind) else None
         self.lacked |= is_one and kind not in self.latest
         return (self.latest[kind], end) if is_one and kind in self.latest else None

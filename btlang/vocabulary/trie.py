@@ -225,7 +225,8 @@ def all_names(
     other = longest(root, text, at, context, lists=False) if last else None
     if last and (other is None or other.last <= last):  # `except if` is another word
         value = context.read(kind, text, last)
-        if value is None:
+        choice = choice_of(value[0]) if value is not None else None
+        if value is None or (choice is not None and context.values.modifiers.is_picked(choice.how, text, last)):
             return SlotValue(name, kind, "", first, _end_of_unknown(root, text, last, context))
         one = SlotValue(name, kind, value[0], last, value[1])
         listed = _listed(root, text, one, context, None, is_subject=False) or one

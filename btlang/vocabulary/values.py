@@ -327,6 +327,8 @@ class Values(Measures):
         kind = meant.type
         found = self._described.several(text, at, kind) or self.choice(text, at, kind)
         found = self._resolved(found, text, at)
+        if found is not None and self.modifiers.is_picked(found[0].how, text, at):
+            return None
         parts = dict(found[0].parts) if found is not None else {}
         named = find(self._names[kind], text.words, at)
         if named is not None and (found is None or named[1] >= found[1]):
@@ -338,7 +340,7 @@ class Values(Measures):
             return "not_kind", parts["kind"], found[1]
         if parts.pop("kind", None) not in (None, dict(meant.parts).get("kind")):
             return None
-        ((part, value), *others) = parts.items()
+        [(part, value), *others] = parts.items() or [("", "")]
         return (OF[part], value, found[1]) if part in OF and not others else None
 
     def exception(self, text: Words, at: int) -> int:

@@ -33,6 +33,10 @@ def explained(text: Words, value: SlotValue, vocabulary: Lexicon, context: Readi
             "BT152", span, words=span.text, reason=f"there's no {kind} called '{unknown}'",
             advice=f"Known: {', '.join(near)}",
         )  # fmt: skip
+    picked = context.choice(text, after, kind) if after else None
+    if picked is not None and context.values.modifiers.is_picked(picked[0].how, text, after):
+        reason = f"which {kind} is left out isn't known before the robot is there"
+        return _misfit(text, value, reason, f"Say what it is like, or name it: {names[0]}")
     if after:
         return _misfit(text, value, f"it leaves out every {kind} that there is", "Leave out fewer.")
     if chosen is not None and chosen[0].parts:

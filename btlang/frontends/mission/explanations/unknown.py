@@ -35,6 +35,8 @@ from btlang.vocabulary.word_tree import SLOTS, find
 _MOST_NAMES = 6  # that a message lists
 _KIND_NAMES = {"kinds": "kind"}
 """What messages call types whose names are no words for people."""
+_LIST = "list of names"
+"""What a word in the plural needs before it."""
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
 
 
@@ -181,7 +183,9 @@ def _misfit(
     span = text.span(at, next((i for i in range(at + 1, end) if text.words[i] in following), max(end, at + 1)))
     pronoun = find(vocabulary.values.pronoun_words, text.words, at) if named else None
     if pronoun is not None:
-        kinds = either([kind.name for kind in named])
+        is_plural = pronoun[0] in vocabulary.values.plural_pronouns
+        said = is_plural and any(kind.name in context.latest for kind in named)
+        kinds = _LIST if said else either([kind.name for kind in named])
         return diagnostic(
             "BT038",
             text.span(at, pronoun[1]),

@@ -112,7 +112,7 @@ class Calls:
         """The same, with the thing of each round in the place of a pronoun for a list."""
         values = []
         for value in match.values:
-            if value.text in self._context.listed.values():
+            if value.text and value.text in self._context.listed.values():
                 choice, made = choice_of(value.text), self._lists.pop(value.type, None)
                 assert choice is not None
                 if made is not None and isinstance(made[0].value, Listed):
@@ -150,10 +150,11 @@ class Calls:
                 self._context.latest.pop(value.type, None)
                 continue
             self._context.listed.pop(value.type, None)
-            if value.more and not value.group and not any(text[:1] in _ODD for text in (value.text, *value.more)):
+            if value.more and not value.group:
                 names = (NAMES, ";".join((value.text, *value.more)))
                 key = self._context.keys.get(value.type, value.type)
-                self._context.listed[value.type] = Choice(ALL, value.type, key, (names,)).text
+                is_odd = any(text[:1] in _ODD for text in (value.text, *value.more))
+                self._context.listed[value.type] = "" if is_odd else Choice(ALL, value.type, key, (names,)).text
             latest = value.group or (value.more[-1] if value.more else value.text)
             choice = choice_of(latest) if latest[:1] == "{" else None
             if choice is not None:

@@ -23,7 +23,9 @@ _IN_CONDITIONS = frozenset(("condition", "not", "open", "either", "neither", "bo
 _AMOUNTS = frozenset(("for", "until_time", "up_to"))
 
 
-def with_ends(tokens: list[Token], opening: Entry | None, span: Callable[[int, int], Span], word: Callable[[str], str]) -> list[Diagnostic]:
+def with_ends(
+    tokens: list[Token], opening: Entry | None, span: Callable[[int, int], Span], word: Callable[[str], str]
+) -> list[Diagnostic]:
     """Makes two statements of each constraint to keep out that a condition ends; `opening` opens its zones again.
 
     Returns what is wrong with constraints that a time ends (BT161); `span` gives the place of some characters, `word` the first
@@ -35,7 +37,9 @@ def with_ends(tokens: list[Token], opening: Entry | None, span: Callable[[int, i
         constraint, until = constraint_of(tokens[at]), tokens[at + 1]
         if constraint is not None and until.kind in _AMOUNTS:
             forbidden, whole = span(tokens[at].start, tokens[at].end).text, span(tokens[at].start, until.end)
-            problems.append(diagnostic("BT161", whole, words=whole.text, example=f"{forbidden} {word('until')} {_EXAMPLE}"))
+            problems.append(
+                diagnostic("BT161", whole, words=whole.text, example=f"{forbidden} {word('until')} {_EXAMPLE}")
+            )
         begins = at == 0 or tokens[at - 1].kind in LINES
         if constraint is not None and begins and until.kind == "until" and begins_condition(tokens, at + 2):
             if constraint.kind == "keep in":

@@ -139,8 +139,8 @@ class OrderWords(SentenceReader):
         if journey is None or not (is_polite or self._is_end(pronoun[1]) or text.words[pronoun[1]] == ","):
             return 0
         is_plural = pronoun[0] in context.values.plural_pronouns
-        goal = (context.listed.get(PLACE) if is_plural else None) or context.latest.get(PLACE)
-        if goal is None:
+        goal = context.listed[PLACE] if is_plural and PLACE in context.listed else context.latest.get(PLACE)
+        if not goal:
             return 0
         if goal[:1] == "{":
             if tokens[-2].kind != "and" or not self._calls.is_round(journey, goal):
