@@ -41,15 +41,16 @@ ROWS = {
     "When btlang doesn't understand": "silenced",
     # missions.md
     "Statements": "layout", "What does not matter": "layout", "Lists of statements": "list_items",
-    "Blocks": "joined_blocks", "Brackets": "brackets", "What a mission needs": "needs", "Silencing a warning": "silenced",
+    "Blocks": "joined_blocks", "Brackets": "brackets", "What a mission needs": "needs",
+    "Silencing a warning": "silenced",
     # phrases.md
     "Phrases": "values", "Verbs with roles": "verbs_with_roles", "Journeys": "order", "Values and units": "values",
     "Texts": "layout", "Points": "points",
     # joining.md
     "One after the other": "connectives", "and": "connectives", "At the same time": "connectives",
     "Parts that never end": "going_on", "One if the other fails": "connectives",
-    "either, both and one of": "lists_of_commands", "Words left out": "left_out", "Before, after and while with a verb": "verb_forms",
-    "Words with another meaning": "meanings",
+    "either, both and one of": "lists_of_commands", "Words left out": "left_out",
+    "Before, after and while with a verb": "verb_forms", "Words with another meaning": "meanings",
     "Resources": "connectives",  # what breaks the rule of resources is a bad sample
     # grouping.md
     "From tight to loose": "connectives", "A form after a command": "postfix", "A form before a command": "reach",
