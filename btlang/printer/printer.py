@@ -56,7 +56,7 @@ class Printer:
     """Says nodes in the words of a vocabulary, where `names` are defined; `printers` say each kind of node.
 
     With `brackets` "all" each chain and form inside another one is bracketed, with "needed" only those whose reading
-    needs it (see the table in docs/language/joining.md): what binds less tightly than what is around it,
+    needs it (see the table in docs/language/grouping.md): what binds less tightly than what is around it,
     a chain in an equal chain, and a form that reaches to the right where something follows it. With "clear" there
     are also those without which people could read it in another way, and blocks where even these are too hard to read.
     `untyped` are the keys of values that are of any type.
