@@ -32,6 +32,8 @@ MEASURED = "value"
 THEME, RECIPIENT, GOAL, PATH, MANNER = "theme", "recipient", "goal", "path", "manner"
 VIA = "via"
 """The slot of what a journey passes."""
+SIDE = "side"
+"""The type of sides of things: names that nothing is chosen of."""
 UNMARKED = frozenset((THEME, MANNER, "extent", "duration"))
 """Roles that no word introduces."""
 VERB_ROLES = (

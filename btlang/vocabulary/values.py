@@ -14,11 +14,11 @@ from btlang.text.words import Orthography, Words, split
 from btlang.vocabulary.adjectives import OF, OWNER, UNSLOTTED
 from btlang.vocabulary.antecedents import Antecedents
 from btlang.vocabulary.descriptions import NAME, Modifiers
-from btlang.vocabulary.entry import MANNER
+from btlang.vocabulary.entry import MANNER, SIDE
 from btlang.vocabulary.likenesses import Likenesses
 from btlang.vocabulary.measures import Measures, too_small
 from btlang.vocabulary.noun_reader import NounReader
-from btlang.vocabulary.nouns import Description, Features, Noun, noun_phrases
+from btlang.vocabulary.nouns import Description, Features, Noun, noun_phrases, plural
 from btlang.vocabulary.references import ALL, COUNT, DENIED, RELATIONS, Choice, Parts, choice_of
 from btlang.vocabulary.role_words import role_words
 from btlang.vocabulary.shared_heads import SharedHeads
@@ -222,7 +222,7 @@ class Values(Measures):
 
     def choices(self, kind: str) -> list[list[str]]:
         """The words that stand for all names of a type, and for those that are chosen, in the first way to say them."""
-        if kind == MANNER or not self._listed.get(kind):
+        if kind in (MANNER, SIDE) or not self._listed.get(kind):
             return []
         likes = [parts for _, parts in self.likenesses.features.get(kind, ())]
         return [words.split() for words in self.phrases.said(kind, likes, self._spoken)]
@@ -250,7 +250,7 @@ class Values(Measures):
         if not head:
             return choice.text
         if count:
-            head = f"{count} {head.partition(' ')[2]}"
+            head = f"{count} {plural(head.partition(' ')[2], self._plural_endings)}"
         return " ".join(filter(None, (head, self.modifiers.said(behind, self.spoken))))
 
     def meant_by(self, text: str) -> tuple[str, ...]:

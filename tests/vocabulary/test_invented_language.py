@@ -80,7 +80,7 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
             made[key] = {node_id: _pattern(words) for node_id, words in value.items()}
         elif key in ("negations", "negative_subjects", "plurals", "doing", "third_person", "synonyms", "direct"):
             made[key] = {invented(word): list(map(invented, words)) for word, words in value.items()}
-        elif key in ("counts", "numbers", "multipliers", "fractions", "times", "pronouns", "meanings"):
+        elif key in ("counts", "ordinals", "numbers", "multipliers", "fractions", "times", "pronouns", "meanings"):
             made[key] = {invented(word): meaning for word, meaning in value.items()}
         else:
             made[key] = value

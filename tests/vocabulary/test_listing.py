@@ -191,6 +191,7 @@ charge [to {percent}]
                 "go to {person} [{manner}]",
                 "approach {object} [{manner}]",
                 "go to {door} [{manner}]",
+                "go to {side} {place} [{manner}]",
             ],
         ),
         ("wall in front", ["wall in front  (condition)"]),

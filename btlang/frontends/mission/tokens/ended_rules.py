@@ -28,8 +28,8 @@ def with_ends(
 ) -> list[Diagnostic]:
     """Makes two statements of each constraint to keep out that a condition ends; `opening` opens its zones again.
 
-    Returns what is wrong with constraints that a time ends (BT161); `span` gives the place of some characters, `word` the first
-    word of a role.
+    Returns what is wrong with constraints that a time ends (BT161); `span` gives the place of some characters, `word`
+    the first word of a role.
     """
     problems: list[Diagnostic] = []
     at = 0
