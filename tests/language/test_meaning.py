@@ -27,7 +27,9 @@ def in_one_line(mission: btlang.Mission) -> str:
 
 
 @pytest.mark.parametrize(
-    ("sentence", "tree"), [*rows("meaning.txt"), *rows("said.txt"), *rows("users.txt")], ids=lambda text: text
+    ("sentence", "tree"),
+    [*rows("meaning.txt"), *rows("said.txt"), *rows("users.txt"), *rows("chosen.txt")],
+    ids=lambda text: text,
 )
 def test_meaning(sentence: str, tree: str) -> None:
     missions = [btlang.parse_tree(sentence, world=WORLD, parser=parser) for parser in PARSERS]

@@ -13,24 +13,22 @@ from btlang.frontends.mission.token import Called, Listed, Token, begins_conditi
 from btlang.frontends.mission.tokens.silent_words import LINES
 from btlang.text.source import Span
 from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.lexicon import Lexicon
 
 _EXAMPLE = "it is after 6 pm"
-OPEN = "OpenZone"
-"""The id of the command that ends a constraint to keep out."""
+_OPEN = "OpenZone"
 _ENDS = frozenset(("newline", "semi", "stop", "dedent", "close"))
 _JOINTS = frozenset(("comma", "and", "then"))
 _IN_CONDITIONS = frozenset(("condition", "not", "open", "either", "neither", "both"))
 _AMOUNTS = frozenset(("for", "until_time", "up_to"))
 
 
-def with_ends(
-    tokens: list[Token], opening: Entry | None, span: Callable[[int, int], Span], word: Callable[[str], str]
-) -> list[Diagnostic]:
-    """Makes two statements of each constraint to keep out that a condition ends; `opening` opens its zones again.
+def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int], Span]) -> list[Diagnostic]:
+    """Makes two statements of each constraint to keep out that a condition ends: the second opens its zones again.
 
-    Returns what is wrong with constraints that a time ends (BT161); `span` gives the place of some characters, `word`
-    the first word of a role.
+    Returns what is wrong with constraints that a time ends (BT161); `span` gives the place of some characters.
     """
+    opening = vocabulary.entry(_OPEN)
     problems: list[Diagnostic] = []
     at = 0
     while at + 2 < len(tokens):
@@ -38,7 +36,9 @@ def with_ends(
         if constraint is not None and until.kind in _AMOUNTS:
             forbidden, whole = span(tokens[at].start, tokens[at].end).text, span(tokens[at].start, until.end)
             problems.append(
-                diagnostic("BT161", whole, words=whole.text, example=f"{forbidden} {word('until')} {_EXAMPLE}")
+                diagnostic(
+                    "BT161", whole, words=whole.text, example=f"{forbidden} {vocabulary.word('until')} {_EXAMPLE}"
+                )
             )
         begins = at == 0 or tokens[at - 1].kind in LINES
         if constraint is not None and begins and until.kind == "until" and begins_condition(tokens, at + 2):

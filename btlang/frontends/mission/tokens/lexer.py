@@ -15,9 +15,9 @@ from btlang.frontends.mission.token import RULES, Token, constraint_of, go_on
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_names import condition_names, settle
 from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
-from btlang.frontends.mission.tokens.ended_rules import OPEN, with_ends
+from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.order_words import OrderWords
-from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
+from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing, verb_forms
 from btlang.frontends.mission.tokens.remarks import Remarks
 from btlang.frontends.mission.tokens.requests import Requests
 from btlang.frontends.mission.tokens.silent_words import (
@@ -93,13 +93,9 @@ class Lexer:
         self._order = OrderWords(self.text, self.vocabulary, self.context, self._calls, self._partial, self.tokens)
         self._requests = Requests(self.text, self.vocabulary, self.context, self._calls, self._partial, self.tokens)
         self._remarks = Remarks(self.text, self.vocabulary, self.context)
-        endings = tuple(self.vocabulary.doing)
         behind = ("called", "with", "giving")
         self._details = {phrase.split()[0] for role in behind for phrase in self.vocabulary.roles[role]}
-        self._verb_forms = {word for word in self.text.distinct if word.endswith(endings)}
-        if not self.text.distinct.isdisjoint(self.vocabulary.asking["subject"]):
-            endings = tuple(self.vocabulary.third_person)
-            self._verb_forms |= {word for word in self.text.distinct if word.endswith(endings)}
+        self._verb_forms = verb_forms(self.text, self.vocabulary)
         self._before_doing = {phrase.split()[0] for phrase in self.vocabulary.roles["without_entering"]}
         self._asking = {*self.vocabulary.asking["asking_be"], *self.vocabulary.asking["asking_do"]}
         self._joint = self.vocabulary.word("and")
@@ -109,8 +105,7 @@ class Lexer:
             self._verb_forms,
         )  # fmt: skip
         self._lines()
-        spans = partial(Span, source)
-        self.problems += with_ends(self.tokens, self.vocabulary.entry(OPEN), spans, self.vocabulary.word)
+        self.problems += with_ends(self.tokens, self.vocabulary, partial(Span, source))
         self.conditions = condition_names(self.tokens, self.names.included_conditions())
         """The defined names that stand for conditions."""
         settle(self.tokens, self.conditions)
@@ -216,18 +211,12 @@ class Lexer:
             if match is not None and role == "never" and word in self._before_doing:
                 if self._unknown.lack_name(at, match.last):
                     match, role = None, ""
-            if match is not None and role == "never":
-                forbidden = self._partial.forbidden(at, match.last)
-                if forbidden is not None:
-                    self._partial.append(forbidden, at)
-                    at = forbidden.last
-                    continue
-            if (role in QUESTIONS or word in asking) and begins_question(tokens, role in QUESTIONS):
-                end = self._requests.question(match, role, at) if role != "command" else 0
-                if end:
-                    at = end
-                    continue
-            if role != "command" and begins(tokens) and (end := self._requests.begged(at)):
+            end = self._partial.add_forbidden(at, match.last) if match is not None and role == "never" else 0
+            if role != "command" and not end:
+                if (role in QUESTIONS or word in asking) and begins_question(tokens, role in QUESTIONS):
+                    end = self._requests.question(match, role, at)
+                end = end or (self._requests.begged(at) if begins(tokens) else 0)
+            if end:
                 at = end
                 continue
             if remarks is not None and begins(tokens) and (match is None or role in ("condition", "there_are")):

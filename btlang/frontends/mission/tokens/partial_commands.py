@@ -121,6 +121,14 @@ class PartialCommands:
         tokens.append(token)
         return match.last
 
+    def add_forbidden(self, at: int, end: int) -> int:
+        """Such a constraint. Returns where to go on, 0 where there is none."""
+        match = self.forbidden(at, end)
+        if match is None:
+            return 0
+        self.append(match, at)
+        return match.last
+
     def forbidden(self, at: int, end: int) -> Match | None:
         """A constraint, by the word for `never` in the place of those at a word: `you must not enter the hall`."""
         match = self.with_front(at, end, (self._vocabulary.word("never"),))
@@ -187,6 +195,14 @@ class PartialCommands:
             return None
         words = self._said.get(said.start) or words_of(self._text, said)
         return left_out(self._text, words, at, self._tries, self._context)
+
+
+def verb_forms(text: Words, vocabulary: Lexicon) -> set[str]:
+    """The words of a text that end as forms of verbs do: `going`, and `waves` where somebody is the subject."""
+    endings = tuple(vocabulary.doing)
+    if not text.distinct.isdisjoint(vocabulary.asking["subject"]):
+        endings += tuple(vocabulary.third_person)
+    return {word for word in text.distinct if word.endswith(endings)}
 
 
 def said_before(tokens: Sequence[Token]) -> Token | None:
