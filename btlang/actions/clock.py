@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from btlang.engine.leaves.leaf import Failed
-from btlang.text.time_of_day import seconds_of, shown
+from btlang.text.time_of_day import WEEKDAYS, seconds_of, shown
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.engine.clock import Clock
+
+_SATURDAY = 5
 
 
 def time_of_day(
@@ -25,6 +27,14 @@ def time_of_day(
     is_between = begun or lasts if past_midnight else begun and lasts
     holds = is_between and (above is None or now > seconds_of(above)) and (below is None or now < seconds_of(below))
     return holds or Failed(lambda: f"it is {shown(now)}")
+
+
+def today_is(clock: Clock, days: str) -> bool | Failed:
+    """Whether it is one of some weekdays: names of days, `weekdays` or `weekends`, between semicolons."""
+    today = WEEKDAYS[clock.weekday]
+    kind = "weekends" if clock.weekday >= _SATURDAY else "weekdays"
+    wanted = {day.strip().lower() for day in days.split(";")}
+    return not wanted.isdisjoint((today.lower(), kind)) or Failed(lambda: f"it is {today}")
 
 
 def time_now(clock: Clock) -> str:

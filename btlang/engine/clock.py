@@ -16,20 +16,27 @@ class Clock:
 
     What waits says during a tick when it is due (`wake_at`); it says so again at the next tick if it still waits then.
     `due` is the earliest of these times, inf where nothing waits. The runner sets it back before each tick. `day` gives
-    the seconds since midnight where the mission runs, None where nobody knows.
+    the seconds since midnight where the mission runs, `week` the number of the weekday (0 is Monday), None where nobody
+    knows.
     """
 
-    __slots__ = ("day", "due", "now")
+    __slots__ = ("day", "due", "now", "week")
 
     def __init__(self, now: float = 0.0) -> None:
         self.now = now
         self.due = inf
         self.day: Callable[[], float] | None = None
+        self.week: Callable[[], int] | None = None
 
     @property
     def time_of_day(self) -> float:
         """Seconds since midnight; where nobody knows, the mission began at 9 o'clock."""
         return (USUAL_START + self.now) % DAY if self.day is None else self.day()
+
+    @property
+    def weekday(self) -> int:
+        """The number of the weekday, 0 for Monday; where nobody knows, the mission began on one."""
+        return int((USUAL_START + self.now) // DAY) % 7 if self.week is None else self.week()
 
     def advance(self, seconds: float) -> None:
         """Raises ValueError for a negative step."""

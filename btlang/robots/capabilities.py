@@ -80,6 +80,10 @@ class Machine(Protocol):
     def time_of_day(self) -> float:
         """Seconds since midnight where the robot is."""
 
+    @property
+    def weekday(self) -> int:
+        """The number of the weekday where the robot is: 0 is Monday."""
+
     def step(self, dt: float) -> None:
         """Lets `dt` seconds pass. On a real robot time passes by itself and this only reads the sensors."""
 

@@ -57,7 +57,7 @@ class Choices:
             chosen = max(ahead, key=bearing) if how == "leftmost" else min(ahead, key=bearing)
             data = {"type": kind, "how": how, "name": chosen}
         elif number := ordinal(how):
-            line = sorted(names, key=_natural) if by_name else sorted(names, key=distance)
+            line = sorted(sorted(names, key=_natural), key=lambda name: 0.0 if by_name else distance(name))
             if abs(number) > len(line):
                 raise RobotError(f"number {abs(number)} is asked for, but there's only {', '.join(line)}")
             data = {"type": kind, "how": _nth(number), "name": line[number - 1 if number > 0 else number]}

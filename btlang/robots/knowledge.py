@@ -90,7 +90,7 @@ class Knowledge:
 
     def _holder(self, name: str) -> str:
         """Who holds a thing, SELF for the robot, "" for nobody."""
-        return SELF if self.obstacles.is_carried(name) else self._given_to.get(name, "")
+        return self._given_to.get(name) or (SELF if self.obstacles.is_carried(name) else "")
 
     def choose(
         self,

@@ -168,6 +168,11 @@ class SimulatedRobot(Guarded):
         return (self.world.clock + self.time) % DAY
 
     @property
+    def weekday(self) -> int:
+        """As the world says, when it began, and all days since."""
+        return (self.world.weekday + int((self.world.clock + self.time) // DAY)) % 7
+
+    @property
     def moving(self) -> bool:
         """True while the base still rolls or a joint moves."""
         return self._base.rolling or self._joints.moving

@@ -7,7 +7,6 @@ from random import Random
 from btlang.record import Record
 from btlang.text.time_of_day import DAY
 
-WEEKDAYS = ("Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday", "Sunday")
 _LEAST, _MOST = 0.5, 1.5  # of the time that a visit usually takes
 _WEEK = 7
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btlang.robots.geometry import Point
-from btlang.robots.visits import WEEKDAYS, Visits
+from btlang.robots.visits import Visits
 from btlang.robots.world import (
     AREA,
     KEEP_OUT,
@@ -19,7 +19,7 @@ from btlang.robots.world import (
     WorldObject,
     Zone,
 )
-from btlang.text.time_of_day import seconds_of
+from btlang.text.time_of_day import WEEKDAYS, seconds_of
 from btlang.text.toml_table import Problem, Table, is_coordinate
 
 TYPE_CHECKING = False

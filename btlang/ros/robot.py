@@ -200,6 +200,14 @@ class RosRobot(Guarded):
         seconds = float(clock.now().nanoseconds * 1e-9)
         return (self._world_began + seconds) % DAY if clock.ros_time_is_active else local(seconds)
 
+    @property
+    def weekday(self) -> int:
+        """As `time_of_day`: that of this computer, or that of the world."""
+        clock = self._node.get_clock()
+        seconds = float(clock.now().nanoseconds * 1e-9)
+        days = int((self._world_began + seconds) // DAY)
+        return (self.world.weekday + days) % 7 if clock.ros_time_is_active else time.localtime(seconds).tm_wday
+
     def stop(self) -> None:
         """Zero velocity, no journey, frozen joints, silence, the robot's own stop. From any thread, without waiting."""
         self._stops_for = _STOPPING

@@ -102,11 +102,13 @@ def traced_engine(
 ) -> Engine:
     """An engine whose status changes go on the bus, and once a run each condition that isn't known or leaf that raised.
 
-    The time of day is that of the robot, where it knows.
+    The time of day and the weekday are those of the robot, where it knows.
     """
     robot: Any = services.get("robot")
     if hasattr(robot, "time_of_day"):
         bus.clock.day = lambda: float(robot.time_of_day)
+    if hasattr(robot, "weekday"):
+        bus.clock.week = lambda: int(robot.weekday)
 
     def changed(changes: Changes) -> None:
         bus.emit(StatusesChanged, changes, engine, engine.valued(changes))

@@ -7,10 +7,11 @@ from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.task.days import MONTHS, WEEKDAYS
+from btlang.task.days import MONTHS
 from btlang.task.schedule_words import ScheduleWords, Unread
 from btlang.text.source import Source
 from btlang.text.spelling import respellings
+from btlang.text.time_of_day import WEEKDAYS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -50,6 +50,7 @@ QUESTIONS = ("ask_value", "ask_where", "ask_how_many")
 
 ORDER = (
     "arrival", "arrival_at", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "any_time", "tries",
+    "weekly",
 )  # fmt: skip
 """The roles of words about the order of commands."""
 
@@ -78,6 +79,7 @@ ROLES = {
     **dict.fromkeys(("without_entering", "without_leaving"), "zone"),
     **dict.fromkeys(("count", "tries", "more", "at_least_of"), "count"),
     **dict.fromkeys(("arrival_at",), "place"),
+    "weekly": "days time_of_day",
     **dict.fromkeys(("at", "every_day", "until_time", "wait_time"), "time_of_day"),
 }
 """The roles that words can have, each with the slot that its phrases hold."""

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from typing import TypeAlias
 
     Said: TypeAlias = "Called | Listed | Assigned | Remembered | NodeCall"
-    Value: TypeAlias = "Said | Each | Paced | Constraint | Header | str | None"
+    Value: TypeAlias = "Said | Each | Paced | OnDays | Constraint | Header | str | None"
 
 
 class Called(Record):
@@ -90,6 +90,13 @@ class Constraint(Record):
 
     kind: str
     zones: tuple[str, ...]
+
+
+class OnDays(Record):
+    """A time of day on some days only: the condition `days` holds on those."""
+
+    time: str
+    days: Called
 
 
 class Each(Record):

@@ -11,6 +11,7 @@ from btlang.frontends.mission.token import (
     Each,
     Listed,
     NodeCall,
+    OnDays,
     Paced,
     Remembered,
     Token,
@@ -202,13 +203,22 @@ class Builder:
         if kind == "every":
             return Every(amount, body, "", span)
         if kind in ("at", "every_day"):
-            waiting = WaitTime(amount, self.span(token.start, token.end))
+            waiting = self._waiting(token)
             once = self.chain("sequence", (waiting, body), span.start, span.end)
             return once if kind == "at" else Repeat("-1", once, span)
         if kind == "until_time":
             return UntilTime(amount, body, span)
         timed = {"for": For, "up_to": UpTo, "within": Within, "delay": Delay}[kind]
         return timed(amount, body, span)
+
+    def _waiting(self, token: Token) -> Ast:
+        """Until a time of day, on some days alone where the token says so."""
+        said, span = token.value, self.span(token.start, token.end)
+        if not isinstance(said, OnDays):
+            return WaitTime(_amount(token), span)
+        end = self.span(token.end, token.end)
+        asked = Check(_called(said.days.entry, said.days.arguments, end), end)
+        return Retry("-1", Chain("sequence", (WaitTime(said.time, span), asked), True, span), "", span)
 
     def form(self, kind: str, condition: Ast, body: Ast, otherwise: Ast | None, start: int, end: int) -> Ast:
         """A form with a condition, before or after a command; of `if_works` the condition is a command."""

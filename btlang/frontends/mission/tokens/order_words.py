@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.mission.token import RULES, Called, Listed, Token, constraint_of
+from btlang.frontends.mission.token import RULES, Called, Listed, OnDays, Token, constraint_of
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.vocabulary.capabilities import MOVES
@@ -18,6 +18,7 @@ from btlang.vocabulary.word_tree import find
 
 _JOINTS = frozenset(("and", "comma", "then"))
 _LINE_STARTS = frozenset(("newline", "semi", "dedent"))
+_TODAY = "TodayIs"
 _FORMS = frozenset((*RULES, "if", "unless", "while", "until", "otherwise", "if_doing", "if_works"))
 
 
@@ -39,6 +40,8 @@ class OrderWords(SentenceReader):
             return self._any_time(match.last)
         if role == "tries":
             return self._tries(match, at)
+        if role == "weekly":
+            return self._weekly(match, at)
         return self._back_and_forth(at, match.last) if role == "back_and_forth" else self._arrival(match, at)
 
     def _journey(self, tokens: Sequence[Token] | None = None) -> Token | None:
@@ -212,6 +215,18 @@ class OrderWords(SentenceReader):
         count = self._calls.token(match, at)
         count.kind = "count"
         tokens.append(count)
+        return match.last
+
+    def _weekly(self, match: Match, at: int) -> int:
+        """`on weekdays at 9, A`: as every day at that time, but on such days alone."""
+        entry = self._vocabulary.entry(_TODAY)
+        if entry is None or len(match.values) != 2:
+            return 0
+        days, time = sorted(match.values, key=lambda value: value.name)
+        start, end = self._text.starts[at], self._text.ends[match.last - 1]
+        named = ";".join((days.text, *days.more))
+        asked = Called(entry, ((entry.slots[0].name, named),))
+        self._tokens.append(Token("every_day", start, end, OnDays(time.text, asked)))
         return match.last
 
     def journey_of_constraint(self, at: int) -> int:
