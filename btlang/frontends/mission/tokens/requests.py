@@ -7,22 +7,18 @@ from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Remembered, Token
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.entry import COUNT, SAY, Entry
-from btlang.vocabulary.match import Match, SlotValue
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import free_key
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import DOOR, OBJECT, TEXT
+from btlang.vocabulary.value_type import TEXT
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import find
 
 _MOST_WORDS = 8  # of the subject of a question
 _ASK, _ANSWERED, _TELL = "Ask", "AnswerIs", "TellPerson"
-_SOMEBODY = "may be somebody else for whoever hears it"
-_NEXT = "may be a part of it, or go on with the mission"
-_NO_QUESTION = "begins no question that I know"
-_PERSON = "is a person, and the question is missing"
 _BEHIND = ("politeness", "then", "and")
 _BETWEEN = frozenset(("semi", "newline", "comma", "then", "and", "stop"))
 _OF_CONDITIONS = frozenset(("condition", "not", "and", "or", "either", "neither", "nor", "both"))
@@ -32,7 +28,7 @@ def _text(argument: tuple[str, str]) -> str:
     return argument[1]
 
 
-class Requests(SentenceReader):
+class Requests(AddressedTexts):
     """Those of one text."""
 
     @property
@@ -66,6 +62,8 @@ class Requests(SentenceReader):
         if asked is not None and asked.meaning.role == "ask_how_many":
             counted = self._counted(asked.last)
             return self._say_count(at, counted, command, value.name) if counted is not None else 0
+        if entry.id == _TELL and text.words[first - 1] in self._vocabulary.asking["pleading"]:
+            return self._plead(entry, value, at, command)
         if entry.id == _TELL and value.last == match.last and self._goes_on(match.last):
             return self._tell(entry, value, command)
         if text.words[at] in self._vocabulary.asking["wishing"] and first in text.articles and value.last > first + 1:
@@ -118,54 +116,6 @@ class Requests(SentenceReader):
             return 0
         self._partial.append(wanted, at)
         return end + 1
-
-    def _goes_on(self, at: int) -> bool:
-        """Whether words follow that are neither a mark nor begin anything."""
-        is_mark = self._is_end(at) or self._text.words[at] in (",", ":")
-        return not is_mark and longest(self._vocabulary.trie, self._text, at, self._context) is None
-
-    def _tell(self, entry: Entry, value: SlotValue, command: Token) -> int:
-        """`tell Bob dinner is ready`: a clause without a word before it."""
-        text, texts = self._text, self._vocabulary.values.texts
-        end = texts.end_of_clause(text, value.first)
-        if any(word[0] == '"' for word in text.words[value.first : end]):
-            return 0  # `tell her quietly "Hello"`
-        if not end or self._doubt(entry, texts.doubt(text, value.first, end)):
-            return 0
-        self._set_text(command, value.name, text.source.text[text.begin(value.first) : text.ends[end - 1]])
-        command.end = text.ends[end - 1]
-        self._tokens.append(command)
-        return end
-
-    def _ask(self, entry: Entry, value: SlotValue, command: Token) -> None:
-        """`ask Bob if he is hungry`: the question that the clause stands for."""
-        values, text, at = self._vocabulary.values, self._text, value.first
-        if not self._is_clause(value):
-            if at not in text.articles and find(values.names_tree("person"), text.words, at) is not None:
-                self._doubt(entry, at, _PERSON)
-            return
-        question = values.texts.direct(text, at, value.last)
-        for place in range(at, value.last):  # `ask Bob if he wants the cup. If so, bring it`
-            for kind in (OBJECT, DOOR):
-                named = find(values.names_tree(kind), text.words, place)
-                if named is not None:
-                    self._context.latest[kind] = named[0]
-        if question is not None:
-            self._set_text(command, value.name, question)
-        elif not self._doubt(entry, values.texts.doubt(text, at + 1, value.last)):
-            self._doubt(entry, at, _NO_QUESTION)
-
-    def _is_clause(self, value: SlotValue) -> bool:
-        """Whether a text stands behind a word such as `that` or `if`."""
-        return self._vocabulary.values.texts.opens(self._text.words[value.first - 1])
-
-    def _doubt(self, entry: Entry, at: int, reason: str = "") -> bool:
-        """Says that a word of a text without quotes may mean something else (BT159), if it is one."""
-        if at:
-            is_person = self._text.words[at] in self._vocabulary.values.texts.of_persons
-            reason, span = reason or (_SOMEBODY if is_person else _NEXT), self._text.span(at, at + 1)
-            self._calls.problems.append(diagnostic("BT159", span, word=span.text, reason=reason, example=entry.example))
-        return at > 0
 
     def _values(self) -> str:
         """What can be said so, for a message."""
@@ -373,14 +323,6 @@ class Requests(SentenceReader):
         else:
             self._set_text(command, slot, f"{{{key}}}", adds)
         self._tokens.append(command)
-
-    def _set_text(self, command: Token, slot: str, text: str, adds: bool = False) -> None:
-        """Makes a text that of a command, or `adds` it to the one that it has."""
-        value = command.value
-        assert isinstance(value, Called)
-        new = {name: f"{given} {text}" if adds else text for name, given in value.arguments if name == slot}
-        arguments = tuple((name, new.get(name, given)) for name, given in value.arguments)
-        command.value = value.replace(arguments=arguments)
 
     def _key(self, entry: Entry) -> str:
         """A free key for what a quantity measures, by its words."""

@@ -1,0 +1,96 @@
+"""What is said to people: `tell Bob dinner is ready`, `ask Bob to close the door`, `ask Bob if he is hungry`."""
+
+from __future__ import annotations
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.frontends.mission.token import Called, Token
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.match import SlotValue
+from btlang.vocabulary.trie import longest
+from btlang.vocabulary.value_type import DOOR, OBJECT
+from btlang.vocabulary.word_tree import find
+
+_SOMEBODY = "may be somebody else for whoever hears it"
+_NEXT = "may be a part of it, or go on with the mission"
+_NO_QUESTION = "begins no question that I know"
+_PERSON = "is a person, and the question is missing"
+
+
+class AddressedTexts(SentenceReader):
+    """Texts without quotes that one text has for people."""
+
+    def _goes_on(self, at: int) -> bool:
+        """Whether words follow that are neither a mark nor begin anything."""
+        is_mark = self._is_end(at) or self._text.words[at] in (",", ":")
+        return not is_mark and longest(self._vocabulary.trie, self._text, at, self._context) is None
+
+    def _tell(self, entry: Entry, value: SlotValue, command: Token) -> int:
+        """`tell Bob dinner is ready`: a clause without a word before it."""
+        text, texts = self._text, self._vocabulary.values.texts
+        end = texts.end_of_clause(text, value.first)
+        if any(word[0] == '"' for word in text.words[value.first : end]):
+            return 0  # `tell her quietly "Hello"`
+        if not end or self._doubt(entry, texts.doubt(text, value.first, end)):
+            return 0
+        self._set_text(command, value.name, text.source.text[text.begin(value.first) : text.ends[end - 1]])
+        command.end = text.ends[end - 1]
+        self._tokens.append(command)
+        return end
+
+    def _plead(self, entry: Entry, value: SlotValue, at: int, command: Token) -> int:
+        """`ask Bob to close his door`: says "Please close your door" to him."""
+        text, asking, texts = self._text, self._vocabulary.asking, self._vocabulary.values.texts
+        owners = self._vocabulary.values.adjectives.other_owners
+        end = texts.end_of_clause(text, value.first) or value.last
+        doubtful = (place for place in range(value.first, end) if texts.doubt(text, place, place + 1))
+        if self._doubt(entry, next((place for place in doubtful if text.words[place] not in owners), 0)):
+            return 0
+        front = asking["reminder" if text.words[at] in asking["reminding"] else "plea"][0]
+        said = front.capitalize()
+        for place in range(value.first, end):
+            is_owner = text.words[place] in owners
+            written = text.source.text[text.begin(place) : text.ends[place]]
+            said += f" {asking['addressed'][0] if is_owner else written}"
+        self._set_text(command, value.name, said)
+        command.end = text.ends[end - 1]
+        self._tokens.append(command)
+        return end
+
+    def _ask(self, entry: Entry, value: SlotValue, command: Token) -> None:
+        """`ask Bob if he is hungry`: the question that the clause stands for."""
+        values, text, at = self._vocabulary.values, self._text, value.first
+        if not self._is_clause(value):
+            if at not in text.articles and find(values.names_tree("person"), text.words, at) is not None:
+                self._doubt(entry, at, _PERSON)
+            return
+        question = values.texts.direct(text, at, value.last)
+        for place in range(at, value.last):  # `ask Bob if he wants the cup. If so, bring it`
+            for kind in (OBJECT, DOOR):
+                named = find(values.names_tree(kind), text.words, place)
+                if named is not None:
+                    self._context.latest[kind] = named[0]
+        if question is not None:
+            self._set_text(command, value.name, question)
+        elif not self._doubt(entry, values.texts.doubt(text, at + 1, value.last)):
+            self._doubt(entry, at, _NO_QUESTION)
+
+    def _is_clause(self, value: SlotValue) -> bool:
+        """Whether a text stands behind a word such as `that` or `if`."""
+        return self._vocabulary.values.texts.opens(self._text.words[value.first - 1])
+
+    def _doubt(self, entry: Entry, at: int, reason: str = "") -> bool:
+        """Says that a word of a text without quotes may mean something else (BT159), if it is one."""
+        if at:
+            is_person = self._text.words[at] in self._vocabulary.values.texts.of_persons
+            reason, span = reason or (_SOMEBODY if is_person else _NEXT), self._text.span(at, at + 1)
+            self._calls.problems.append(diagnostic("BT159", span, word=span.text, reason=reason, example=entry.example))
+        return at > 0
+
+    def _set_text(self, command: Token, slot: str, text: str, adds: bool = False) -> None:
+        """Makes a text that of a command, or `adds` it to the one that it has."""
+        value = command.value
+        assert isinstance(value, Called)
+        new = {name: f"{given} {text}" if adds else text for name, given in value.arguments if name == slot}
+        arguments = tuple((name, new.get(name, given)) for name, given in value.arguments)
+        command.value = value.replace(arguments=arguments)
