@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
-from btlang.tree.catalogue import CONSTRAINTS, SUBTREE
+from btlang.tree.catalogue import CONSTRAINTS, SEQUENCE, SUBTREE
 from btlang.tree.node import Node
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.entry import Entry
@@ -41,7 +41,7 @@ def check_goals(compilation: Compilation) -> list[Diagnostic]:
             return _goals(node, known[node.id]) if node.id in known else _NONE
         if node.id == _KEEP_OUT:
             report(_BETWEEN.split(node.port("zones")), children[0])
-        elif node.id == "Sequence":
+        elif node.id == SEQUENCE:
             for at, child in enumerate(node.children):
                 if child.id in closing:
                     for goals in children[at + 1 :]:

@@ -86,7 +86,10 @@ class Knowledge:
                 self.world, things, self.where, lambda name: self.sight.sees(name, pose), self._holder
             )
             names = [name for name in names if relations.holds(name, parts, pose)]
-        return sorted(names, key=lambda name: pose.distance_to(self.locate(name, pose)))
+        return sorted(names, key=lambda name: pose.distance_to(self._spot(kind, name, pose)))
+
+    def _spot(self, kind: str, name: str, pose: Pose) -> Point:
+        return self.door(name).middle if kind == "door" else self.locate(name, pose)
 
     def _holder(self, name: str) -> str:
         """Who holds a thing, SELF for the robot, "" for nobody."""

@@ -307,6 +307,7 @@ class World(Record):
         named = (self.places, self.objects, self.people, self.zones, self.doors)
         likes = (("object", self.objects), ("person", self.people), ("place", self.places))
         features = {kind: tuple((thing.name, thing.parts) for thing in things) for kind, things in likes}
+        features["door"] = tuple((door.name, ()) for door in self.doors)
         if self.home:
             at_home = ((name, (*parts, HOME) if name == self.home else parts) for name, parts in features["place"])
             features["place"] = tuple(at_home)

@@ -42,6 +42,8 @@ class Adjectives:
         self._colored: list[str] = language["colored"]
         self._speaker: list[str] = language["possessives"]["speaker"]
         self._others: list[str] = language["possessives"]["others"]
+        self.ending = next(iter(language["possessive_endings"]), "")
+        """What stands behind the name of an owner, and for the verb behind a subject: `the battery's low`."""
         self.other_owners = frozenset(self._others)
         """Words for owners who aren't named: `his`."""
         self._endings: list[str] = language["possessive_endings"]

@@ -121,6 +121,8 @@ class Lexicon:
         """The words of remarks: how somebody feels, that there is something, and what may be felt."""
         self.been = tree_of((words, True) for words in self.asking["been"])
         """The words of a journey that is behind somebody: `have been in`."""
+        self.going = tree_of((words, True) for words in self.asking["going"])
+        """The words that say nothing before another command: `go and`."""
         self.asides: tuple[WordTree, ...] = tuple(
             tree_of((words, True) for words in self.asking[name]) for name in ("interrupting", "resuming")
         )

@@ -84,7 +84,8 @@ class Measures:
             return self.quantity(text, at + 1)  # `another 2 m`
         number = self.number(text, at)
         if number is None:
-            if at not in text.articles and not (at and text.words[at - 1] in self._one_each):
+            before = text.words[at - 1] if at else ""
+            if at not in text.articles and before not in self._one_each and before not in self._further:
                 return None
             number = 1.0, at  # "a minute", "every hour"
             if text.words[at] in self._every_second and at not in text.articles:

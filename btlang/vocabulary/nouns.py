@@ -226,6 +226,11 @@ def noun_phrases(
             found.add_type(words, kind)
             for before, how in ways:
                 found.add((*before, *words.split()), {}, kind, how)
+        nouns = language["nouns"].get(kind, ())
+        single = [words for words in nouns if plural(words, language["plural_endings"]) in nouns]
+        for words in nouns if single else ():
+            if words not in single:  # `people`
+                found.add_plural(tuple(words.split()), {}, kind)
         for words in language["everyone"].get(kind, ()):
             found.add(tuple(words.split()), {}, kind, ALL)
         for noun in declared:

@@ -288,7 +288,9 @@ class Values(Measures):
                     return  # `2 m`
             elif not is_bare and text.words[at] not in self.group_starts:
                 return  # as nearly always
-            found = self._resolved(self._described.several(text, start, kind), text, start)
+            found = self._described.several(text, start, kind)
+            if not (count and found is not None and not found[0].parts):  # `two people`
+                found = self._resolved(found, text, start)
             is_plural = text.words[at] in self.group_starts and (one is None or found is None or one[1] < found[1])
             if found is None or not (count or is_bare or is_plural):
                 return  # `cup` and `sheep` are no plurals

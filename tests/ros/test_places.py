@@ -39,7 +39,7 @@ def places() -> Places:
 
 def choose(places: Places, kind: str, how: str, parts: Mapping[str, str] = {}, told: list[Any] | None = None) -> str:
     tell = None if told is None else lambda event, data: told.append((event, data))
-    return places.choose(kind, how, parts, lambda: HERE, Choices(), tell)
+    return places.choose(kind, how, parts, lambda: HERE, lambda: HERE, Choices(), tell)
 
 
 def test_it_chooses_by_distance_and_size(places: Places) -> None:

@@ -60,7 +60,7 @@ ROWS = {
     **dict.fromkeys(("Going on after a full stop", "If that works", "In any case"), "going_on"),
     "Do that again": "again",
     # things.md
-    "Lists": "lists_and_quantities", "Every name": "every_name", "The nearest and a random one": "chosen",
+    "Lists": "lists_and_quantities", "Every name": "every_name", "Which one": "which_one",
     "Descriptions": "nouns", "Sets and rounds": "rounds", "Pronouns": "pronouns",
     # conditions.md
     **dict.fromkeys(("check", "Joined conditions", "Where a condition ends", "not"), "conditions"),

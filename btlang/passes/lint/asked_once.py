@@ -6,53 +6,85 @@ where C is about a journey that is over: `bring the cup to Bob. If he isn't ther
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.value_type import PERSON
+from btlang.vocabulary.references import choice_of
+from btlang.vocabulary.value_type import OBJECT, PERSON
 
-_ON_THE_WAY = "SomeoneInTheWay"
+_SENTENCE_END = re.compile(r"[.;!?\n]")
+_ON_THE_WAY = ("SomeoneInTheWay", "SomethingInTheWay")
 
 
 def asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
     """Among the statements of the mission, of definitions and of blocks."""
     vocabulary = compilation.vocabulary
     for body in ast.bodies(compilation.mission):
-        before: dict[int, ast.Ast] = {}
+        before: dict[int, list[ast.Ast]] = {}
         for node in compilation.syntax(body):
             if type(node) is ast.Chain and node.operator == "sequence":
-                before.update((id(item), other) for other, item in zip(node.items, node.items[1:], strict=False))
+                for at, item in enumerate(node.items):
+                    before[id(item)] = _sentence_before(node.items[:at])
             if type(node) is ast.If and not node.negated and node.otherwise is None and _is_statement(node):
-                warnings = list(_warning(node, before.get(id(node)), vocabulary))
-                yield from warnings or _too_late(node, before.get(id(node)), vocabulary)
+                sentence = before.get(id(node), [])
+                warnings = list(_warning(node, sentence[-1] if sentence else None, vocabulary))
+                yield from warnings or _too_late(node, sentence, vocabulary)
 
 
-def _too_late(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+def _sentence_before(items: Sequence[ast.Ast]) -> list[ast.Ast]:
+    """The last items, as far back as no sentence ends between them."""
+    found = list(items[-1:])
+    for item in reversed(items[:-1]):
+        between = item.span.source.text[item.span.end : found[0].span.start]
+        if _SENTENCE_END.search(between):
+            break
+        found.insert(0, item)
+    return found
+
+
+def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> Iterator[Diagnostic]:
     """A condition that decides about the journey before it, or watches what happens on it."""
     asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
-    if not (isinstance(before, ast.Phrase) and isinstance(asked, ast.Phrase) and MOVES in before.entry.resources):
+    journeys = [phrase for item in before for phrase in _phrases(item) if MOVES in phrase.entry.resources]
+    if not journeys or not isinstance(asked, ast.Phrase):
         return
+    last = before[-1].span.text
     words = node.span.source.text[node.span.start : node.condition.span.end]
-    if asked.entry.id == _ON_THE_WAY:
+    if asked.entry.id in _ON_THE_WAY:
         word = words.split(maxsplit=1)[0]
         each = f"{vocabulary.word('whenever')} {node.span.text[len(word) :].lstrip()}"
-        advice = f"'{before.span.text}' is over by then. To do it on the way, write: {each}"
+        advice = f"'{last}' is over by then. To do it on the way, write: {each}"
         yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((node.span, each),))
-    elif isinstance(node.condition, ast.Not) and _people(before) & _people(asked):
-        advice = (
-            f"'{before.span.text}' comes first, and fails if it can't be done. What decides about it stands before it."
-        )
+    elif isinstance(node.condition, ast.Not) and any(_named(journey) & _named(asked) for journey in journeys):
+        advice = f"'{last}' comes first, and fails if it can't be done. What decides about it stands before it."
         yield diagnostic("BT068", node.span, words=words, advice=advice)
 
 
-def _people(phrase: ast.Phrase) -> set[str]:
+def _phrases(node: ast.Ast) -> Iterator[ast.Phrase]:
+    if isinstance(node, ast.Phrase):
+        yield node
+    for part in ast.parts(node):
+        yield from _phrases(part)
+
+
+def _named(phrase: ast.Phrase) -> set[str]:
+    """The things that a phrase is about: their names, and the values that they are chosen into."""
     types = {slot.name: slot.type for slot in phrase.entry.slots}
-    return {text for name, text in phrase.arguments if types.get(name) == PERSON}
+    found: set[str] = set()
+    for name, text in phrase.arguments:
+        choice = choice_of(text)
+        if choice is not None:
+            found |= {f"{{{choice.key}}}", dict(choice.parts).get(NAME, "")}
+        elif types.get(name) in (PERSON, OBJECT):
+            found.add(text)
+    return found - {""}
 
 
 def _is_statement(node: ast.If) -> bool:

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Token
+from btlang.frontends.mission.tokens.partial_commands import words_of
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import DOOR, OBJECT
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, TEXT
 from btlang.vocabulary.word_tree import find
 
+TELL = "TellPerson"
+_ASKED_BY = frozenset(("if", "whenever", "first_time", "as_soon_as"))
+_IN_CONDITIONS = frozenset(("condition", "not", "either", "neither", "or"))
+_LINE_ENDS = frozenset(("semi", "newline", "otherwise"))
 _SOMEBODY = "may be somebody else for whoever hears it"
 _NEXT = "may be a part of it, or go on with the mission"
 _NO_QUESTION = "begins no question that I know"
@@ -56,6 +63,48 @@ class AddressedTexts(SentenceReader):
         command.end = text.ends[end - 1]
         self._tokens.append(command)
         return end
+
+    def _inform(self, at: int, ends: Callable[[int], bool]) -> int:
+        """`if the door is open, tell Bob`: tells him what was asked."""
+        text, entry, asking = self._text, self._vocabulary.entry(TELL), self._vocabulary.asking
+        person = self._context.read(PERSON, text, at + 1) if text.words[at] in asking["informing"] else None
+        if person is None or entry is None or not person[0] or person[0][:1] == "{":
+            return 0
+        end = person[1] + (text.words[person[1]] in asking["informed"])
+        said = self._asked_of() if ends(end) else ""
+        if not said:
+            return 0
+        slots = {slot.type: slot.name for slot in entry.slots}
+        told = Called(entry, ((slots[PERSON], person[0]), (slots[TEXT], said)))
+        self._tokens.append(Token("command", text.starts[at], text.ends[end - 1], told))
+        return end
+
+    def _asked_of(self) -> str:
+        """The words of the one condition that the command being read depends on, with names for pronouns; else ""."""
+        form = next((at for at in reversed(range(len(self._tokens))) if self._tokens[at].kind in _ASKED_BY), 0)
+        asked = [token for token in self._tokens[form:] if token.kind in _IN_CONDITIONS]
+        if len(asked) > 1 and asked[0].kind == "not" and asked[0].start == asked[0].end:
+            del asked[0]  # of `isn't`, which the words of the condition have
+        if not self._tokens or self._tokens[form].kind not in _ASKED_BY or len(asked) != 1:
+            return ""
+        if any(token.kind in _LINE_ENDS for token in self._tokens[form:]) or not isinstance(asked[0].value, Called):
+            return ""
+        text, pronouns = self._text, self._vocabulary.values.pronoun_words
+        named = [value for _, value in asked[0].value.arguments]
+        words: list[str] = []
+        for at in words_of(text, asked[0]):
+            pronoun = find(pronouns, text.words, at)
+            if pronoun is not None and (len(named) != 1 or named[0][:1] == "{"):
+                return ""
+            words.append(named[0] if pronoun is not None else self._written(at))
+        said = " ".join(words)
+        return said[:1].upper() + said[1:]
+
+    def _written(self, at: int) -> str:
+        """A word as it is written, with its article."""
+        text = self._text
+        whole = text.source.text[text.begin(at) : text.ends[at]]
+        return whole if whole.lower().endswith(text.words[at]) else text.words[at]
 
     def _ask(self, entry: Entry, value: SlotValue, command: Token) -> None:
         """`ask Bob if he is hungry`: the question that the clause stands for."""

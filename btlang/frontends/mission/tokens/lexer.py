@@ -17,7 +17,7 @@ from btlang.frontends.mission.tokens.condition_names import condition_names, set
 from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.order_words import OrderWords
-from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing, verb_forms
+from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
 from btlang.frontends.mission.tokens.remarks import Remarks
 from btlang.frontends.mission.tokens.requests import Requests
 from btlang.frontends.mission.tokens.silent_words import (
@@ -26,6 +26,7 @@ from btlang.frontends.mission.tokens.silent_words import (
     begins,
     begins_item,
     begins_question,
+    verb_forms,
     without_meaning,
 )
 from btlang.frontends.mission.tokens.unknown_words import UnknownWords
@@ -249,6 +250,7 @@ class Lexer:
                     or self._partial.add_left_out(at)
                     or self._partial.add_without_theme(at)
                     or self._requests.tell(at)
+                    or (self._partial.add_contracted(at) if tokens and tokens[-1].kind in _BEFORE_CONDITIONS else 0)
                 )
                 if end:
                     at = end

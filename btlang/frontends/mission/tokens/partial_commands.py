@@ -135,6 +135,23 @@ class PartialCommands:
         entry = match.meaning.entry if match is not None else None
         return match if entry is not None and entry.constrains else None
 
+    def add_contracted(self, at: int) -> int:
+        """`if the battery's low`: a condition with a verb that is only an ending of the word before it."""
+        words, ending = self._text.words, self._vocabulary.values.adjectives.ending
+        be = self._vocabulary.asking["asking_be"][:1]
+        verbs = range(at, min(at + _LONGEST_VERB, len(words)) if be and ending else at)
+        for place in (place for place in verbs if words[place].endswith(ending)):
+            places = [*range(at, place + 1), *_rest(self._text, place)]
+            other = {place - at: words[place].removesuffix(ending), place - at + 1: be[0]}
+            match = _match(self._text, places, other, self._tries, self._context)
+            if match is not None and match.meaning.role in ("condition", "negated") and match.last > place - at + 2:
+                found = _relocated(match, places)
+                if match.meaning.role != "condition":
+                    self._tokens.append(Token("not", self._text.starts[at], self._text.starts[at]))
+                self.append(found, at)
+                return found.last
+        return 0
+
     def add_left_out(self, at: int, least: int = 0) -> int:
         """A command whose first words are those of the one before it, and which ends at a word `least` or behind it."""
         read = self._left_out(at)
@@ -195,14 +212,6 @@ class PartialCommands:
             return None
         words = self._said.get(said.start) or words_of(self._text, said)
         return left_out(self._text, words, at, self._tries, self._context)
-
-
-def verb_forms(text: Words, vocabulary: Lexicon) -> set[str]:
-    """The words of a text that end as forms of verbs do: `going`, and `waves` where somebody is the subject."""
-    endings = tuple(vocabulary.doing)
-    if not text.distinct.isdisjoint(vocabulary.asking["subject"]):
-        endings += tuple(vocabulary.third_person)
-    return {word for word in text.distinct if word.endswith(endings)}
 
 
 def said_before(tokens: Sequence[Token]) -> Token | None:

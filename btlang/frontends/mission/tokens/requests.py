@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Remembered, Token
-from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
+from btlang.frontends.mission.tokens.addressed_texts import TELL, AddressedTexts
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.entry import COUNT, SAY, Entry
 from btlang.vocabulary.match import Match
@@ -18,7 +18,8 @@ from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import find
 
 _MOST_WORDS = 8  # of the subject of a question
-_ASK, _ANSWERED, _TELL = "Ask", "AnswerIs", "TellPerson"
+_EXAMPLE = "hello"
+_ASK, _ANSWERED = "Ask", "AnswerIs"
 _BEHIND = ("politeness", "then", "and")
 _BETWEEN = frozenset(("semi", "newline", "comma", "then", "and", "stop"))
 _OF_CONDITIONS = frozenset(("condition", "not", "and", "or", "either", "neither", "nor", "both"))
@@ -62,9 +63,11 @@ class Requests(AddressedTexts):
         if asked is not None and asked.meaning.role == "ask_how_many":
             counted = self._counted(asked.last)
             return self._say_count(at, counted, command, value.name) if counted is not None else 0
-        if entry.id == _TELL and text.words[first - 1] in self._vocabulary.asking["pleading"]:
+        if entry.id == TELL and text.words[first] in self._vocabulary.roles["and"]:
+            return self._inform(at, self._ends)  # `tell Bob and wave`
+        if entry.id == TELL and text.words[first - 1] in self._vocabulary.asking["pleading"]:
             return self._plead(entry, value, at, command)
-        if entry.id == _TELL and value.last == match.last and self._goes_on(match.last):
+        if entry.id == TELL and value.last == match.last and self._goes_on(match.last):
             return self._tell(entry, value, command)
         if text.words[at] in self._vocabulary.asking["wishing"] and first in text.articles and value.last > first + 1:
             have = self._vocabulary.asking["wished"][0].capitalize()
@@ -249,13 +252,22 @@ class Requests(AddressedTexts):
         return found[1] + (self._text.words[found[1]] == ",")
 
     def tell(self, at: int) -> int:
-        """`tell me "hello"`: says it."""
-        told, words = find(self._vocabulary.telling, self._text.words, at), self._text.words
-        if told is None or words[told[1]][0] != '"' or self._saying is None:
+        """`tell me "hello"`: says it; `if the door is open, tell me`: says what was asked."""
+        told, text = find(self._vocabulary.telling, self._text.words, at), self._text
+        if told is None or self._saying is None:
+            return self._inform(at, self._ends)
+        if text.words[told[1]][0] == '"':
+            said, end = text.words[told[1]][1:], told[1] + 1
+        else:
+            said, end = self._asked_of() if self._ends(told[1]) else "", told[1]
+        if not said and not self._ends(end):
             return 0
-        said = self._saying_of(words[told[1]][1:])
-        self._tokens.append(Token("command", self._text.starts[at], self._text.ends[told[1]], said))
-        return told[1] + 1
+        if not said:
+            words = text.span(at, end)
+            example = f'{words.text} "{_EXAMPLE}"'
+            self._calls.problems.append(diagnostic("BT012", words, words=words.text, wanted="a text", example=example))
+        self._tokens.append(Token("command", text.starts[at], text.ends[end - 1], self._saying_of(said)))
+        return end
 
     def finding_out(self, end: int) -> None:
         """`check whether A. If B, C`: what is checked decides nothing by itself, behind the `if` that ends at a word.

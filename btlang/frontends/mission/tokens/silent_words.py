@@ -57,10 +57,11 @@ def without_meaning(
 
     What a command is for goes on as `then` would, and as `and` behind a constraint. `first` moves `but B` to the front.
     """
-    if text.words[at] in vocabulary.asking["going"] and at + 1 not in text.articles:
-        follows = longest(vocabulary.trie, text, at + 1, context)
+    going = find(vocabulary.going, text.words, at)
+    if going is not None and going[1] not in text.articles:
+        follows = longest(vocabulary.trie, text, going[1], context)
         if follows is not None and follows.meaning.role == "command":
-            return at + 1  # `go charge`
+            return going[1]  # `go charge`
     if not tokens:
         return 0
     before = tokens[-1]
@@ -87,3 +88,11 @@ def without_meaning(
         tokens.append(Token(kind, text.starts[at], text.ends[purpose[1] - 1]))
         return purpose[1]
     return 0
+
+
+def verb_forms(text: Words, vocabulary: Lexicon) -> set[str]:
+    """The words of a text that end as forms of verbs do: `going`, and `waves` where somebody is the subject."""
+    endings = tuple(vocabulary.doing)
+    if not text.distinct.isdisjoint(vocabulary.asking["subject"]):
+        endings += tuple(vocabulary.third_person)
+    return {word for word in text.distinct if word.endswith(endings)}
