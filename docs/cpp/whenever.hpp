@@ -9,17 +9,30 @@
 // condition must have been false before it counts again, which it never does with the port once="true".
 //
 // BehaviorTree.CPP cannot suspend a node: work that was halted starts anew. Where it must keep its place, make it a
-// SequenceWithMemory.
+// SequenceWithMemory. A node of the work whose effect must last during the reaction is a Suspendable: KeepOut and KeepIn
+// are (keep_zones.hpp).
 
 #pragma once
 
 #include <string>
 
+#include <behaviortree_cpp/behavior_tree.h>
 #include <behaviortree_cpp/bt_factory.h>
 #include <behaviortree_cpp/control_node.h>
 
 namespace btlang
 {
+// A node whose effect lasts while a Whenever interrupts it. The Whenever calls `suspend` before it halts the node, and
+// `resume` after the reaction. Nested ones may each call `suspend`: the effect ends with the last `resume`, unless the node
+// runs.
+class Suspendable
+{
+public:
+  virtual ~Suspendable() = default;
+  virtual void suspend() = 0;
+  virtual void resume() = 0;
+};
+
 class Whenever : public BT::ControlNode
 {
 public:
@@ -35,7 +48,7 @@ public:
   {
     armed_ = true;
     fired_ = false;
-    reacting_ = false;
+    endReaction();
     BT::ControlNode::halt();
   }
 
@@ -62,6 +75,7 @@ private:
       armed_ = false;
       fired_ = getInput<bool>("once").value_or(false);
       reacting_ = true;
+      callInWork(&Suspendable::suspend);
       haltChild(2);
     }
 
@@ -72,7 +86,7 @@ private:
       {
         return reaction;
       }
-      reacting_ = false;
+      endReaction();
       haltChild(1);
       if(reaction == BT::NodeStatus::FAILURE)
       {
@@ -82,6 +96,25 @@ private:
 
     const BT::NodeStatus work = children_nodes_[2]->executeTick();
     return work == BT::NodeStatus::RUNNING ? work : ended(work);
+  }
+
+  void endReaction()
+  {
+    if(reacting_)
+    {
+      reacting_ = false;
+      callInWork(&Suspendable::resume);
+    }
+  }
+
+  void callInWork(void (Suspendable::*call)())
+  {
+    BT::applyRecursiveVisitor(children_nodes_[2], [call](BT::TreeNode* node) {
+      if(auto* suspendable = dynamic_cast<Suspendable*>(node))
+      {
+        (suspendable->*call)();
+      }
+    });
   }
 
   BT::NodeStatus ended(BT::NodeStatus status)

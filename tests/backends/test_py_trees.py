@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 from py_trees import composites, decorators
+from py_trees.behaviour import Behaviour
 from py_trees.behaviours import Success
 from py_trees.common import Status
+from py_trees.trees import BehaviourTree
 
 import btlang
 from btlang.api import parse_tree, world_vocabulary
@@ -14,9 +16,11 @@ from btlang.backends.py_trees.in_order import SkippableSequence
 from btlang.backends.py_trees.module import to_module
 from btlang.backends.py_trees.plan import DEEPEST
 from btlang.diagnostics.errors import MissionError
+from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 
-from ..engine.scripted import n
+from ..engine.scripted import World, Zoned, n
+from ..engine.their_leaves import Script, TheirLeaf
 
 WORDS = world_vocabulary()
 
@@ -64,8 +68,9 @@ def test_what_py_trees_cannot_do_is_refused_all_at_once() -> None:
         n("TryCatch", leaf, leaf, catch_on_halt="true"),
         n("Repeat", leaf, num_cycles="{x}"),
         n("Nod", _failureIf="x == 1"),
+        n("KeepOut", leaf, zones="{x}"),
     )
-    assert refusals(root) == ["AsyncSequence", "Nod", "Repeat", "Switch2", "TryCatch"]
+    assert refusals(root) == ["AsyncSequence", "KeepOut", "Nod", "Repeat", "Switch2", "TryCatch"]
 
 
 def test_trees_that_are_too_deep_are_refused() -> None:
@@ -102,3 +107,69 @@ def test_else_they_are_those_of_this_computer() -> None:
     tree = to_py_trees(Tree(n("TimeOfDay", at_least="00:00")), WORDS)
     tree.tick_once()
     assert tree.status == Status.SUCCESS
+
+
+def kept_out(word: str, robot: object, zones: str = "lab") -> Behaviour:
+    """A KeepOut over a leaf with this word."""
+    tree = Tree(n("KeepOut", n("A"), zones=zones))
+    return to_py_trees(tree, WORDS, bind=lambda node: TheirLeaf(Script("A", word, [])), services={"robot": robot})
+
+
+@pytest.mark.parametrize(
+    ("robot", "zones", "reason"),
+    [
+        (Zoned(), "lab; nowhere", "there's no zone called 'nowhere'"),
+        (Zoned(), ";", "it names no zone"),
+        (Clockwork(), "lab", "this robot has no zones"),
+    ],
+)
+def test_zones_that_cannot_be_closed_are_a_failure_with_the_reason_of_the_engine(
+    robot: object, zones: str, reason: str
+) -> None:
+    tree = kept_out("s", robot, zones)
+    tree.tick_once()
+    assert (tree.status, tree.feedback_message) == (Status.FAILURE, reason)
+    world = World()
+    engine = world.engine(n("KeepOut", world.fn("A", "s"), zones=zones), services={"robot": robot})
+    engine.tick()
+    assert engine.failure is not None
+    assert engine.failure.reason == reason
+
+
+def test_zones_stay_closed_while_their_node_is_suspended() -> None:
+    robot = Zoned()
+    scripts = {id: Script(id, words, []) for id, words in (("FC", "f,s,f"), ("R", "rf"), ("W", "rr"))}
+    work = n("KeepOut", n("W"), zones="lab")
+    tree = Tree(n("Whenever", n("FC"), n("R"), work), models=(NodeModel("Condition", "FC"),))
+    root = to_py_trees(tree, WORDS, bind=lambda node: TheirLeaf(scripts[node.id]), services={"robot": robot})
+    root.tick_once()
+    assert robot.zones.held == ["out:lab"]
+    root.tick_once()
+    assert (root.tip().name, robot.zones.held) == ("R", ["out:lab"])
+    root.tick_once()
+    assert (root.status, robot.zones.held) == (Status.FAILURE, [])
+
+
+def test_zones_open_when_a_leaf_raises_an_exception_and_when_the_tree_is_shut_down() -> None:
+    robot = Zoned()
+    tree = kept_out("rx", robot)
+    tree.tick_once()
+    assert robot.zones.held == ["out:lab"]
+    with pytest.raises(KeyError):
+        tree.tick_once()
+    assert robot.zones.held == []
+    tree = kept_out("r", robot)
+    tree.tick_once()
+    assert robot.zones.held == ["out:lab"]
+    BehaviourTree(tree).shutdown()
+    assert robot.zones.held == []
+
+
+def test_a_journey_keeps_out_of_zones_of_the_simulated_robot() -> None:
+    tree = parse_tree("go to the lab without entering the reading corner")
+    robot = btlang.Session().robot
+    root = to_py_trees(tree.tree, tree.vocabulary, services={"robot": robot})
+    root.tick_once()
+    assert robot.zones.is_closed("reading corner")
+    root.stop(Status.INVALID)
+    assert not robot.zones.is_closed("reading corner")

@@ -1,4 +1,4 @@
-"""A tree that was compiled to py_trees has the statuses of the engine, tick for tick."""
+"""A tree that was compiled to py_trees has the statuses of the engine, tick for tick, and closes the same zones."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from tests.profiles import searches
 
 from ..engine.random_trees import letters
-from ..engine.scripted import World, n
+from ..engine.scripted import World, Zoned, n
 from ..engine.their_leaves import LETTERS, Script, TheirLeaf, bind
 
 ALL_LETTERS = {**LETTERS, Status.INVALID: "k"}
@@ -41,6 +41,7 @@ MANY = (
     "Sequence", "Fallback", "SequenceWithMemory", "ReactiveSequence", "ReactiveFallback", "PipelineSequence",
     "RoundRobin", "ParallelAll",
 )  # fmt: skip
+ZONES = ("a", "b", "a; b", "nowhere")
 AROUND = ("Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure")
 
 
@@ -72,6 +73,8 @@ def parents(children: st.SearchStrategy[Node]) -> st.SearchStrategy[Node]:
         around("Delay", "delay_msec", (0, 1000, 2000)),
         around("RateController", "hz", (0.4, 0.5, 2)),
         around("RunOnce", "then_skip", ("true", "false")),
+        around("KeepOut", "zones", ZONES),
+        around("KeepIn", "zones", ZONES),
         st.tuples(children, st.booleans()).map(used),
     )
 
@@ -103,14 +106,20 @@ class Twins:
         models = tuple(NodeModel("Condition", id) for id in self.words if id.startswith("F"))
         tree = tree.replace(subtrees=tuple(self.subtrees.values()), models=models)
         self.ours = self.world.engine(tree)
+        self.their_robot = Zoned()
         if not in_module:
             self.theirs = to_py_trees(
-                tree, vocabulary(), bind=lambda node: self._their_leaf("", node.id, {}), now=self._now
+                tree,
+                vocabulary(),
+                bind=lambda node: self._their_leaf("", node.id, {}),
+                now=self._now,
+                services={"robot": self.their_robot},
             )
         else:
             names: dict[str, Any] = {"__name__": "made"}
             exec(to_module(tree, vocabulary()), names)
-            self.theirs = names["create_root"](self._their_leaf, self._now)
+            more = {"zones": self.their_robot.zones} if "RestrictableZones" in names else {}
+            self.theirs = names["create_root"](self._their_leaf, self._now, **more)
 
     def _now(self) -> float:
         return self.world.clock.now
@@ -160,3 +169,4 @@ def compare(twins: Twins, orders: str) -> None:
     for order in orders:
         ours, theirs = twins.step(order)
         assert ours == theirs
+        assert sorted(twins.world.robot.zones.held) == sorted(twins.their_robot.zones.held)

@@ -23,6 +23,7 @@ from btlang.frontends.json.reader import read_json
 from btlang.text.source import Source
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
+from tests.engine.scripted import n
 from tests.profiles import cases
 
 ROOT = Path(__file__).parents[2]
@@ -157,6 +158,22 @@ def test_the_module_for_py_trees_needs_py_trees_only(tmp_path: Path) -> None:
     ran = python(tmp_path, "tree.py", path=tmp_path)
     assert ran.returncode == 0, ran.stderr
     assert ran.stdout.endswith("battery is above 20%\ngo to bay\nSUCCESS\n")
+
+
+def test_the_module_for_py_trees_prints_the_zones_that_hold(tmp_path: Path) -> None:
+    root = n("KeepIn", n("KeepOut", n("Wave"), zones="stairs; wet floor"), zones="hall")
+    (tmp_path / "tree.py").write_text(str(compiled(Tree(root), world_vocabulary(), "py_trees")), encoding="utf-8")
+    (tmp_path / "btlang.py").write_text("raise ImportError('it is not needed')", encoding="utf-8")
+    ran = python(tmp_path, "tree.py", path=tmp_path)
+    assert ran.returncode == 0, ran.stderr
+    assert ran.stdout.splitlines()[-6:] == [
+        "stay in hall",
+        "keep out of stairs, wet floor",
+        "wave",
+        "keep out of stairs, wet floor: over",
+        "stay in hall: over",
+        "SUCCESS",
+    ]
 
 
 def python(folder: Path, *words: str, path: Path = ROOT) -> subprocess.CompletedProcess[str]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
-from btlang.engine.leaves.leaf import LeafBinding
+from btlang.engine.leaves.leaf import ActionFailed, LeafBinding
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.tree.node import Node, Tree
 
@@ -29,25 +29,38 @@ def said(letter: str) -> int:
 
 
 class Zones:
-    """The zones of a robot: those that it keeps out of, or stays in."""
+    """The zones of a robot. It knows any zone but `nowhere`."""
 
     def __init__(self) -> None:
-        self.closed: list[str] = []
+        self.held: list[str] = []
+        """What holds: `out:lab` for a zone to keep out of, `in:hall:lab` for zones to stay in."""
 
     def keep_out(self, *names: str) -> Any:
-        closed = self.closed
+        return Restriction(self.held, names, [f"out:{name}" for name in names])
 
-        class Held:
-            def begin(self) -> None:
-                closed.extend(names)
+    def keep_in(self, *names: str) -> Any:
+        return Restriction(self.held, names, [":".join(("in", *sorted(names)))])
 
-            def end(self) -> None:
-                for name in names:
-                    closed.remove(name)
+    @property
+    def text(self) -> str:
+        """What holds, each once."""
+        return " ".join(sorted(set(self.held)))
 
-        return Held()
 
-    keep_in = keep_out
+class Restriction:
+    """What `keep_out` and `keep_in` of a robot return."""
+
+    def __init__(self, held: list[str], names: Sequence[str], entries: list[str]) -> None:
+        self._held, self._names, self._entries = held, names, entries
+
+    def begin(self) -> None:
+        if "nowhere" in self._names:
+            raise ActionFailed("there's no zone called 'nowhere'")
+        self._held.extend(self._entries)
+
+    def end(self) -> None:
+        for entry in self._entries:
+            self._held.remove(entry)
 
 
 class Zoned:

@@ -60,7 +60,7 @@ def play(text: str, scripts: str, ticks: str) -> tuple[str, str]:
     if ":=" in text or "+=" in text or "value={x}" in text:
         calls = [*calls, f"x={engine.blackboard.get('x')}"]
     if "zones=" in text:
-        calls = [*calls, "closed" if world.robot.zones.closed else "open"]
+        calls = [*calls, "closed" if world.robot.zones.held else "open"]
     return happened, " ".join(calls)
 
 

@@ -40,9 +40,9 @@ def to_py_trees(
     """The root of a tree of py_trees 2.6 that has the statuses of btlang's engine; SKIPPED is INVALID there.
 
     `bind` makes the leaves, by default such that do what the `call` of their keyword entry names; those may ask for
-    `services`, such as {"robot": robot}. A leaf of `bind` may not be INVALID after a tick. `is_action` says which
-    leaves take more than one tick, by default those that are no conditions. `now` is the time in seconds, `values` are
-    those of the mission.
+    `services`, such as {"robot": robot}. KeepOut and KeepIn use the `zones` of that robot. A leaf of `bind` may not be
+    INVALID after a tick. `is_action` says which leaves take more than one tick, by default those that are no
+    conditions. `now` is the time in seconds, `values` are those of the mission.
 
     Raises MissionError with all that is wrong with the tree (BT126, BT131, BT132), a leaf that has no keyword entry or
     cannot be bound (BT132), or all that py_trees can't express (BT134).
@@ -52,6 +52,7 @@ def to_py_trees(
         "now": now,
         "interrupts": [],
         "values": Blackboard() if values is None else values,
+        "zones": getattr(services.get("robot"), "zones", None),
         "common.OneShotPolicy.ON_COMPLETION": common.OneShotPolicy.ON_COMPLETION,
     }
     for scope in plan.scopes:

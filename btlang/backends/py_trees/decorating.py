@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from typing import ClassVar
+from typing import ClassVar, Protocol
 
 from btlang.backends.py_trees.node import FAILURE, RUNNING, SKIPPED, SUCCESS, Asking, Behaviour, Node, halt
 
@@ -45,6 +45,83 @@ class KeepRunningUntilFailure(Around):
     """RUNNING until its child fails."""
 
     becomes: ClassVar = {SUCCESS: RUNNING, SKIPPED: RUNNING}
+
+
+class HeldZones(Protocol):
+    """Zones that the robot keeps out of, or stays in, from `begin` to `end`; not if `begin` raises an exception."""
+
+    def begin(self) -> None: ...
+    def end(self) -> None: ...
+
+
+class RestrictableZones(Protocol):
+    """The zones of a robot. Several of what these return may hold at the same time, also for the same names."""
+
+    def keep_out(self, *names: str) -> HeldZones: ...
+    def keep_in(self, *names: str) -> HeldZones: ...
+
+
+class KeepOut(Node):
+    """Its child, while the robot keeps out of zones: until the child ends or is halted, also while it is suspended."""
+
+    keeps_in = False
+    held: HeldZones | None = None
+
+    def __init__(
+        self, name: str, children: Sequence[Behaviour], names: Sequence[str], zones: RestrictableZones | None
+    ) -> None:
+        self.names, self.zones = names, zones
+        super().__init__(name, children)
+
+    def begin(self) -> str:
+        """Make the zones hold, unless they do. Returns the reason if that fails, else ""."""
+        if self.held is not None:
+            return ""
+        if self.zones is None:
+            return "this robot has no zones"
+        if not self.names:
+            return "it names no zone"
+        try:
+            held = (self.zones.keep_in if self.keeps_in else self.zones.keep_out)(*self.names)
+            held.begin()
+        except Exception as problem:  # such as an unknown zone
+            return str(problem) or repr(problem)
+        self.held = held
+        return ""
+
+    def end(self) -> None:
+        """End the restriction."""
+        held, self.held = self.held, None
+        if held is not None:
+            held.end()
+
+    def halt(self, keep: bool) -> None:
+        super().halt(keep)
+        if not keep:
+            self.end()
+
+    def shutdown(self) -> None:
+        """End the restriction where py_trees gives up the tree."""
+        self.end()
+
+    def run(self) -> Asking:
+        self.feedback_message = self.begin()
+        if self.feedback_message:
+            return FAILURE
+        try:
+            status = yield from self.ask(self.children[0])
+        except Exception:  # nodes of py_trees don't stop a child whose first tick raised one
+            self.end()
+            raise
+        if status != RUNNING:
+            self.end()
+        return status
+
+
+class KeepIn(KeepOut):
+    """Its child, while the robot stays in zones."""
+
+    keeps_in = True
 
 
 class Repeat(Node):

@@ -20,7 +20,7 @@ _HEAD = '''"""A behavior tree for py_trees 2.6; needs {needs}.
 `create_root` makes the tree. Its leaves are made by a function that you give: leaf(name, id, ports) returns a
 behaviour; without one they print what they would do, and succeed. python FILE [TICKS] shows the tree and ticks it.
 A node that is skipped has the status INVALID.
-"""
+{zones}"""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ import time
 _IMPORTS = {
     "abc": ("abstractmethod",),
     "collections.abc": ("Callable", "Generator", "Iterator", "Sequence"),
-    "typing": ("Any", "ClassVar"),
+    "typing": ("Any", "ClassVar", "Protocol"),
     "py_trees": ("behaviour", "behaviours", "common", "composites", "decorators", "display"),
 }
 _VALUES = """
@@ -49,12 +49,41 @@ class PrintingLeaf(behaviour.Behaviour):
     def update(self) -> common.Status:
         print(self.name)
         return common.Status.SUCCESS
+'''
+_ABOUT_ZONES = """
+The nodes KeepOut and KeepIn use `zones`, an object of yours (RestrictableZones below). They fail if `begin` raises an
+exception. Without such an object, what holds is printed.
+"""
+_ZONES = '''
 
+class PrintingRestriction:
+    """Stands for zones that hold: prints when they begin and end."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+
+    def begin(self) -> None:
+        print(self.text)
+
+    def end(self) -> None:
+        print(f"{self.text}: over")
+
+
+class PrintingZones:
+    """Stands for the zones of a robot."""
+
+    def keep_out(self, *names: str) -> PrintingRestriction:
+        return PrintingRestriction(f"keep out of {', '.join(names)}")
+
+    def keep_in(self, *names: str) -> PrintingRestriction:
+        return PrintingRestriction(f"stay in {', '.join(names)}")
+'''
+_CREATE = '''
 
 def create_root(
     leaf: Callable[[str, str, dict[str, str]], behaviour.Behaviour] = PrintingLeaf,
     now: Callable[[], float] = time.monotonic,
-) -> behaviour.Behaviour:
+{zones}) -> behaviour.Behaviour:
     """The root of the tree; `now` is the time in seconds."""
 '''
 _FOOT = """
@@ -77,7 +106,10 @@ def to_module(tree: Tree, vocabulary: Lexicon) -> str:
     plan = plan_of(tree, vocabulary)
     with_values = "engine_leaf" in plan.uses
     body = "\n".join([_INDENT + line for line in _body(plan, with_values)])
-    rest = (_VALUES if with_values else "") + _definitions(plan.uses) + _LEAF + body + "\n" + _FOOT
+    with_zones = not plan.uses.isdisjoint(("KeepOut", "KeepIn"))
+    create = _CREATE.format(zones=f"{_INDENT}zones: RestrictableZones = PrintingZones(),\n" if with_zones else "")
+    made = _LEAF + (_ZONES if with_zones else "") + create + body + "\n" + _FOOT
+    rest = (_VALUES if with_values else "") + _definitions(plan.uses) + made
     needs = "py_trees, and btlang for the values of the mission" if with_values else "only py_trees"
     imports = []
     for module, names in _IMPORTS.items():
@@ -85,7 +117,8 @@ def to_module(tree: Tree, vocabulary: Lexicon) -> str:
         if used:
             space = "\n" if module == "py_trees" else ""
             imports.append(f"{space}from {module} import {', '.join(used)}")
-    return _HEAD.format(needs=needs, imports="\n".join(imports)) + rest
+    zones = _ABOUT_ZONES if with_zones else ""
+    return _HEAD.format(needs=needs, imports="\n".join(imports), zones=zones) + rest
 
 
 def _body(plan: Plan, with_values: bool) -> list[str]:

@@ -13,6 +13,7 @@ from btlang.engine.compile import expand
 from btlang.engine.conditions import is_of_editors
 from btlang.engine.instance import EngineState, NodeInstance
 from btlang.engine.leaves.leaf import LeafBinding
+from btlang.engine.nodes.constraints import zone_names
 from btlang.printer.phrase import phrase_of
 from btlang.record import Record
 from btlang.text.source import NOWHERE
@@ -245,6 +246,8 @@ def _ours(node: Node) -> tuple[str, tuple[tuple[str, Any], ...]]:
         return node.id, _INTERRUPTS
     if node.id == "RunOnce":
         return node.id, (("then_skip", _truth(node, "then_skip")),)
+    if node.id in ("KeepOut", "KeepIn"):
+        return node.id, (("names", zone_names(_constant(node, "zones"))), ("zones", Name("zones")))
     if node.id == "TryCatch" and not _truth(node, "catch_on_halt"):
         return node.id, ()
     if node.id not in _NUMBERS:
@@ -283,10 +286,14 @@ _NUMBERS: dict[str, tuple[str, tuple[str, ...]]] = {
 
 
 def _truth(node: Node, port: str) -> bool:
+    return _constant(node, port) in ("true", "1")
+
+
+def _constant(node: Node, port: str) -> str:
     text = node.port(port) or CATALOGUE[node.id].ports[port].default or ""
     if "{" in text:
         raise _Inexpressible(f"its {port} is a value of the mission, and py_trees needs a constant")
-    return text in ("true", "1")
+    return text
 
 
 def _without_conditions(node: Node) -> tuple[tuple[str, str], ...]:

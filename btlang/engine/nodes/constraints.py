@@ -40,7 +40,7 @@ class Restraint:
         if self._held is not None:
             return
         zones = getattr(self._instance.state.services.get("robot"), "zones", None)
-        names = [name for name in _BETWEEN.split(self._zones().strip()) if name]
+        names = zone_names(self._zones())
         if zones is None or not names:
             raise ActionFailed("this robot has no zones" if names else "it names no zone")
         held = (zones.keep_in if self._keeps_in else zones.keep_out)(*names)
@@ -59,6 +59,11 @@ class Restraint:
 
     def restore(self, held: bool) -> None:
         """A run goes on: they hold from its first tick."""
+
+
+def zone_names(text: str) -> list[str]:
+    """The names of zones in the text of a port."""
+    return [name for name in _BETWEEN.split(text.strip()) if name]
 
 
 def keep_out(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
