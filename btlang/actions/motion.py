@@ -64,9 +64,9 @@ def turn_around(robot: Driving) -> Steps:
     yield from turn(robot, 180.0)
 
 
-def turn_once_around(robot: Driving, turns: int = 1) -> Steps:
-    """Turns on the spot by full turns."""
-    yield from turn(robot, 360.0 * turns)
+def turn_once_around(robot: Driving) -> Steps:
+    """Turns on the spot by a full turn."""
+    yield from turn(robot, 360.0)
 
 
 def stop(robot: Driving) -> Steps:

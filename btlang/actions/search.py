@@ -116,6 +116,28 @@ def count(blackboard: Blackboard) -> int | Failed:
     return int(blackboard.get(COUNT))
 
 
+def counted(
+    blackboard: Blackboard,
+    below: float | None = None,
+    above: float | None = None,
+    at_least: float | None = None,
+    at_most: float | None = None,
+    equal: float | None = None,
+) -> bool | Failed:
+    """Whether the robot counted so many last. Fails where it hasn't counted."""
+    found = count(blackboard)
+    if isinstance(found, Failed):
+        return found
+    holds = (
+        (below is None or found < below)
+        and (above is None or found > above)
+        and (at_least is None or found >= at_least)
+        and (at_most is None or found <= at_most)
+        and (equal is None or found == equal)
+    )
+    return holds or Failed(lambda: f"it counted {found}")
+
+
 def _count(
     robot: Searching,
     blackboard: Blackboard,

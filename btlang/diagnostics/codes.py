@@ -186,6 +186,7 @@ _ALL = (
     Code("BT160", "'{words}' {problem}.", "Write for example: {example}"),
     Code("BT161", "'{words}' can't end so: a condition ends what is forbidden.", "Write for example: {example}"),
     Code("BT162", "'{words}' leads where the robot may not go: it keeps out of '{zone}'."),
+    Code("BT163", "'{words}' turns by half a turn each time.", "For whole turns, write: {fixed}", "note", "half turns"),
     Code("BT170", "'{words}' starts again each time it has ended.",
          "To keep that, write: {again}\nTo do it once, write: {once}", "warning", "starts again"),
     Code("BT171", "All that follows waits for '{condition}', too.",

@@ -27,7 +27,7 @@ def test_a_diagnostic_of_a_misspelt_name(capsys: pytest.CaptureFixture[str]) -> 
         {
             "code": "BT013",
             "severity": "error",
-            "message": "There's no place or person or object or door called 'ktichen'.",
+            "message": "There's no place, person, object, door or zone called 'ktichen'.",
             "hint": "I understood 'go to ...'. Similar: kitchen, kitchen door",
             **place,
             "words": "ktichen",

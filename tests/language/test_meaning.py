@@ -77,7 +77,6 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("ask Alice if the battery is low", "BT159"),
         ("tell Alice that she is late", "BT159"),
         ("tell Alice that tea is ready and wave", "BT159"),
-        ("it is forbidden to enter the hall", "BT010"),
         ("there are two books near the lab", "BT010"),
         ("I am not hungry, wave", "BT010"),
         ("whenever you see someone, wave at them. Follow them", "BT038"),

@@ -36,11 +36,11 @@ NEEDS = {
     "ComeToMe": ("I see nobody", "go to Alice"),
     "LookAtObject": ("the cup is behind the robot; the head can't turn that far", "face the cup"),
 }
-UNKNOWN_AT_THE_START = {"Answer", "Count"}
+UNKNOWN_AT_THE_START = {"Answer", "Count", "Counted"}
 """Nobody has been asked, and nothing counted."""
 HOLDS_AT_THE_START = {
     "HandEmpty", "PathClear", "BatteryFull", "DistanceAhead", "DistanceToPlace", "DistanceToPerson", "DistanceToObject",
-    "PeopleNear", "BatterySufficient", "DoorOpen", "PlaceOfPerson", "PlaceOfObject", "SwitchedOn",
+    "PeopleNear", "BatterySufficient", "DoorOpen", "PlaceOfPerson", "PlaceOfObject", "SwitchedOn", "TodayIs",
 }  # fmt: skip
 
 

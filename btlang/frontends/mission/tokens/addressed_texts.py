@@ -82,6 +82,8 @@ class AddressedTexts(SentenceReader):
     def _asked_of(self) -> str:
         """The words of the one condition that the command being read depends on, with names for pronouns; else ""."""
         form = next((at for at in reversed(range(len(self._tokens))) if self._tokens[at].kind in _ASKED_BY), 0)
+        if self._tokens and self._tokens[form].start == self._tokens[form].end:
+            return ""  # of a question: its words ask
         asked = [token for token in self._tokens[form:] if token.kind in _IN_CONDITIONS]
         if len(asked) > 1 and asked[0].kind == "not" and asked[0].start == asked[0].end:
             del asked[0]  # of `isn't`, which the words of the condition have

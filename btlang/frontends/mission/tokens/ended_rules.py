@@ -31,7 +31,7 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
     opening = vocabulary.entry(_OPEN)
     problems: list[Diagnostic] = []
     at = 0
-    while at + 2 < len(tokens):
+    while at + 1 < len(tokens):
         constraint, until = constraint_of(tokens[at]), tokens[at + 1]
         if constraint is not None and until.kind in _AMOUNTS:
             forbidden, whole = span(tokens[at].start, tokens[at].end).text, span(tokens[at].start, until.end)

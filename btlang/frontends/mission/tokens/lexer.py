@@ -247,6 +247,7 @@ class Lexer:
                     without_meaning(tokens, text, match, role, at, self.vocabulary, self.context)
                     or self._order.start_of_leg(at)
                     or self._order.journey_of_constraint(at)
+                    or self._order.wait_for(at)
                     or self._partial.add_left_out(at)
                     or self._partial.add_without_theme(at)
                     or self._requests.tell(at)
@@ -265,9 +266,6 @@ class Lexer:
             else:
                 if role == "politeness" or (role == "following" and self._order.opens_nothing(match.last)):
                     at = after_politeness(tokens, words, match)
-                    continue
-                if role == "after" and tokens and tokens[-1].kind == "until":
-                    at = match.last  # `until after going to the lab`
                     continue
                 if at in going_on:
                     end = self._requests.reply(at) if role in _REPLIES else 0

@@ -11,14 +11,15 @@ from btlang.frontends.mission.token import RULES, Called, Listed, OnDays, Token,
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.vocabulary.capabilities import MOVES
-from btlang.vocabulary.match import Match
+from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import PLACE
+from btlang.vocabulary.value_type import PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
 _JOINTS = frozenset(("and", "comma", "then"))
 _LINE_STARTS = frozenset(("newline", "semi", "dedent"))
-_TODAY = "TodayIs"
+_TODAY, _COMES = "TodayIs", "WaitForPerson"
 _FORMS = frozenset((*RULES, "if", "unless", "while", "until", "otherwise", "if_doing", "if_works"))
 
 
@@ -126,8 +127,23 @@ class OrderWords(SentenceReader):
             return journey.last
         joint = self._text.ends[journey.last - 1]
         self._tokens.append(Token("then", joint, joint))
+        if waiting.meaning.role == "wait_for":
+            self._tokens.append(Token("wait_for", self._text.starts[journey.last], self._text.ends[waiting.last - 1]))
+            return waiting.last
         self._partial.append(waiting, journey.last)
         return waiting.last
+
+    def wait_for(self, at: int) -> int:
+        """`wait for Bob`: until he comes."""
+        tokens, entry = self._tokens, self._vocabulary.entry(_COMES)
+        found = self._context.read(PERSON, self._text, at) if tokens and tokens[-1].kind == "wait_for" else None
+        if found is None or entry is None or not found[0]:
+            return 0
+        start = tokens.pop().start
+        value = SlotValue(entry.slots[0].name, PERSON, found[0], at, found[1])
+        self._partial.append(Match(Meaning("command", entry), found[1], (value,)), at)
+        tokens[-1].start = start
+        return found[1]
 
     def at_goal(self, at: int) -> int:
         """`go to the lab and wave there`, `visit every room and wave in each of them`: where the robot is by then."""

@@ -1,0 +1,23 @@
+"""BT163: half turns that are counted, as most people mean whole turns by `turn around three times`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.passes.compilation import Compilation
+from btlang.tree import ast
+
+_HALF, _WHOLE = "TurnAround", "TurnOnceAround"
+
+
+def half_turns(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Among the loops of the mission and of its definitions."""
+    whole = compilation.vocabulary.entry(_WHOLE)
+    for body in ast.bodies(compilation.mission) if whole is not None and whole.example else ():
+        for node in compilation.syntax(body):
+            if type(node) is ast.Repeat and isinstance(node.body, ast.Phrase) and node.body.entry.id == _HALF:
+                said, turn = node.span.text, node.body.span.text
+                fixed = said.replace(turn, whole.example, 1) if whole is not None else said
+                note = diagnostic("BT163", node.span, words=said, fixed=fixed)
+                yield note.replace(readings=((node.span, fixed),))
