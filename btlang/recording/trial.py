@@ -23,6 +23,7 @@ MOST_SECONDS = 3600.0
 """Of the mission's time."""
 _MOST_TICKS = 72_000
 _RATE = 20.0
+_ENDING = 2.0  # seconds that a stopped run may take at least to end
 OURS = "btlang.actions."
 """The prefix of modules whose functions do nothing but command the robot that they are given."""
 
@@ -50,7 +51,7 @@ def simulated(
         session.close()
         return outcome, outcome.stopped
     run.stop()
-    outcome = run.wait(patience)
+    outcome = run.wait(max(patience, _ENDING))
     if outcome is not None:  # closing the session would wait for the command
         session.close()
     return outcome, "it took too long to simulate"

@@ -193,6 +193,15 @@ def test_odometry_that_came_late_is_not_too_fast() -> None:
     assert "odometry shows" in Bench().drive(3.0, 0.5, lambda t: (0.5 * t if t < 2.0 else 3.0 * t - 5.0, 0.0, 0.0))
 
 
+def test_a_base_that_was_held_up_may_catch_up() -> None:
+    """For a quarter of a second it reports no motion, in the next one all of it."""
+
+    def held_up(t: float) -> tuple[float, float, float]:
+        return (0.75 if 1.5 <= t < 1.75 else t - 1.0 if 1.75 <= t < 2.0 else 0.5 * t), 0.0, 0.0
+
+    assert Bench().drive(3.0, 0.5, held_up) == ""
+
+
 def test_a_disagreement_ends_one_drive_and_not_the_next() -> None:
     bench = Bench()
     assert bench.drive(3.0, 0.5, lambda t: (-0.5 * t, 0.0, 0.0))

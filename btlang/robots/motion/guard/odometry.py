@@ -104,10 +104,17 @@ class OdometryCheck:
         return STANDS if stood > (_STOPPED if self._under_way else _SETS_OFF) else ""
 
     def _too_fast(self, stamp: float) -> str:
-        """A robot is never faster than it was commanded a while ago, however late it obeys."""
+        """A robot is never faster than it was commanded a while ago, however late it obeys.
+
+        It has to be so over a longer time, too: what was held up before comes at once.
+        """
         if stamp - self._drives_since < _ROLLS_ON or not self._tops:
             return ""
-        before = next((each for each in reversed(self._samples) if each[0] <= stamp - _SHORT), None)
+        fault = self._too_fast_over(_SHORT, stamp)
+        return fault if fault and self._too_fast_over(2 * _SHORT, stamp) else ""
+
+    def _too_fast_over(self, seconds: float, stamp: float) -> str:
+        before = next((each for each in reversed(self._samples) if each[0] <= stamp - seconds), None)
         if before is None:
             return ""
         passed = max(stamp - before[0], self._samples[-1][3] - before[3])  # what arrived late, or of what came so
