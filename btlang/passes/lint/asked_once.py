@@ -27,25 +27,24 @@ def asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
     """Among the statements of the mission, of definitions and of blocks."""
     vocabulary = compilation.vocabulary
     for body in ast.bodies(compilation.mission):
-        before: dict[int, list[ast.Ast]] = {}
+        before: dict[int, tuple[Sequence[ast.Ast], int]] = {}
         for node in compilation.syntax(body):
             if type(node) is ast.Chain and node.operator == "sequence":
-                for at, item in enumerate(node.items):
-                    before[id(item)] = _sentence_before(node.items[:at])
+                before.update((id(item), (node.items, at)) for at, item in enumerate(node.items))
             if type(node) is ast.If and not node.negated and node.otherwise is None and _is_statement(node):
-                sentence = before.get(id(node), [])
+                sentence = _sentence_before(*before.get(id(node), ((), 0)))
                 warnings = list(_warning(node, sentence[-1] if sentence else None, vocabulary))
                 yield from warnings or _too_late(node, sentence, vocabulary)
 
 
-def _sentence_before(items: Sequence[ast.Ast]) -> list[ast.Ast]:
-    """The last items, as far back as no sentence ends between them."""
-    found = list(items[-1:])
-    for item in reversed(items[:-1]):
-        between = item.span.source.text[item.span.end : found[0].span.start]
+def _sentence_before(items: Sequence[ast.Ast], at: int) -> list[ast.Ast]:
+    """The items before one, as far back as no sentence ends between them."""
+    found = list(items[max(at - 1, 0) : at])
+    for place in range(at - 2, -1, -1):
+        between = items[place].span.source.text[items[place].span.end : found[0].span.start]
         if _SENTENCE_END.search(between):
             break
-        found.insert(0, item)
+        found.insert(0, items[place])
     return found
 
 

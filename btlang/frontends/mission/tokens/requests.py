@@ -111,7 +111,9 @@ class Requests(AddressedTexts):
     def begged(self, at: int) -> int:
         """`the cup, please`: brings it."""
         text, begging = self._text, self._vocabulary.asking["begging"]
-        wanted = self._with_front(at, at, "fetching") if not text.distinct.isdisjoint(begging) else None
+        if text.distinct.isdisjoint(begging) or text.words[at + self._length(at)] not in begging:
+            return 0
+        wanted = self._with_front(at, at, "fetching")
         if wanted is None:
             return 0
         end = wanted.last + (text.words[wanted.last] == ",")
