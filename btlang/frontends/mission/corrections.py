@@ -1,8 +1,8 @@
 """The one gate for corrections: a change is proposed for a problem only if it passes here, wherever it was made.
 
-The whole sentence then reads without an error, its words differ by spelling alone (`spelling_rule.py`), and no other
-change that is as small does that with another meaning. If no proposal passes, other spellings of the words of
-the statement are tried.
+The whole sentence then reads without an error, what was understood before it is understood the same way, its words
+differ by spelling alone (`spelling_rule.py`), and no other change that is as small does that with another meaning. If
+no proposal passes, other spellings of the words of the statement are tried.
 
 The statement with the problem is tried, with the statements beside it and those that give names. All tries
 together read a limited number of words, so that a text full of mistakes takes hardly longer than before. What could
@@ -40,7 +40,7 @@ _MOST_SUSPECTS = 40  # words that may be misspelt, for one problem
 _MOST_BESIDE, _MOST_EACH = 3, 5  # problems of a sentence that are mended together, and changes that are tried for each
 _NEAR_WORDS = 12  # of a problem, that a name may have been meant to have
 _MARKS_FAR = 8  # what marks around words count: farther than any other spelling of one
-_UNKNOWN = frozenset(("BT010", "BT013"))
+_UNKNOWN, _MEANING = frozenset(("BT010", "BT013")), frozenset(("command", "condition"))
 
 Change = tuple[int, int, str]
 Compile = Callable[[Lexer, Grouped], Iterable[Diagnostic]]
@@ -57,15 +57,14 @@ class _Statement(Record):
 
 
 class _Trial(Record):
-    """Statements to read with a change in one of them, `own` is that of the problem; how much is wrong without, and
-    which nodes are said by their ids.
-    """
+    """Statements to read with a change; without, how much is wrong, and what is understood before the first fault."""
 
     own: _Statement
     statements: tuple[_Statement, ...]
     faults: int
     cost: int
     ids: frozenset[str]
+    understood: tuple[object, ...]
 
 
 def corrected(lexer: Lexer, problems: list[Diagnostic], compile: Compile | None) -> list[Diagnostic]:
@@ -247,8 +246,8 @@ class _Corrections:
             return None
         self._budget -= cost
         lexer, _, faults = _read(self._lexer, "".join(self._piece(statement, None) for statement in statements))
-        self._trials[number] = _Trial(self._statements[number], statements, len(faults), cost, _ids(lexer))
-        return self._trials[number]
+        read = len(faults), cost, _ids(lexer), tuple(_understood(lexer, faults))
+        return self._trials.setdefault(number, _Trial(self._statements[number], statements, *read))
 
     def _suspects(self, problem: Diagnostic, statement: _Statement) -> list[int]:
         """The words of the line of a problem, the nearest to its words first, then those of the statement."""
@@ -303,7 +302,10 @@ class _Corrections:
         are_known = all(id in trial.ids or id in known.entries or id in known.nodes for id in _ids(lexer))
         if not are_known and '"' not in change[2]:
             return None  # words that mean nothing became the id of a node that nobody knows: `do on gripper`
-        meaning = [(token.kind, _said(token)) for token in lexer.tokens]
+        meaning: list[object] = [(token.kind, _said(token)) for token in lexer.tokens]
+        rest = iter(meaning)
+        if change[0] >= self._sentences.around(problem)[0] and not all(said in rest for said in trial.understood):
+            return None
         broken = {bisect_right(ends, fault) - 1 for fault in faults}
         if broken:  # what else is wrong keeps the text from being compiled
             pieces = ["" if number in broken else piece for number, piece in enumerate(pieces)]
@@ -357,6 +359,12 @@ class _Sentences:
             end = text.ends[word]
             if depth <= 0 and text.words[word] == END_OF_STATEMENT and not text.source.text[end : end + 1].strip():
                 yield word
+
+
+def _understood(lexer: Lexer, faults: Iterable[int]) -> Iterator[object]:
+    """What the sentences say before the first in which something is wrong; others may depend on that one."""
+    wrong = _Sentences(lexer.text).around(min(faults, default=0))[0]
+    return ((token.kind, _said(token)) for token in lexer.tokens if token.end <= wrong and token.kind in _MEANING)
 
 
 def _said(token: Token) -> object:
