@@ -163,6 +163,8 @@ class _Filling:
         if role.for_speaker and text.words[at] in self._words.speaker:
             self._go_on(at + 1, {**filled, role.name: None}, has_particle)
             return
+        if text.words[at].isalpha() and text.words[at] not in context.openers.get(role.type, text.words[at : at + 1]):
+            return  # as mostly, without reading
         for group, _, last in context.sets(role.type, text, at):
             one = SlotValue(role.slot, role.type, group, at, last, group=group)
             self._go_on(last, {**filled, role.name: one}, has_particle)
