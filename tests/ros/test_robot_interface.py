@@ -7,7 +7,7 @@ from btlang.robots.body_file import standard_body
 from btlang.ros.robot_interface import interfaces
 from btlang.vocabulary.capabilities import CAPABILITIES, POSTURE
 
-FREE = ("TimeOfDay", "TimeNow", "CallStaff", "RaiseAlarm", "ClearMap", "Count")
+FREE = ("TimeOfDay", "TimeNow", "TodayIs", "Counted", "CallStaff", "RaiseAlarm", "ClearMap", "Count")
 """They ask the clock of the run or what was counted, or do something that nobody has to take notice of."""
 OF_THE_WORLD = ("DoorOpen", "DoorClosed", "SwitchedOn", "SwitchedOff", "ZoneClosed")
 """They ask about something in the world, which has a topic of its own or is known by the world file."""

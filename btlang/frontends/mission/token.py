@@ -54,11 +54,15 @@ class Called(Record):
 
 
 class Listed(Record):
-    """A phrase with a list in one slot: arguments for each value. `joiner` is "and", "or", "nor" or ""."""
+    """A phrase with a list in one slot: arguments for each value. `joiner` is "and", "or", "nor" or "".
+
+    The alternative that succeeds `writes` the value of a slot into a key, which a pronoun stands for: (key, type, slot).
+    """
 
     entry: Entry
     arguments: tuple[tuple[tuple[str, str], ...], ...]
     joiner: str
+    writes: tuple[str, str, str] | None = None
 
 
 class Assigned(Record):

@@ -100,7 +100,7 @@ class Builder:
             return Exact(value.id, value.ports, value.name, (), is_condition, span, value.outputs)
         assert isinstance(value, Listed)
         operators = ("any", "all") if is_condition else ("fallback", "sequence")
-        items = tuple(_called(value.entry, arguments, span) for arguments in value.arguments)
+        items = tuple(_alternative(value, arguments, span) for arguments in value.arguments)
         return Chain(operators[value.joiner != "or"], items, True, span)
 
     def chain(self, operator: str, items: Sequence[Ast], start: int, end: int) -> Ast:
@@ -249,6 +249,15 @@ class Builder:
 def _amount(token: Token) -> str:
     """The count or duration of a token, "" where it has none."""
     return token.value if isinstance(token.value, str) else ""
+
+
+def _alternative(listed: Listed, arguments: tuple[tuple[str, str], ...], span: Span) -> Ast:
+    """One of a list, which writes down which one it was where that is spoken of."""
+    said = _called(listed.entry, arguments, span)
+    if listed.writes is None:
+        return said
+    key, kind, slot = listed.writes
+    return Chain("sequence", (said, Assign(key, "set", kind, dict(arguments)[slot], span)), True, span)
 
 
 def _called(entry: Entry, arguments: tuple[tuple[str, str], ...], span: Span, details: NodeCall | None = None) -> Ast:

@@ -15,7 +15,7 @@ from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.references import ALL, NAMES, Choice, choice_of, keys_in, point_ports, renamed
+from btlang.vocabulary.references import ALL, NAMES, Choice, choice_of, free_key, keys_in, point_ports, renamed
 from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.value_type import PERSON, PLACE, WORLD, ZONE
 from btlang.vocabulary.values import key_of
@@ -43,6 +43,7 @@ class Calls:
     def __init__(self, text: Words, vocabulary: Lexicon, context: ReadingContext, problems: list[Diagnostic]) -> None:
         self._text, self._vocabulary, self._context, self.problems = text, vocabulary, context, problems
         self._lists: dict[str, tuple[Token, SlotValue]] = {}
+        self._alternatives: dict[str, tuple[Token, SlotValue]] = {}  # by the reference to the one that succeeds
         # in most missions nobody is spoken of by a pronoun
         people = (word for word, types in vocabulary.values.pronouns.items() if PERSON in types)
         self.speaks_of_people = not text.distinct.isdisjoint(people)
@@ -63,10 +64,15 @@ class Calls:
         if meaning.entry is not None:
             kind = "condition" if meaning.role in NEGATED else meaning.role
             match = self._with_lists(match) if self._context.listed else match
+            for value in values if self._alternatives else ():
+                self._write_down(value.text)
             made = Token(kind, start, end, self._called(meaning.entry, match, at))
             if isinstance(made.value, Listed) and made.value.joiner in ("and", "") and kind == "command":
                 listed = next(value for value in match.values if value.more)
                 self._lists = {listed.type: (made, listed)}
+            elif isinstance(made.value, Listed) and made.value.joiner == "or" and kind == "command":
+                listed = next(value for value in match.values if value.more)
+                self._alternatives[self._reference(listed.type)] = made, listed
             return made
         if values:
             return Token(meaning.role, start, end, values[0].text)
@@ -124,6 +130,20 @@ class Calls:
         changed: Match = match.replace(values=tuple(values))
         return changed
 
+    def _reference(self, kind: str) -> str:
+        """To the value that stands for the one of several alternatives that succeeds."""
+        return f"{{{free_key(kind, self._context.known or {})}}}"
+
+    def is_alternative(self, token: Token, reference: str) -> bool:
+        """Whether a value is the one of a command's alternatives that succeeds."""
+        return reference in self._alternatives and self._alternatives[reference][0] is token
+
+    def _write_down(self, reference: str) -> None:
+        """A pronoun stands for the alternative that succeeds, which is written down."""
+        made = self._alternatives.get(reference)
+        if made is not None and isinstance(made[0].value, Listed):
+            made[0].value = made[0].value.replace(writes=(reference[1:-1], made[1].type, made[1].name))
+
     def note(self, match: Match, is_alternative: bool = False) -> None:
         """What pronouns stand for from here on: of alternatives only the run knows which one it was."""
         before = dict(self._context.latest) if is_alternative else {}
@@ -148,6 +168,9 @@ class Calls:
             entry = match.meaning.entry
             if value.more and (value.joiner == "or" or (entry is not None and entry.first and value.type == PLACE)):
                 self._context.latest.pop(value.type, None)
+                self._context.listed.pop(value.type, None)
+                if match.meaning.role == "command" and not any(text[:1] in _ODD for text in (value.text, *value.more)):
+                    self._context.latest[value.type] = self._reference(value.type)
                 continue
             self._context.listed.pop(value.type, None)
             if value.more and not value.group:

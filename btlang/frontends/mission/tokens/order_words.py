@@ -161,6 +161,8 @@ class OrderWords(SentenceReader):
         goal = context.listed[PLACE] if is_plural and PLACE in context.listed else context.latest.get(PLACE)
         if not goal:
             return 0
+        if self._calls.is_alternative(journey, goal):
+            return pronoun[1]
         if goal[:1] == "{":
             if tokens[-2].kind != "and" or not self._calls.is_round(journey, goal):
                 return 0
