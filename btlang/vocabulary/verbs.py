@@ -99,12 +99,31 @@ def fill(
     return best
 
 
+_Beginnings = tuple[tuple[Role, ...], dict[str, list[tuple[Role, tuple[str, ...]]]]]
+_known: dict[
+    int, tuple[tuple[Role, ...], _Beginnings]
+] = {}  # by the id of the roles, which are kept so that it is theirs
+
+
+def _beginnings(roles: tuple[Role, ...]) -> _Beginnings:
+    """The roles whose values may begin at once, and those that words introduce, by the first of these words."""
+    known = _known.get(id(roles))
+    if known is None:
+        introducing: dict[str, list[tuple[Role, tuple[str, ...]]]] = {}
+        for role in roles:
+            for phrase in role.words:
+                introducing.setdefault(phrase[0], []).append((role, phrase))
+        known = _known[id(roles)] = roles, (tuple(role for role in roles if role.is_direct), introducing)
+    return known[1]
+
+
 class _Filling:
     """Fills the roles of one frame from the words of one text."""
 
     def __init__(self, frame: Frame, text: Words, context: ReadingContext, words: RoleWords, list_of: ListOf) -> None:
         self._frame, self._text, self._context, self._words, self._list_of = frame, text, context, words, list_of
         self._best: tuple[int, tuple[SlotValue, ...], int] | None = None
+        self._begin = _beginnings(frame.roles)
 
     def taken(self, at: int, before: SlotValue | None) -> tuple[int, tuple[SlotValue, ...], int] | None:
         """Where the longest way to fill the roles ends, its values, and how many roles stay empty."""
@@ -143,15 +162,17 @@ class _Filling:
     def _introduced(self, at: int, filled: Mapping[str, SlotValue | None]) -> Iterator[tuple[Role, int]]:
         """The empty roles whose value may begin here, and where: behind the words that introduce them, or at once."""
         words = self._text.words
-        for role in self._frame.roles:
-            if role.name in filled:
-                continue
-            is_goal = role.name == GOAL and words[at] in self._words.directions
-            if is_goal or (role.is_direct and not (role.name == RECIPIENT and THEME in filled)):
+        direct, introducing = self._begin
+        for role in direct:
+            if role.name not in filled and not (role.name == RECIPIENT and THEME in filled):
                 yield role, at
-            for phrase in role.words:
-                if words[at] == phrase[0] and tuple(words[at : at + len(phrase)]) == phrase:
-                    yield role, at + len(phrase)
+        if words[at] in self._words.directions:
+            for role in self._frame.roles:
+                if role.name == GOAL and role.name not in filled:
+                    yield role, at
+        for role, phrase in introducing.get(words[at], ()):
+            if role.name not in filled and (len(phrase) == 1 or tuple(words[at : at + len(phrase)]) == phrase):
+                yield role, at + len(phrase)
 
     def _ends_with(self, role: Role, at: int) -> bool:
         """Whether a value of a role ends the statement."""

@@ -32,7 +32,8 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
     problems: list[Diagnostic] = []
     at = 0
     while at + 1 < len(tokens):
-        constraint, until = constraint_of(tokens[at]), tokens[at + 1]
+        until = tokens[at + 1]
+        constraint = constraint_of(tokens[at]) if until.kind == "until" or until.kind in _AMOUNTS else None
         if constraint is not None and until.kind in _AMOUNTS:
             forbidden, whole = span(tokens[at].start, tokens[at].end).text, span(tokens[at].start, until.end)
             problems.append(
