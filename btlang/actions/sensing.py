@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import dist, inf, radians
 
 from btlang.actions.points import where
+from btlang.engine.leaves.leaf import Failed
 from btlang.robots.capabilities import Base, Docking, Hands, Navigation, Power, Sensors
 from btlang.robots.robot import RobotError, SensorSilent
 
@@ -188,6 +189,15 @@ def someone_within(robot: Base, distance: float) -> bool:
 def obstacle_within(robot: Sensors, distance: float) -> bool:
     """Whether the robot can't drive so many metres straight ahead. Raises SensorSilent as `distance_ahead` does."""
     return distance_ahead(robot) < distance
+
+
+def object_known(robot: Base, object: str) -> bool | Failed:
+    """Whether the robot knows where an object is."""
+    try:
+        robot.locate(object)
+    except RobotError as problem:
+        return Failed(str(problem))
+    return True
 
 
 def object_is_at(robot: Base, object: str, place: str) -> bool:

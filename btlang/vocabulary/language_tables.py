@@ -40,7 +40,7 @@ ASKING = (
     "journey", "search", "whereabouts", "counting", "asking_be", "asking_do", "answers", "feeling", "there",
     "very", "states", "subject", "been", "towards", "going", "finding_out",
     "inspecting", "telling", "whole", "located", "wishing", "wished", "fetching", "begging", "home",
-    "pleading", "plea", "reminding", "reminder", "addressed", "informing", "informed",
+    "pleading", "plea", "reminding", "reminder", "addressed", "informing", "informed", "staying",
     "resuming", "interrupting",
     "if_yes", "if_no",
 )  # fmt: skip

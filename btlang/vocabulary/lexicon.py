@@ -121,6 +121,8 @@ class Lexicon:
         """The words of remarks: how somebody feels, that there is something, and what may be felt."""
         self.been = tree_of((words, True) for words in self.asking["been"])
         """The words of a journey that is behind somebody: `have been in`."""
+        self.staying = tree_of((words, True) for words in self.asking["staying"])
+        """What does nothing where it stands alone: `stay here`."""
         self.going = tree_of((words, True) for words in self.asking["going"])
         """The words that say nothing before another command: `go and`."""
         self.asides: tuple[WordTree, ...] = tuple(

@@ -32,7 +32,9 @@ UNKNOWABLE = {
     "BT052": "what comes before goes on for ever",
     "BT068": "a condition behind `when` is checked once",
     "BT160": "16:45 is in no morning",
+    "BT163": "half turns are counted",
     "BT171": "what follows `as soon as` waits, too",
+    "BT176": "`or stay here` is permitted only",
     "BT172": "of several statements `start over` repeats all",
 }
 """What no grammar knows; few sentences may have it."""

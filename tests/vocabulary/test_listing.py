@@ -41,6 +41,7 @@ UNKNOWN_AT_THE_START = {"Answer", "Count", "Counted"}
 HOLDS_AT_THE_START = {
     "HandEmpty", "PathClear", "BatteryFull", "DistanceAhead", "DistanceToPlace", "DistanceToPerson", "DistanceToObject",
     "PeopleNear", "BatterySufficient", "DoorOpen", "PlaceOfPerson", "PlaceOfObject", "SwitchedOn", "TodayIs",
+    "ObjectKnown",
 }  # fmt: skip
 
 
@@ -172,6 +173,7 @@ charge [to {percent}]
           charge/recharge battery [to {percent}]
           charge/recharge [fully] until full
           charge/recharge [fully] until it is full/charged
+          charge/recharge [fully] until you/robot are/is full/charged
           charge/recharge fully
     {percent}: a number and one of %; 100% if left out
     needs: base

@@ -56,7 +56,7 @@ class Called(Record):
 class Listed(Record):
     """A phrase with a list in one slot: arguments for each value. `joiner` is "and", "or", "nor" or "".
 
-    The alternative that succeeds `writes` the value of a slot into a key, which a pronoun stands for: (key, type, slot).
+    The alternative that succeeds `writes` a slot's value into a key, for which a pronoun stands: (key, type, slot).
     """
 
     entry: Entry

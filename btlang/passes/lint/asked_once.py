@@ -31,7 +31,7 @@ def asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
         for node in compilation.syntax(body):
             if type(node) is ast.Chain and node.operator == "sequence":
                 before.update((id(item), (node.items, at)) for at, item in enumerate(node.items))
-            if type(node) is ast.If and not node.negated and node.otherwise is None and _is_statement(node):
+            if type(node) is ast.If and not node.negated and node.otherwise is None and _is_statement(node, vocabulary):
                 sentence = _sentence_before(*before.get(id(node), ((), 0)))
                 warnings = list(_warning(node, sentence[-1] if sentence else None, vocabulary))
                 yield from warnings or _too_late(node, sentence, vocabulary)
@@ -86,12 +86,13 @@ def _named(phrase: ast.Phrase) -> set[str]:
     return found - {""}
 
 
-def _is_statement(node: ast.If) -> bool:
-    """Whether nothing stands beside it in its statement, and no block below it."""
+def _is_statement(node: ast.If, vocabulary: Lexicon) -> bool:
+    """Whether nothing stands beside it in its statement, and no block below it; behind `stop when C` more may stand."""
     text, span = node.span.source.text, node.span
     before, behind = text[: span.start].rstrip(" \t"), text[span.end :].lstrip(" \t")
     starts = not before or before[-1] in "\n;.!?"
-    return starts and "\n" not in span.text and (not behind or behind[0] in "\r\n;.!?#")
+    halts = node.body.span.start < node.condition.span.start and node.body.span.text.lower() in vocabulary.halting
+    return starts and "\n" not in span.text and (halts or not behind or behind[0] in "\r\n;.!?#")
 
 
 def _warning(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Iterator[Diagnostic]:

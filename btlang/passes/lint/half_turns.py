@@ -8,6 +8,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.tree import ast
 
+_ENDLESS = "-1"
 _HALF, _WHOLE = "TurnAround", "TurnOnceAround"
 
 
@@ -16,7 +17,12 @@ def half_turns(compilation: Compilation) -> Iterator[Diagnostic]:
     whole = compilation.vocabulary.entry(_WHOLE)
     for body in ast.bodies(compilation.mission) if whole is not None and whole.example else ():
         for node in compilation.syntax(body):
-            if type(node) is ast.Repeat and isinstance(node.body, ast.Phrase) and node.body.entry.id == _HALF:
+            if (
+                type(node) is ast.Repeat
+                and isinstance(node.body, ast.Phrase)
+                and node.body.entry.id == _HALF
+                and node.rounds != _ENDLESS
+            ):
                 said, turn = node.span.text, node.body.span.text
                 fixed = said.replace(turn, whole.example, 1) if whole is not None else said
                 note = diagnostic("BT163", node.span, words=said, fixed=fixed)

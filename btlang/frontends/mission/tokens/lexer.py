@@ -264,7 +264,7 @@ class Lexer:
                 tokens.append(Token("unknown", starts[at], ends[end - 1]))
                 at = end
             else:
-                if role == "politeness" or (role == "following" and self._order.opens_nothing(match.last)):
+                if role == "politeness" or (role in ("following", "then") and self._order.says_nothing(match, at)):
                     at = after_politeness(tokens, words, match)
                     continue
                 if at in going_on:

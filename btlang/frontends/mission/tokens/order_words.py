@@ -194,10 +194,17 @@ class OrderWords(SentenceReader):
         again = match is not None and match.meaning.role == "back_and_forth"
         return again or self._partial.doing(at) is not None
 
-    def opens_nothing(self, at: int) -> bool:
-        """Whether words that open a block end a command: `take all cups to the sink, one after the other`."""
-        is_behind = bool(self._tokens) and self._tokens[-1].kind in ("command", "comma")
-        return is_behind and (self._is_end(at) or self._text.words[at] == ",")
+    def says_nothing(self, match: Match, at: int) -> bool:
+        """Whether words begin nothing: `say bye when that's done`, `take all cups to the sink, one after the other`."""
+        if match.meaning.role == "following":
+            is_behind = bool(self._tokens) and self._tokens[-1].kind in ("command", "comma")
+            return is_behind and (self._is_end(match.last) or self._text.words[match.last] == ",")
+        words, once = self._text.words, (*self._vocabulary.asked_once, *self._vocabulary.roles["once"])
+        if words[at] not in once or not self._tokens:
+            return False
+        behind = longest(self._vocabulary.trie, self._text, match.last, self._context)
+        goes_on = behind is not None and behind.meaning.role in ("and", "then")
+        return self._tokens[-1].kind == "command" and (self._is_end(match.last) or goes_on)
 
     def inspection(self, at: int, end: int) -> int:
         """`check the lab`: no condition, but a place that is looked at."""

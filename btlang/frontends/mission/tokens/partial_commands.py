@@ -186,8 +186,9 @@ class PartialCommands:
             return 0
         other = longest(self._tries[0], text, last + 1, self._context)
         theme = _theme(other) if other is not None else None
-        if theme is None:
-            return 0
+        goes = text.words[at] in self._vocabulary.journey_verbs and last > at + 1
+        if theme is None or goes:
+            return 0  # `go in and photograph the sink`
         places = [*range(at, last), *range(theme.first, theme.last)]
         found = _match(text, places, {}, self._tries[:1], self._context)
         if found is None or found.last != len(places) or found.meaning.role != "command":

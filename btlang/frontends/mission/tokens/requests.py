@@ -136,10 +136,14 @@ class Requests(AddressedTexts):
     def _asked(self, at: int, end: int) -> int:
         """`what is the battery?`"""
         measured = self._measured(end)
-        if measured is None or not self._ends(measured.last):
+        if measured is None:
+            return 0
+        behind = longest(self._vocabulary.trie, self._text, measured.last, self._context)
+        last = behind.last if behind is not None and behind.meaning.role == "there_are" else measured.last
+        if not self._ends(last):
             return 0
         self._say(at, measured)
-        return measured.last
+        return last  # `how much battery do you have left?`
 
     def _where(self, at: int, end: int) -> int:
         """`where is the cup?`: looks for it and says where it is."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.frontends.mission.token import Token, constraint_of
-from btlang.text.words import END_OF_TEXT, Words
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
@@ -16,6 +16,7 @@ LINES = frozenset(("newline", "semi", "indent", "dedent", "define"))
 """Behind these kinds of tokens a statement begins, out of brackets."""
 MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 """The raw kinds of marks."""
+_STAYS_BEFORE = (",", ";", ")", END_OF_STATEMENT, END_OF_TEXT)
 BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon", "comma", "then"))
 """Behind these a statement, or an item of a list, begins."""
 
@@ -57,6 +58,10 @@ def without_meaning(
 
     What a command is for goes on as `then` would, and as `and` behind a constraint. `first` moves `but B` to the front.
     """
+    staying = find(vocabulary.staying, text.words, at)
+    if staying is not None and text.words[staying[1]] in (*_STAYS_BEFORE, *vocabulary.roles["and"]):
+        tokens.append(Token("nothing", text.starts[at], text.ends[staying[1] - 1]))
+        return staying[1]
     going = find(vocabulary.going, text.words, at)
     if going is not None and going[1] not in text.articles:
         follows = longest(vocabulary.trie, text, going[1], context)
@@ -73,6 +78,8 @@ def without_meaning(
             else:
                 before.kind = "while_doing"  # `while you wave`
             return at + 1
+        if before.kind == "while" and text.words[at + 1] in vocabulary.asking["asking_be"]:
+            return at + 2  # `while you are waving`
     if before.kind in ("until", "before") and text.words[at] in vocabulary.subjects:
         return at + 1
     if role == "ordinal" and match is not None and before.kind in ("command", "but"):
