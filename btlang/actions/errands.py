@@ -44,6 +44,12 @@ def _fetch(robot: Fetching, object: str) -> Steps:
     yield from accomplish(robot.navigate_to_pose(here))
 
 
+def bring_back(robot: Fetching, object: str) -> Steps:
+    """Picks up an object unless a hand holds it, and brings it to where the robot was when the mission began."""
+    yield from _hold(robot, object)
+    yield from _return(robot)
+
+
 def hold(robot: Fetching, object: str) -> Steps:
     """Picks up an object unless a hand holds it."""
     yield from _hold(robot, object)

@@ -170,14 +170,15 @@ class Builder:
             tried = self._paced(kind, value, body, tried_span)
         else:
             tried = self._counted(opener, body, tried_span)
-        if kind == "every" and isinstance(body, UntilTime | While) and self._is_next(opener.end, body):
+        is_inside = _outlasts(body, value) or (isinstance(body, While) and self._is_next(opener.end, body))
+        if kind == "every" and is_inside and isinstance(body, For | UntilTime | While):
             inner: Ast = tried.replace(body=body.body, span=Span(self.source, body.body.span.start, span.end))
             return body.replace(body=inner, span=span)  # type: ignore[no-any-return]
         return tried if otherwise is None else Try(tried, otherwise, span)
 
-    def _is_next(self, at: int, form: UntilTime | While) -> bool:
-        """Whether the words of a form begin there, before its body: `every 5 s until 6 pm, wave`."""
-        is_fronted = isinstance(form, UntilTime) or form.condition.span.start < form.body.span.start
+    def _is_next(self, at: int, form: While) -> bool:
+        """Whether the words of a form begin there, before its body: `every 5 s until bumped, wave`."""
+        is_fronted = form.condition.span.start < form.body.span.start
         between = self.source.text[at : form.span.start]
         return is_fronted and form.span.start < form.body.span.start and not between.strip()
 
@@ -244,6 +245,15 @@ class Builder:
             return Check(condition, span)
         waiting = WaitUntil(condition, _amount(opener) if opener.role == "hold" else "", span)
         return UpTo(_amount(opener), waiting, span) if opener.role == "wait_up_to" else waiting
+
+
+def _outlasts(body: Ast, pace: object) -> bool:
+    """Whether a command lasts longer than the pace before it: `every 10 min wave for an hour`, `... until 6 pm`."""
+    seconds = pace.seconds if isinstance(pace, Paced) else pace
+    try:
+        return isinstance(body, UntilTime) or (isinstance(body, For) and float(body.seconds) >= float(str(seconds)))
+    except ValueError:
+        return False  # a value of the mission
 
 
 def _amount(token: Token) -> str:
