@@ -100,7 +100,7 @@ def _behind_joint(scan: Scan, stays: bool) -> int:
     if not (ends or raw[at].kind in _FRONTED):
         return 0
     at += 1
-    if stays and raw[at].kind == "wait_until":
+    if stays and raw[at].kind in ("wait", "wait_time", "wait_until"):
         return at  # `stay in the kitchen and wait until Bob comes`
     while constraint_of(raw[at]) is not None and raw[at + 1].kind in _FRONTED:
         return at if _has_journey(scan, at) else 0  # `avoid A and avoid B and go to C`
