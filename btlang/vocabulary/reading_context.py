@@ -9,7 +9,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.nouns import Description
-from btlang.vocabulary.references import ALL, CHOICES, LATEST, Choice, Parts, choice_of, ordinal
+from btlang.vocabulary.references import ALL, LATEST, Choice, Parts, choice_of, is_one
 from btlang.vocabulary.value_type import DOOR, OBJECT, PLACE, WORLD, format_number
 from btlang.vocabulary.values import Values, key_of
 from btlang.vocabulary.word_tree import find
@@ -262,7 +262,7 @@ class ReadingContext:
     def _chosen(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """What is chosen of the type, to be put into a key; without a text where there is no name."""
         chosen = self.choice(text, at, kind)
-        if chosen is None or not (chosen[0].how in CHOICES or ordinal(chosen[0].how)):
+        if chosen is None or not is_one(chosen[0].how):
             return None
         choice = self._described(kind, chosen[0].how, chosen[0].parts)
         return choice if self.values.listed(kind) or self.known is None else "", chosen[1]

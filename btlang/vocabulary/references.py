@@ -80,6 +80,11 @@ def ordinal(how: str) -> int:
     return int(how) if how.lstrip("-").isdecimal() else 0
 
 
+def is_one(how: str) -> bool:
+    """Whether a way to choose gives one name."""
+    return how in CHOICES or ordinal(how) != 0
+
+
 def names_key(key: str) -> str:
     """The key for the names of a set, one of which is in the other key in each round."""
     return f"{key}_names"
@@ -99,7 +104,7 @@ def choice_of(text: str) -> Choice | None:
         return None
     first, *parts = text[1:-1].split("|")
     words = first.split(" ")
-    if len(words) != 3 or not (words[0] in (*CHOICES, ALL) or ordinal(words[0])):
+    if len(words) != 3 or not (words[0] == ALL or is_one(words[0])):
         return None
     named = (part.partition("=") for part in parts)
     return Choice(words[0], words[1], words[2], tuple((name, value) for name, _, value in named))

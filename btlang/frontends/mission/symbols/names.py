@@ -21,7 +21,7 @@ from btlang.text.words import Words
 from btlang.tree.ast import Include, all_definitions, all_facts
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
-from btlang.vocabulary.references import CHOICES, free_key, ordinal
+from btlang.vocabulary.references import free_key, is_one
 from btlang.vocabulary.word_tree import find
 
 TYPE_CHECKING = False
@@ -119,11 +119,7 @@ class Names:
         for at in [at for at, word in enumerate(text.words) if word in starts]:
             choice = values.choice(text, at) if at >= last and at not in ends else None
             last = choice[1] if choice is not None else max(last, ends.get(at, 0))
-            if (
-                choice is not None
-                and (choice[0].how in CHOICES or ordinal(choice[0].how))
-                and choice[0].type not in found
-            ):
+            if choice is not None and is_one(choice[0].how) and choice[0].type not in found:
                 kind, named = choice[0].type, find(values.names_tree(choice[0].type), text.words, at)
                 if (named is None or named[1] < last) and not self._is_in_name(kind, text, at):
                     match = self.phrases.at(at)
