@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 NEAR = 2.0
 """Metres within which something is near, beside, behind, left or right of another thing."""
+HERE = 1.0
+"""Metres from a place at which the robot is there."""
 BETWEEN = 0.25
 """Of the distance between two things: what is no further from the line between them is between them."""
 _SIDES = {"in_front_of": 0.0, "left_of": 90.0, "behind": 180.0, "right_of": -90.0}
@@ -96,6 +98,8 @@ class Relations:
         return True
 
     def _is_so(self, name: str, relation: str, value: str, pose: Pose) -> bool:
+        if relation == "other_than" and value == SELF:
+            return not self._is_here(name, pose)
         if relation == "other_than":
             return name not in self._meant(value, pose)
         if relation == "between":
@@ -103,6 +107,12 @@ class Relations:
             pairs = ((one, other) for one in self._meant(first, pose) for other in self._meant(second, pose))
             return any(self._is_between(name, one, other) for one, other in pairs)
         return any(self._stands(name, relation, other, pose) for other in self._meant(value, pose))
+
+    def _is_here(self, name: str, pose: Pose) -> bool:
+        """Whether the robot is at a place, or in the region of that name."""
+        here, point = (pose.x, pose.y), self._point(name)
+        region = next((zone for zone in self._world.zones if zone.name == name), None)
+        return (region is not None and region.contains(here)) or (point is not None and dist(here, point) <= HERE)
 
     def _is_between(self, name: str, one: str, other: str) -> bool:
         points = [self._point(each) for each in (name, one, other)]

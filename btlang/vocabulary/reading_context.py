@@ -9,7 +9,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.nouns import Description
-from btlang.vocabulary.references import ALL, LATEST, Choice, Parts, choice_of, is_one
+from btlang.vocabulary.references import ALL, LATEST, SELF, Choice, Parts, choice_of, is_one
 from btlang.vocabulary.value_type import DOOR, OBJECT, PLACE, WORLD, format_number
 from btlang.vocabulary.values import Values, key_of
 from btlang.vocabulary.word_tree import find
@@ -163,11 +163,11 @@ class ReadingContext:
         return Choice(how, kind, self.keys.get(kind, kind), self._settled(kind, tuple(sorted(parts)))).text
 
     def _settled(self, kind: str, parts: Parts) -> Parts:
-        """With the latest value of a type in the place of `another`, which says nothing where there is none."""
+        """With the latest value of a type in the place of `another`; a place is another one than where the robot is."""
         if all(value != LATEST for _, value in parts):
             return parts  # as nearly always
         latest = self.latest.get(kind, "")
-        known = latest if latest and choice_of(latest) is None else ""
+        known = latest if latest and choice_of(latest) is None else SELF if kind == PLACE else ""
         return tuple((name, known if value == LATEST else value) for name, value in parts if known or value != LATEST)
 
     def any(self, text: Words, at: int) -> tuple[tuple[str, ...], str, int] | None:

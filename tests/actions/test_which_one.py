@@ -71,6 +71,15 @@ def test_places_are_counted_by_their_names_where_the_world_says_so(bench: Any) -
     assert line == ["north 1", "north 2", "north 10"]
 
 
+def test_another_place_is_not_where_the_robot_is(b: Any) -> None:
+    nearest = b.robot.choose("place", "nearest", {"kind": "spot"})
+    b.run(navigation.go_to, place=nearest)
+    assert b.robot.choose("place", "nearest", {"kind": "spot"}) == nearest
+    assert b.robot.choose("place", "nearest", {"kind": "spot", "other_than": SELF}) != nearest
+    b.run(navigation.go_to, place="yard")
+    assert "yard" not in b.robot.described("place", {"other_than": SELF})
+
+
 def test_there_may_be_too_few(b: Any) -> None:
     with pytest.raises(
         RobotError, match=r"^number 4 is asked for, but there's only first cube, second cube, third cube$"
