@@ -231,7 +231,7 @@ class OrderWords(SentenceReader):
     def _tries(self, match: Match, at: int) -> int:
         """`pick up the cup, at most 3 attempts`: again if it fails, so many times in all."""
         tokens = self._tokens
-        before = next((number for number in (-1, -2) if tokens[number:] and tokens[number].kind == "command"), 0)
+        before = next((number for number in (-1, -2) if len(tokens) >= -number and tokens[number].kind == "command"), 0)
         if not before or (before == -2 and tokens[-1].kind != "comma"):
             return 0
         del tokens[len(tokens) + before + 1 :]
