@@ -15,7 +15,7 @@ from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.pattern import Form, Slot
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import RELATIONS, choice_of
-from btlang.vocabulary.value_type import TEXT, WORLD, ZONE, ValueType
+from btlang.vocabulary.value_type import OBJECT, TEXT, WORLD, ZONE, ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import fill
 from btlang.vocabulary.word_tree import END, NO_WORDS, SLOTS, VERBS
@@ -77,8 +77,9 @@ def longest(
     """The longest phrase at a word; where two are equally long, the one with words in place of slots, or with a name in
     place of a text. A value that can be of any type is one of the type that the vocabulary has first.
 
-    `found` are the values that have led to the root. A slot of an entry also takes a list of values, unless `lists` is
-    False. It ends before a phrase, also before one in the trie `names`, in which connectives are looked for too.
+    `found` are the values that have led to the root. A slot of an entry also takes a list of values, unless `lists`
+    is False, but not that of a second object: a thing goes into one other thing. It ends before a phrase, also
+    before one in the trie `names`, in which connectives are looked for too.
     """
     words = text.words
     if words[at] not in root and SLOTS not in root:
@@ -121,7 +122,8 @@ def longest(
                         continue
                     one = SlotValue(name, kind, value[0], i, value[1])
                     paths.append((child, value[1], (*found, one)))
-                    if lists and words[value[1]] in context.joiners and _may_go_on(child, text):
+                    is_second = kind == OBJECT and any(value.type == OBJECT for value in found)
+                    if lists and words[value[1]] in context.joiners and not is_second and _may_go_on(child, text):
                         listed = _listed(root, text, one, context, names, is_subject=i == at and not found)
                         if listed is not None:
                             paths.append((child, listed.last, (*found, listed)))

@@ -12,6 +12,7 @@ from btlang.record import Record
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.entry import GOAL, MANNER, PATH, RECIPIENT, THEME, UNMARKED, Entry, Meaning, Role
 from btlang.vocabulary.match import Match, SlotValue
+from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.role_words import RoleWords
 from btlang.vocabulary.value_type import ZONE
 
@@ -99,6 +100,7 @@ def fill(
     return best
 
 
+_PLACED = frozenset(("on", "inside", "at"))
 _Beginnings = tuple[tuple[Role, ...], dict[str, list[tuple[Role, tuple[str, ...]]]]]
 _known: dict[
     int, tuple[tuple[Role, ...], _Beginnings]
@@ -139,7 +141,7 @@ class _Filling:
     def _go_on(self, at: int, filled: Mapping[str, SlotValue | None], has_particle: bool) -> None:
         frame, word = self._frame, self._text.words[at]
         if has_particle and all(role.name in filled or not role.is_needed for role in frame.roles):
-            if self._best is None or at > self._best[0]:
+            if (self._best is None or at > self._best[0]) and not self._has_own_goal(filled):
                 values = sorted((value for value in filled.values() if value is not None), key=lambda v: v.first)
                 self._best = at, tuple(values), len(frame.roles) - len(filled)
         if not has_particle and word == frame.particle:
@@ -158,6 +160,19 @@ class _Filling:
             if value is not None and fewer is not None and value.last < at:
                 one = value.replace(text=fewer[0], group=fewer[0])
                 self._go_on(fewer[1], {**filled, name: one}, has_particle)
+
+    def _has_own_goal(self, filled: Mapping[str, SlotValue | None]) -> bool:
+        """Whether an item of a list says where it goes: `put the cup in the box and the book on the table`."""
+        theme = filled.get(THEME)
+        if theme is None or not theme.more or theme.group or filled.get(GOAL) is None:
+            return False
+        choices = map(choice_of, (theme.text, *theme.more[:-1]))
+        return any(choice is not None and not _PLACED.isdisjoint(dict(choice.parts)) for choice in choices)
+
+    def _is_container(self, role: Role) -> bool:
+        """Whether a thing goes into another one: into one alone, so a list behind it is about something else."""
+        theme = self._frame.role(THEME)
+        return role.name == GOAL and theme is not None and theme.type == role.type
 
     def _introduced(self, at: int, filled: Mapping[str, SlotValue | None]) -> Iterator[tuple[Role, int]]:
         """The empty roles whose value may begin here, and where: behind the words that introduce them, or at once."""
@@ -199,5 +214,5 @@ class _Filling:
                         through = "; ".join((listed.text, *listed.more))
                         one = listed.replace(text=through, more=(), joiner="")
                         self._go_on(one.last, {**filled, role.name: one}, has_particle)
-                elif listed is not None:
+                elif listed is not None and not self._is_container(role):
                     self._go_on(listed.last, {**filled, role.name: listed}, has_particle)

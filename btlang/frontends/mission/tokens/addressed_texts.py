@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Token
-from btlang.frontends.mission.tokens.partial_commands import words_of
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.trie import longest

@@ -5,28 +5,34 @@ Both are read as the words that they stand for would be, in a text put together 
 
 from __future__ import annotations
 
-from bisect import bisect_left
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Sequence
 
 from btlang.frontends.mission.token import Listed, Token, constraint_of
 from btlang.frontends.mission.tokens.calls import Calls
+from btlang.frontends.mission.tokens.left_out import left_out
 from btlang.frontends.mission.tokens.silent_words import LINES
-from btlang.text.words import END_OF_TEXT, Words
-from btlang.vocabulary.entry import MANNER, THEME, VIA
+from btlang.frontends.mission.tokens.word_matches import (
+    DOING,
+    doing,
+    match_of,
+    relocated,
+    rest_of,
+    theme_of,
+    words_of,
+)
+from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.match import Match, SlotValue
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.value_type import OBJECT, WORLD
+from btlang.vocabulary.value_type import OBJECT
 
 BEFORE_DOING = frozenset(("before", "after", "while", "until", "never", "followed_by", "meanwhile"))
 """The kinds of tokens behind which a command may have the form of its verb: `after waving`."""
 JOINTS = frozenset(("then", "and", "or", "comma", "otherwise"))
 """Behind these a command may leave out words of the one before it."""
 _COMMANDS = frozenset(("command", "name"))
-_DOING = frozenset(("command", "name", "wait", "wait_until", "wait_for", "wait_up_to"))
 _EITHER_END = (["for", "or"], ["up_to", "or"])  # `for 10 s or 2 m` says two ends of one command, not two commands
-_MOST_WORDS = 60
 _LONGEST_VERB = 4  # words
 
 
@@ -63,15 +69,15 @@ class PartialCommands:
         """
         if not words:
             return None
-        places = [*[at] * len(words), *(place for place in _rest(self._text, end) if place not in left_out)]
+        places = [*[at] * len(words), *(place for place in rest_of(self._text, end) if place not in left_out)]
         tries = self._tries[:1] if trie is None else (trie,)
-        match = _match(self._text, places, dict(enumerate(words)), tries, self._context)
-        return _relocated(match, places) if match is not None and match.last > len(words) else None
+        match = match_of(self._text, places, dict(enumerate(words)), tries, self._context)
+        return relocated(match, places) if match is not None and match.last > len(words) else None
 
     def in_order(self, places: Sequence[int]) -> Match | None:
         """The phrase that words of the text make in another order; `last` is the place behind its latest word."""
-        match = _match(self._text, places, {}, self._tries, self._context)
-        return _relocated(match, places) if match is not None else None
+        match = match_of(self._text, places, {}, self._tries, self._context)
+        return relocated(match, places) if match is not None else None
 
     def add_doing(self, at: int, other: Match | None) -> int:
         """Such a command, unless another phrase is as long."""
@@ -141,11 +147,11 @@ class PartialCommands:
         be = self._vocabulary.asking["asking_be"][:1]
         verbs = range(at, min(at + _LONGEST_VERB, len(words)) if be and ending else at)
         for place in (place for place in verbs if words[place].endswith(ending)):
-            places = [*range(at, place + 1), *_rest(self._text, place)]
+            places = [*range(at, place + 1), *rest_of(self._text, place)]
             other = {place - at: words[place].removesuffix(ending), place - at + 1: be[0]}
-            match = _match(self._text, places, other, self._tries, self._context)
+            match = match_of(self._text, places, other, self._tries, self._context)
             if match is not None and match.meaning.role in ("condition", "negated") and match.last > place - at + 2:
-                found = _relocated(match, places)
+                found = relocated(match, places)
                 if match.meaning.role != "condition":
                     self._tokens.append(Token("not", self._text.starts[at], self._text.starts[at]))
                 self.append(found, at)
@@ -170,7 +176,7 @@ class PartialCommands:
             return 0  # of a list it would be the last thing alone
         for pronoun, types in self._context.pronouns.items():
             match = self.with_front(at, at + 1, (self._text.words[at], pronoun)) if OBJECT in types else None
-            theme = _theme(match) if match is not None else None
+            theme = theme_of(match) if match is not None else None
             if match is not None and theme is not None and theme.first == at:
                 self._tokens.append(self._token_of(match, at))
                 return match.last
@@ -185,17 +191,17 @@ class PartialCommands:
         if not last or text.words[last] not in self._and:
             return 0
         other = longest(self._tries[0], text, last + 1, self._context)
-        theme = _theme(other) if other is not None else None
+        theme = theme_of(other) if other is not None else None
         goes = text.words[at] in self._vocabulary.journey_verbs and last > at + 1
         if theme is None or goes:
             return 0  # `go in and photograph the sink`
         places = [*range(at, last), *range(theme.first, theme.last)]
-        found = _match(text, places, {}, self._tries[:1], self._context)
+        found = match_of(text, places, {}, self._tries[:1], self._context)
         if found is None or found.last != len(places) or found.meaning.role != "command":
             return 0
         if [(value.first, value.type) for value in found.values] != [(last - at, theme.type)]:
             return 0
-        token = self._token_of(_relocated(found, places), at)
+        token = self._token_of(relocated(found, places), at)
         token.end = text.ends[last - 1]
         self._tokens.append(token)
         self._context.same[theme.first] = theme.last
@@ -247,7 +253,7 @@ def may_be_doing(tokens: Sequence[Token]) -> bool:
 
 def _command_before(tokens: Sequence[Token]) -> Token | None:
     """The latest command of the line, or what the line begins with."""
-    return next((token for token in reversed(tokens) if token.kind in _DOING or token.kind in LINES), None)
+    return next((token for token in reversed(tokens) if token.kind in DOING or token.kind in LINES), None)
 
 
 def enlist(tokens: list[Token], command: Token) -> None:
@@ -265,134 +271,3 @@ def enlist(tokens: list[Token], command: Token) -> None:
     else:
         tokens.insert(first - 1, Token("open", before.start, before.start, role="list"))
     tokens += (command, Token("close", command.end, command.end, role="list"))
-
-
-def _theme(match: Match) -> SlotValue | None:
-    """What a command is about, None where that is a list, or isn't said."""
-    entry = match.meaning.entry
-    if entry is None or match.meaning.role != "command":
-        return None
-    slots = {role.slot for _, roles in entry.verbs for role in roles if role.name == THEME}
-    values = [value for value in match.values if value.type in WORLD and (value.name in slots or not entry.verbs)]
-    return values[0] if len(values) == 1 and not (values[0].more and not values[0].group) else None
-
-
-def words_of(text: Words, token: Token) -> range:
-    """The words of a token."""
-    return range(bisect_left(text.starts, token.start), bisect_left(text.starts, token.end))
-
-
-def left_out(
-    text: Words, said: Sequence[int], at: int, tries: Sequence[TrieNode], context: ReadingContext
-) -> tuple[Match, list[int]] | None:
-    """The command that words make behind the longest beginning of another one, `said`, and all of its words.
-
-    A text is never a part of it: `say hello, then goodbye` is no such command.
-    """
-    rest = _rest(text, at)
-    whole = _match(text, [*said, *said[-1:]], {}, tries, context)
-    values = whole.values if whole else ()
-    if values and _is_own(values[-1]) and text.words[at - 1] in context.joiners:
-        return None  # `through the hall or the lobby`
-    of_values = {number for value in values for number in range(value.first, value.last)}
-    own = [number for value in values if _is_own(value) for number in _with_its_words(value, of_values)]
-    inside = {number for value in values for number in range(value.first + 1, value.last)}
-    for kept in range(len(said), 0, -1):
-        if kept in inside or kept - 1 in own:
-            continue  # a part of a value: `the orange room, then the yellow room`
-        front = [place for number, place in enumerate(said[:kept]) if number not in own]
-        places = [*front, *rest]
-        match = _match(text, places, {}, tries, context)
-        if match is not None and any(
-            value.first < len(front) < value.last or (_is_own(value) and value.last <= len(front))
-            for value in match.values
-        ):
-            continue  # a part of a value, or the way of the command before
-        added = [value for value in match.values if value.last > len(front)] if match is not None else []
-        if added and all(map(_is_own, added)):
-            continue  # only the way or the manner of the command before: `to the lab, going through the hall`
-        if match is None or match.last <= len(front) or match.meaning.role not in ("command", "name"):
-            continue
-        if all(context.types[value.type].kind != "text" for value in match.values):
-            return _relocated(match, places), places[: match.last]
-    return None
-
-
-def _is_own(value: SlotValue) -> bool:
-    """Whether a part of a command is never repeated by the next one: its way and its manner."""
-    return value.type == MANNER or value.name == VIA
-
-
-def _with_its_words(value: SlotValue, places: Container[int]) -> range:
-    """The words of a value with those that introduce it."""
-    first = value.first
-    while first > 1 and first - 1 not in places:
-        first -= 1
-    return range(first, value.last)
-
-
-def doing(
-    text: Words,
-    at: int,
-    endings: Mapping[str, Sequence[str]],
-    tries: Sequence[TrieNode],
-    context: ReadingContext,
-) -> Match | None:
-    """The command whose verb has this form: `going to the lab`."""
-    found: Match | None = None
-    places = list(_rest(text, at))
-    for verb in _verbs(text.words[at], endings):
-        match = _match(text, places, {0: verb}, tries, context)
-        if match is not None and match.meaning.role in _DOING and (found is None or match.last > found.last):
-            found = match
-    return found and _relocated(found, places)
-
-
-def with_verb(text: Words, at: int, endings: Mapping[str, Sequence[str]], trie: TrieNode) -> Words:
-    """The same text with the verb itself in place of its form, where a phrase begins with that."""
-    verb = next((verb for verb in _verbs(text.words[at], endings) if verb in trie), text.words[at])
-    return text.with_word(at, verb)
-
-
-def _verbs(word: str, endings: Mapping[str, Sequence[str]]) -> Iterator[str]:
-    """The verbs that may have this form."""
-    for ending, bare in endings.items():
-        if word.endswith(ending) and word != ending:
-            yield from (word[: -len(ending)] + end for end in bare)
-
-
-def _rest(text: Words, at: int) -> range:
-    """The words of the line from one on, with what ends it."""
-    last = at
-    while text.words[last] != END_OF_TEXT and last < at + _MOST_WORDS:
-        last += 1
-    return range(at, last)
-
-
-def _match(
-    text: Words, places: Sequence[int], other: Mapping[int, str], tries: Sequence[TrieNode], context: ReadingContext
-) -> Match | None:
-    """The longest phrase of words of a text side by side, some of them replaced."""
-    read = Words(text.source)
-    read.picked = text, places
-    for number, place in enumerate(places):
-        read.words.append(other.get(number, text.words[place]))
-        if place in text.articles:
-            read.articles[number] = text.articles[place]
-    read.starts, read.ends = [text.starts[place] for place in places], [text.ends[place] for place in places]
-    end = places[-1] + 1
-    for _ in range(2):  # as behind each text
-        read.words.append(END_OF_TEXT)
-        read.starts.append(text.ends[end - 1])
-        read.ends.append(text.ends[end - 1])
-    found = [
-        longest(trie, read, 0, context, names) for trie, names in zip(tries, (*tries[1:], *tries[:1]), strict=True)
-    ]
-    return max((match for match in found if match is not None), key=lambda match: match.last, default=None)
-
-
-def _relocated(match: Match, places: Sequence[int]) -> Match:
-    """A match in such words as one in their text."""
-    values = tuple(value.replace(first=places[value.first], last=places[value.last - 1] + 1) for value in match.values)
-    moved: Match = match.replace(last=places[match.last - 1] + 1, values=values)
-    return moved

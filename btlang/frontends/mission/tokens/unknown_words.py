@@ -9,8 +9,9 @@ from btlang.frontends.mission.symbols.definitions import Definitions
 from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.includes import misplaced
 from btlang.frontends.mission.token import Token
-from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing, with_verb
+from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
 from btlang.frontends.mission.tokens.silent_words import MARKS, begins
+from btlang.frontends.mission.tokens.word_matches import with_verb
 from btlang.text.words import Words
 from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon

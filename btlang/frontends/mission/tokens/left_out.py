@@ -1,0 +1,95 @@
+"""Commands that leave out words of the one before: `go to the lab, then the office`, `bring Bob the cup, the book`."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Sequence
+
+from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of, theme_of
+from btlang.text.words import Words
+from btlang.vocabulary.entry import MANNER, RECIPIENT, VIA
+from btlang.vocabulary.match import Match, SlotValue
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.trie import TrieNode
+
+
+def left_out(
+    text: Words, said: Sequence[int], at: int, tries: Sequence[TrieNode], context: ReadingContext
+) -> tuple[Match, list[int]] | None:
+    """The command that words make behind the longest beginning of another one, `said`, and all of its words.
+
+    A text is never a part of it: `say hello, then goodbye` is no such command.
+    """
+    rest = rest_of(text, at)
+    whole = match_of(text, [*said, *said[-1:]], {}, tries, context)
+    values = whole.values if whole else ()
+    if values and _is_own(values[-1]) and text.words[at - 1] in context.joiners:
+        return None  # `through the hall or the lobby`
+    of_values = {number for value in values for number in range(value.first, value.last)}
+    own = [number for value in values if _is_own(value) for number in _with_its_words(value, of_values)]
+    inside = {number for value in values for number in range(value.first + 1, value.last)}
+    for kept in range(len(said), 0, -1):
+        if kept in inside or kept - 1 in own:
+            continue  # a part of a value: `the orange room, then the yellow room`
+        front = [place for number, place in enumerate(said[:kept]) if number not in own]
+        places = [*front, *rest]
+        match = match_of(text, places, {}, tries, context)
+        if match is not None and any(
+            value.first < len(front) < value.last or (_is_own(value) and value.last <= len(front))
+            for value in match.values
+        ):
+            continue  # a part of a value, or the way of the command before
+        added = [value for value in match.values if value.last > len(front)] if match is not None else []
+        if added and all(map(_is_own, added)):
+            continue  # only the way or the manner of the command before: `to the lab, going through the hall`
+        if match is None or match.last <= len(front) or match.meaning.role not in ("command", "name"):
+            continue
+        if len(added) == 1 and added[0].first == len(front) and _may_be_theme(match, added[0]):
+            continue  # `put the cup on the table and the book`
+        if all(context.types[value.type].kind != "text" for value in match.values):
+            last = places[match.last - 1] + 1
+            match, places = _with_recipient(match, places[: match.last], whole, said, text, tries, context)
+            return relocated(match, places).replace(last=last), places
+    return None
+
+
+def _with_recipient(
+    match: Match,
+    places: list[int],
+    whole: Match | None,
+    said: Sequence[int],
+    text: Words,
+    tries: Sequence[TrieNode],
+    context: ReadingContext,
+) -> tuple[Match, list[int]]:
+    """The same for whom the command before was, with all of its words: `bring Alice the cup, then the book`."""
+    entry = match.meaning.entry
+    slots = {role.slot for _, roles in entry.verbs for role in roles if role.name == RECIPIENT} if entry else set()
+    values = whole.values if whole is not None else ()
+    recipient = next((value for value in values if value.name in slots), None)
+    if recipient is None or any(value.name in slots for value in match.values):
+        return match, places
+    of_values = {number for value in values for number in range(value.first, value.last)}
+    words = [said[number] for number in _with_its_words(recipient, of_values)]
+    wider = [*places, *words]
+    found = match_of(text, [*wider, *wider[-1:]], {}, tries, context)
+    is_so = found is not None and found.meaning.entry is entry and found.last == len(wider)
+    return (found, wider) if found is not None and is_so else (match, places)
+
+
+def _may_be_theme(match: Match, goal: SlotValue) -> bool:
+    """Whether a bare thing that a command is left with as its goal could be one more theme as well."""
+    theme = theme_of(match)
+    return theme is not None and theme.name != goal.name and theme.type == goal.type
+
+
+def _is_own(value: SlotValue) -> bool:
+    """Whether a part of a command is never repeated by the next one: its way and its manner."""
+    return value.type == MANNER or value.name == VIA
+
+
+def _with_its_words(value: SlotValue, places: Container[int]) -> range:
+    """The words of a value with those that introduce it."""
+    first = value.first
+    while first > 1 and first - 1 not in places:
+        first -= 1
+    return range(first, value.last)
