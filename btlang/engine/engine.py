@@ -129,6 +129,11 @@ class Engine:
         """Why the latest tick failed: the leaf, or the decorator, that made the root fail. None where it did not."""
         return None if self._fault is None else self._failure(self._fault)
 
+    @property
+    def unknowns(self) -> int:
+        """How many failures so far were no answers: a condition could not know (`btlang.Unknown`)."""
+        return self._state.unknowns
+
     def halt(self, emergency: bool = False) -> None:
         """Halts every running leaf, children before parents, and resets all nodes; the next tick starts over.
 

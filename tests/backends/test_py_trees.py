@@ -37,13 +37,46 @@ def refusals(root: Node) -> list[str]:
 
 
 def test_nodes_of_py_trees_are_used_where_they_mean_the_same() -> None:
-    root = to_py_trees(Tree(n("Sequence", n("Wave"), n("Inverter", n("Nod")))), WORDS, bind=lambda node: Success("x"))
+    tree = Tree(n("Sequence", n("Wave"), n("ForceSuccess", n("Nod"))))
+    root = to_py_trees(tree, WORDS, bind=lambda node: Success("x"))
     assert type(root) is composites.Sequence
     assert root.memory
-    assert type(root.children[1]) is decorators.Inverter
+    assert type(root.children[1]) is decorators.FailureIsSuccess
     skippable = to_py_trees(Tree(n("Sequence", n("AlwaysSuccess"), n("AlwaysSuccess", _skipIf="true"))), WORDS)
     assert type(skippable) is SkippableSequence
     assert isinstance(skippable, composites.Sequence)
+
+
+class Failing(Behaviour):
+    """Fails: it cannot know, or it knows that it is not so."""
+
+    def __init__(self, known: bool) -> None:
+        super().__init__("?")
+        self.known = known
+
+    def update(self) -> Status:
+        return Status.FAILURE
+
+
+@pytest.mark.parametrize("known", [False, True])
+@pytest.mark.parametrize(
+    ("around", "if_no"),
+    [
+        (n("Inverter", n("Asked")), Status.SUCCESS),
+        (n("Inverter", n("Sequence", n("Wave"), n("Asked"))), Status.SUCCESS),
+        (n("IfThenElse", n("Asked"), n("AlwaysFailure"), n("Wave")), Status.SUCCESS),
+        (n("WhileDoElse", n("Asked"), n("AlwaysFailure"), n("Wave")), Status.SUCCESS),
+    ],
+)
+def test_what_a_leaf_cannot_know_is_no_no(around: Node, if_no: Status, known: bool) -> None:
+    tree = Tree(around, models=(NodeModel("Condition", "Asked"),))
+
+    def bound(node: Node) -> Behaviour:
+        return Failing(known) if node.id == "Asked" else Success("x")
+
+    root = to_py_trees(tree, WORDS, bind=bound)
+    root.tick_once()
+    assert root.status == (if_no if known else Status.FAILURE)
 
 
 def test_leaves_do_what_their_keyword_entries_name() -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Generator, Sequence
 
 from py_trees import common, composites
 
-from btlang.backends.py_trees.node import FAILURE, RUNNING, SKIPPED, SUCCESS, Asking, Behaviour, Node, halt
+from btlang.backends.py_trees.node import FAILURE, RUNNING, SKIPPED, SUCCESS, UNKNOWN, Asking, Behaviour, Node, halt
 
 
 class Reactive(Node):
@@ -135,7 +135,9 @@ class IfThenElse(Node):
 
     def run(self) -> Asking:
         if self.position == 0:
-            status = yield from self.ask(self.children[0])
+            status = yield from self.answer(self.children[0])
+            if status is UNKNOWN:
+                return FAILURE
             if status == SUCCESS:
                 self.position = 1
             elif status == FAILURE and len(self.children) == 3:
@@ -175,14 +177,16 @@ class WhileDoElse(Node):
     def run(self) -> Asking:
         if self.branch:
             self.interrupts.append(self.interrupt)
-        status = yield from self.ask(self.children[0])
+        status = yield from self.answer(self.children[0])
         if self.interrupts and self.interrupts[-1] == self.interrupt:
             self.interrupts.pop()
         if status == RUNNING:
             return RUNNING
         chosen = 1 if status == SUCCESS else 2
-        if self.branch and (self.branch != chosen or status == SKIPPED):
+        if self.branch and (self.branch != chosen or status in (SKIPPED, UNKNOWN)):
             self.interrupt()
+        if status is UNKNOWN:
+            return FAILURE
         if status == SKIPPED:
             halt(self.children[0])
             return FAILURE
@@ -223,13 +227,13 @@ class Whenever(Node):
         condition, reaction, work = self.children
         if self.running:
             self.interrupts.append(self.suspend)
-        status = yield from self.ask(condition)
+        status = yield from self.answer(condition)
         if self.interrupts and self.interrupts[-1] == self.suspend:
             self.interrupts.pop()
         if status == SKIPPED:
             halt(condition)
         if status != SUCCESS:
-            self.armed = self.armed or not self.fired
+            self.armed = self.armed or (not self.fired and status is not UNKNOWN)
         elif self.armed and not self.reacting:
             self.armed, self.fired, self.reacting = False, self.once, True
             if self.running:

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import ClassVar, Protocol
 
-from btlang.backends.py_trees.node import FAILURE, RUNNING, SKIPPED, SUCCESS, Asking, Behaviour, Node, halt
+from btlang.backends.py_trees.node import FAILURE, RUNNING, SKIPPED, SUCCESS, UNKNOWN, Asking, Behaviour, Node, halt
 
 
 class Around(Node):
@@ -24,9 +24,13 @@ class SubTree(Around):
 
 
 class Inverter(Around):
-    """SUCCESS for FAILURE and the other way round."""
+    """SUCCESS for FAILURE and the other way round; what is not known stays a FAILURE."""
 
-    becomes: ClassVar = {SUCCESS: FAILURE, FAILURE: SUCCESS}
+    becomes: ClassVar = {SUCCESS: FAILURE, FAILURE: SUCCESS, UNKNOWN: FAILURE}
+
+    def run(self) -> Asking:
+        status = yield from self.answer(self.children[0])
+        return self.becomes.get(status, status)  # type: ignore[return-value]
 
 
 class ForceSuccess(Around):

@@ -15,6 +15,8 @@ from py_trees import behaviour, common, composites
 
 Behaviour = behaviour.Behaviour
 Asking = Generator[Behaviour, None, common.Status]
+Answering = Generator[Behaviour, None, common.Status | None]
+UNKNOWN = None
 RUNNING, SUCCESS, FAILURE = common.Status.RUNNING, common.Status.SUCCESS, common.Status.FAILURE
 SKIPPED = common.Status.INVALID
 
@@ -48,6 +50,18 @@ class Node(composites.Composite):
         self.current_child = child
         yield from child.tick()
         return child.status
+
+    def answer(self, child: Behaviour) -> Answering:
+        """Ticks a child and returns its status, or UNKNOWN for a FAILURE if a leaf below it could not know its answer.
+
+        Such a leaf says so by an attribute `known` that is False.
+        """
+        known = True
+        self.current_child = child
+        for node in child.tick():
+            known = known and getattr(node, "known", True)
+            yield node
+        return UNKNOWN if child.status == FAILURE and not known else child.status
 
     def tick(self) -> Iterator[Behaviour]:
         """A tick of py_trees."""

@@ -226,14 +226,16 @@ _THEIRS: dict[str, tuple[str, tuple[tuple[str, Any], ...]]] = {
     "Fallback": ("composites.Selector", (("memory", True),)),
     "ReactiveSequence": ("composites.Sequence", (("memory", False),)),
     "ReactiveFallback": ("composites.Selector", (("memory", False),)),
-    "Inverter": ("decorators.Inverter", ()),
     "ForceSuccess": ("decorators.FailureIsSuccess", ()),
     "ForceFailure": ("decorators.SuccessIsFailure", ()),
     "KeepRunningUntilFailure": ("decorators.SuccessIsRunning", ()),
     "RunOnce": ("decorators.OneShot", (("policy", Name("common.OneShotPolicy.ON_COMPLETION")),)),
     SUBTREE: ("decorators.PassThrough", ()),
 }
-"""The nodes of py_trees that mean the same where no child can be skipped, and nothing has to be suspended."""
+"""The nodes of py_trees that mean the same where no child can be skipped, and nothing has to be suspended.
+
+Its Inverter does not: it makes a SUCCESS of a condition that could not know.
+"""
 
 
 def _ours(node: Node) -> tuple[str, tuple[tuple[str, Any], ...]]:

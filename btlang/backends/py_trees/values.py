@@ -58,7 +58,9 @@ class EngineLeaf(Node):
         self.engine.suspend() if keep else self.engine.halt()
 
     def run(self) -> Asking:
+        unknowns = self.engine.unknowns
         status = self.engine.tick()
+        self.known = self.engine.unknowns == unknowns
         self.feedback_message = self.engine.failure.reason if self.engine.failure is not None else ""
         return _STATUSES.get(status, SKIPPED)
         yield self  # never; but it makes this a generator, as `run` is
