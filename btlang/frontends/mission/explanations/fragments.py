@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
-from functools import lru_cache
+from collections.abc import Callable, Iterator
+from functools import cache, lru_cache
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.record import Record
@@ -15,6 +15,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Form, forms
 from btlang.vocabulary.reading_context import ReadingContext
 
+_ValueAt = Callable[[str, int], "tuple[str, int] | None"]  # what ReadingContext.read finds in the text
 _MOST_MISSING, _LONGEST, _MOST_OFFERED = 3, 8, 3
 
 
@@ -71,15 +72,16 @@ def _found(text: Words, at: int, end: int, vocabulary: Lexicon, context: Reading
     """The phrases that have the words, each with the word before which others were left out."""
     gaps = _gaps(vocabulary)
     kinds = (name for name, kind in vocabulary.types.items() if kind.kind != "text")  # any word is a text
-    values = (f"{{{kind}}}" for kind in kinds if context.read(kind, text, at) is not None)
+    value_at = cache(lambda kind, place: context.read(kind, text, place))  # many phrases ask for the same
+    values = (f"{{{kind}}}" for kind in kinds if value_at(kind, at) is not None)
     for start in (text.words[at], *values):
         for gap in gaps.get(start, ()):
-            place = _read(gap.before, gap.entry, text, at, context)
-            if place is not None and _read(gap.behind, gap.entry, text, place, context) == end:
+            place = _read(gap.before, gap.entry, text, at, value_at)
+            if place is not None and _read(gap.behind, gap.entry, text, place, value_at) == end:
                 yield gap, place
 
 
-def _read(parts: Form, entry: Entry, text: Words, at: int, context: ReadingContext) -> int | None:
+def _read(parts: Form, entry: Entry, text: Words, at: int, value_at: _ValueAt) -> int | None:
     """The word behind these parts of a phrase, None where they aren't there."""
     for part in parts:
         if isinstance(part, str):
@@ -87,7 +89,7 @@ def _read(parts: Form, entry: Entry, text: Words, at: int, context: ReadingConte
                 return None
             at += 1
         else:
-            value = context.read(entry.slot(part.name).type, text, at)
+            value = value_at(entry.slot(part.name).type, at)
             if value is None:
                 return None
             at = value[1]
