@@ -109,8 +109,9 @@ def test_10_000_definitions_that_use_each_other(parser: str) -> None:
         "check " + "not " * 1000 + "battery is full",
         "try " * 1000 + "print x",
         "print x" + " twice" * 12 + " if possible" * 1000,
+        "unless bumped, " * 1000 + "go to the lab. If Alice isn't there, print x",
     ],
-    ids=["brackets", "nested", "blocks", "forms", "nots", "tries", "postfixes"],
+    ids=["brackets", "nested", "blocks", "forms", "nots", "tries", "postfixes", "journeys"],
 )
 def test_nesting_1000_deep(text: str, parser: str) -> None:
     tree = parse_tree(text, parser=parser)

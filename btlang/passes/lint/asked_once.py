@@ -37,22 +37,25 @@ def asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
                 yield from warnings or _too_late(node, sentence, vocabulary)
 
 
-def _sentence_before(items: Sequence[ast.Ast], at: int) -> list[ast.Ast]:
+def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:
     """The items before one, as far back as no sentence ends between them."""
-    found = list(items[max(at - 1, 0) : at])
-    for place in range(at - 2, -1, -1):
-        between = items[place].span.source.text[items[place].span.end : found[0].span.start]
-        if _SENTENCE_END.search(between):
+    first = max(at - 1, 0)
+    while first > 0:
+        before = items[first - 1].span
+        if _SENTENCE_END.search(before.source.text, before.end, items[first].span.start):
             break
-        found.insert(0, items[place])
-    return found
+        first -= 1
+    return items[first:at]
 
 
 def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> Iterator[Diagnostic]:
     """A condition that decides about the journey before it, or watches what happens on it."""
     asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
-    journeys = [phrase for item in before for phrase in _phrases(item) if MOVES in phrase.entry.resources]
-    if not journeys or not isinstance(asked, ast.Phrase):
+    if not isinstance(asked, ast.Phrase):
+        return
+    phrases = (each for item in before for each in ast.parents_first(item) if isinstance(each, ast.Phrase))
+    journeys = [phrase for phrase in phrases if MOVES in phrase.entry.resources]
+    if not journeys:
         return
     last = before[-1].span.text
     words = node.span.source.text[node.span.start : node.condition.span.end]
@@ -64,13 +67,6 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     elif isinstance(node.condition, ast.Not) and any(_named(journey) & _named(asked) for journey in journeys):
         advice = f"'{last}' comes first, and fails if it can't be done. What decides about it stands before it."
         yield diagnostic("BT068", node.span, words=words, advice=advice)
-
-
-def _phrases(node: ast.Ast) -> Iterator[ast.Phrase]:
-    if isinstance(node, ast.Phrase):
-        yield node
-    for part in ast.parts(node):
-        yield from _phrases(part)
 
 
 def _named(phrase: ast.Phrase) -> set[str]:
