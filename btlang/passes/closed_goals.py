@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
-from btlang.tree.catalogue import CONSTRAINTS, SEQUENCE, SUBTREE
+from btlang.tree.catalogue import CONSTRAINTS, SEQUENCE, SUBTREE, zone_names
 from btlang.tree.node import Node
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.value_type import PLACE
 
 _KEEP_OUT, _ENTER, _OPEN = CONSTRAINTS["keep out"], "EnterZone", "OpenZone"
-_BETWEEN = re.compile(r"\s*[;,]\s*")
 
 Goals = Mapping[str, Node]
 """The names of places and zones to which a part of the tree drives, or through which; each with a leaf that does."""
@@ -28,8 +26,8 @@ def check_goals(compilation: Compilation) -> list[Diagnostic]:
     closing = {id for id, entry in known.items() if entry.constrains == "keep out"} if _OPEN not in known else set()
     problems: list[Diagnostic] = []
 
-    def report(zones: Sequence[str], goals: Goals) -> None:
-        for zone in zones:
+    def report(closed: Iterable[str], goals: Goals) -> None:
+        for zone in closed if goals else ():
             node = goals.get(zone.lower())
             if node is not None and node.span is not None:
                 problems.append(diagnostic("BT162", node.span, words=node.span.text, zone=zone))
@@ -40,12 +38,13 @@ def check_goals(compilation: Compilation) -> list[Diagnostic]:
                 return named.get(node.port("ID"), _NONE)
             return _goals(node, known[node.id]) if node.id in known else _NONE
         if node.id == _KEEP_OUT:
-            report(_BETWEEN.split(node.port("zones")), children[0])
+            report(zone_names(node.port("zones")), children[0])
         elif node.id == SEQUENCE:
-            for at, child in enumerate(node.children):
+            closed: dict[str, None] = {}
+            for child, goals in zip(node.children, children, strict=True):
+                report(closed, goals)
                 if child.id in closing:
-                    for goals in children[at + 1 :]:
-                        report([text for _, text in child.ports], goals)
+                    closed.update(dict.fromkeys(text for _, text in child.ports))
         return {name: leaf for goals in children for name, leaf in goals.items()}
 
     if _KEEP_OUT in compilation.ids or closing:
@@ -58,4 +57,4 @@ def _goals(node: Node, entry: Entry) -> Goals:
         return _NONE
     names = [slot.name for slot in entry.slots if slot.type == PLACE or entry.id == _ENTER]
     texts = [text for name, text in node.ports if name in names]
-    return {name.lower(): node for text in texts for name in _BETWEEN.split(text)}
+    return {name.lower(): node for text in texts for name in zone_names(text)}

@@ -6,6 +6,7 @@ its semantics in engine/compile.py and a row in the behaviour tables of the test
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 from btlang.record import Record
@@ -228,6 +229,12 @@ CATALOGUE: dict[str, NodeKind] = {
 
 CONSTRAINTS = {"keep out": "KeepOut", "keep in": "KeepIn"}
 """The nodes of what a command may ask of others."""
+_BETWEEN = re.compile(r"\s*[;,]\s*")
+
+
+def zone_names(text: str) -> list[str]:
+    """The names in the port of such a node, or in another one that may hold several."""
+    return [name for name in _BETWEEN.split(text.strip()) if name]
 
 
 def never_ends(node_id: str, ports: Sequence[tuple[str, str]], endless: Sequence[bool]) -> bool:

@@ -9,7 +9,7 @@ from decimal import Decimal
 from btlang.backends.english.candidate import REFERENCE, Candidate, Checked
 from btlang.text.source import NOWHERE
 from btlang.tree import ast
-from btlang.tree.catalogue import CONSTRAINTS
+from btlang.tree.catalogue import CONSTRAINTS, zone_names
 from btlang.tree.node import Node
 from btlang.vocabulary.references import ALL, Choice, names_key
 from btlang.vocabulary.value_type import WORLD
@@ -223,8 +223,8 @@ def _within(node: Node, children: tuple[Candidate, ...], checked: Checked) -> It
 
 def _constrained(kind: str) -> Form:
     def forms(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
-        zones = tuple(zone.strip() for zone in node.port("zones").split(";"))
-        if len(children) == 1 and not children[0].in_lines and all(zones):
+        zones = tuple(zone_names(node.port("zones")))
+        if len(children) == 1 and not children[0].in_lines and zones:
             yield ast.Constrained(kind, zones, children[0].part, NOWHERE)
 
     return forms

@@ -13,11 +13,10 @@ from btlang.engine.compile import expand
 from btlang.engine.conditions import is_of_editors
 from btlang.engine.instance import EngineState, NodeInstance
 from btlang.engine.leaves.leaf import LeafBinding
-from btlang.engine.nodes.constraints import zone_names
 from btlang.printer.phrase import phrase_of
 from btlang.record import Record
 from btlang.text.source import NOWHERE
-from btlang.tree.catalogue import CATALOGUE, SUBTREE, Port
+from btlang.tree.catalogue import CATALOGUE, SUBTREE, Port, zone_names
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 

@@ -6,7 +6,6 @@ the same time, or as the reaction of a rule, keeps to them too.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
 from btlang.engine.instance import NodeInstance
@@ -14,14 +13,13 @@ from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.nodes.ports import value_port
 from btlang.engine.script.values import as_text
 from btlang.engine.status import RUNNING
+from btlang.tree.catalogue import zone_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
     from btlang.engine.instance import Compiled
-
-_BETWEEN = re.compile(r"\s*[;,]\s*")
 
 
 class Restraint:
@@ -59,11 +57,6 @@ class Restraint:
 
     def restore(self, held: bool) -> None:
         """A run goes on: they hold from its first tick."""
-
-
-def zone_names(text: str) -> list[str]:
-    """The names of zones in the text of a port."""
-    return [name for name in _BETWEEN.split(text.strip()) if name]
 
 
 def keep_out(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
