@@ -31,7 +31,7 @@ from btlang.vocabulary.references import HOME
 from btlang.vocabulary.trie import TrieNode, add, collisions
 from btlang.vocabulary.value_type import PLACE, WORLD, ZONE, ValueType
 from btlang.vocabulary.values import Values
-from btlang.vocabulary.verbs import Frame, parts_of, phrases_of
+from btlang.vocabulary.verbs import Frame, beginnings_of, parts_of, phrases_of
 from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS, WordTree, tree_of
 
 TYPE_CHECKING = False
@@ -360,13 +360,14 @@ class Lexicon:
         """Lets each verb of an entry, and those that mean the same, be said with its roles in any order."""
         known = self.values.role_words
         for verbs, roles in entry.verbs:
+            beginnings = beginnings_of(roles)
             for verb in dict.fromkeys((*verbs, *chain(*(known.synonyms.get(verb, ()) for verb in verbs)))):
                 words, particle = parts_of(verb, known.particles)
                 node = self.trie
                 for word in words:
                     node = node.setdefault(self.orthography.spellings.get(word, word), {})
                 frames = node.setdefault(VERBS, [])
-                made = Frame(entry, roles, particle)
+                made = Frame(entry, roles, beginnings, particle)
                 if made not in frames:
                     frames.append(made)
 

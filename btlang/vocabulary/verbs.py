@@ -23,11 +23,22 @@ if TYPE_CHECKING:
     ListOf = Callable[[SlotValue], "SlotValue | None"]
 
 
-class Frame(Record):
+_PLACED = frozenset(("on", "inside", "at"))  # where a thing lies that is described so, or goes
+
+
+class Beginnings(Record):
+    """The roles whose values may begin at once, and those that words introduce, by the first of these words."""
+
+    direct: tuple[Role, ...]
+    introduced: Mapping[str, Sequence[tuple[Role, tuple[str, ...]]]]
+
+
+class Frame(Record, uncompared=("beginnings",)):
     """One verb of an entry. A `particle` belongs to the verb, and stands behind it or behind the theme."""
 
     entry: Entry
     roles: tuple[Role, ...]
+    beginnings: Beginnings  # of the roles
     particle: str = ""
 
     @property
@@ -38,6 +49,15 @@ class Frame(Record):
     def role(self, name: str) -> Role | None:
         """The role of this name, if the verb has it."""
         return next((role for role in self.roles if role.name == name), None)
+
+
+def beginnings_of(roles: Sequence[Role]) -> Beginnings:
+    """How the values of roles may begin."""
+    introduced: dict[str, list[tuple[Role, tuple[str, ...]]]] = {}
+    for role in roles:
+        for phrase in role.words:
+            introduced.setdefault(phrase[0], []).append((role, phrase))
+    return Beginnings(tuple(role for role in roles if role.is_direct), introduced)
 
 
 def canonical(verb: str, roles: Sequence[Role]) -> str:
@@ -100,32 +120,12 @@ def fill(
     return best
 
 
-_PLACED = frozenset(("on", "inside", "at"))
-_Beginnings = tuple[tuple[Role, ...], dict[str, list[tuple[Role, tuple[str, ...]]]]]
-_known: dict[
-    int, tuple[tuple[Role, ...], _Beginnings]
-] = {}  # by the id of the roles, which are kept so that it is theirs
-
-
-def _beginnings(roles: tuple[Role, ...]) -> _Beginnings:
-    """The roles whose values may begin at once, and those that words introduce, by the first of these words."""
-    known = _known.get(id(roles))
-    if known is None:
-        introducing: dict[str, list[tuple[Role, tuple[str, ...]]]] = {}
-        for role in roles:
-            for phrase in role.words:
-                introducing.setdefault(phrase[0], []).append((role, phrase))
-        known = _known[id(roles)] = roles, (tuple(role for role in roles if role.is_direct), introducing)
-    return known[1]
-
-
 class _Filling:
     """Fills the roles of one frame from the words of one text."""
 
     def __init__(self, frame: Frame, text: Words, context: ReadingContext, words: RoleWords, list_of: ListOf) -> None:
         self._frame, self._text, self._context, self._words, self._list_of = frame, text, context, words, list_of
         self._best: tuple[int, tuple[SlotValue, ...], int] | None = None
-        self._begin = _beginnings(frame.roles)
 
     def taken(self, at: int, before: SlotValue | None) -> tuple[int, tuple[SlotValue, ...], int] | None:
         """Where the longest way to fill the roles ends, its values, and how many roles stay empty."""
@@ -177,15 +177,15 @@ class _Filling:
     def _introduced(self, at: int, filled: Mapping[str, SlotValue | None]) -> Iterator[tuple[Role, int]]:
         """The empty roles whose value may begin here, and where: behind the words that introduce them, or at once."""
         words = self._text.words
-        direct, introducing = self._begin
-        for role in direct:
+        beginnings = self._frame.beginnings
+        for role in beginnings.direct:
             if role.name not in filled and not (role.name == RECIPIENT and THEME in filled):
                 yield role, at
         if words[at] in self._words.directions:
             for role in self._frame.roles:
                 if role.name == GOAL and role.name not in filled:
                     yield role, at
-        for role, phrase in introducing.get(words[at], ()):
+        for role, phrase in beginnings.introduced.get(words[at], ()):
             if role.name not in filled and (len(phrase) == 1 or tuple(words[at : at + len(phrase)]) == phrase):
                 yield role, at + len(phrase)
 
