@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from btlang.engine.leaves.leaf import Failed
-from btlang.text.time_of_day import WEEKDAYS, seconds_of, shown
+from btlang.text.time_of_day import WEEKDAYS, WEEKEND, seconds_of, shown
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.engine.clock import Clock
-
-_SATURDAY = 5
 
 
 def time_of_day(
@@ -32,7 +30,7 @@ def time_of_day(
 def today_is(clock: Clock, days: str) -> bool | Failed:
     """Whether it is one of some weekdays: names of days, `weekdays` or `weekends`, between semicolons."""
     today = WEEKDAYS[clock.weekday]
-    kind = "weekends" if clock.weekday >= _SATURDAY else "weekdays"
+    kind = "weekends" if clock.weekday in WEEKEND else "weekdays"
     wanted = {day.strip().lower() for day in days.split(";")}
     return not wanted.isdisjoint((today.lower(), kind)) or Failed(lambda: f"it is {today}")
 

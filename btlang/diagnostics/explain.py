@@ -13,6 +13,7 @@ from collections.abc import Iterable
 from btlang.diagnostics.codes import CODES, NAMES, PLAIN
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.text.enumeration import joined
 from btlang.text.source import Source, Span
 from btlang.text.table import Table
 
@@ -43,7 +44,7 @@ def pointer(codes: Iterable[str]) -> str:
     known = sorted({code for code in codes if code not in PLAIN})
     if len(known) < 2:
         return "".join(f"For more, run: btc explain {code}" for code in known)
-    return f"For more, run: btc explain CODE, where CODE is {', '.join(known[:-1])} or {known[-1]}"
+    return f"For more, run: btc explain CODE, where CODE is {joined(known, 'or')}"
 
 
 def all_codes() -> Table:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import atan2, degrees
 
 from btlang.robots.geometry import wrap
+from btlang.text.enumeration import joined
 from btlang.text.toml_table import Problem, is_coordinate
 
 TYPE_CHECKING = False
@@ -36,8 +37,7 @@ def number(value: Any, what: str, low: float | None = None, high: float | None =
 def numbers(value: Any, what: str, *counts: int) -> list[float]:
     """A list of so many numbers. Raises Problem."""
     if not isinstance(value, list) or len(value) not in counts:
-        many = " or ".join(", ".join(map(str, counts)).rsplit(", ", 1))
-        raise Problem(f"{what} must be a list of {many} numbers")
+        raise Problem(f"{what} must be a list of {joined([*map(str, counts)], 'or')} numbers")
     return [number(each, what) for each in value]
 
 

@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
+from btlang.text.enumeration import joined
 from btlang.text.source import Source, Span
 
 STILL = (".svg", ".png")
@@ -18,8 +19,7 @@ def ending(path: str, allowed: tuple[str, ...]) -> str:
     """The ending of a file in small letters. Raises ValueError where it is not one of those allowed."""
     found = os.path.splitext(path)[1].lower()
     if found not in allowed:
-        endings = ", ".join(allowed[:-1]) + " or " + allowed[-1]
-        raise ValueError(f"expected a file that ends in {endings}, not '{path}'")
+        raise ValueError(f"expected a file that ends in {joined(allowed, 'or')}, not '{path}'")
     return found
 
 

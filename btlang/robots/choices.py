@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from btlang.robots.likeness import unseen
 from btlang.robots.relations import related_words
 from btlang.robots.robot import OnEvent, RobotError
+from btlang.text.enumeration import nth
 from btlang.vocabulary.references import ordinal
 
 PICKY = ("seen", "largest", "smallest")
@@ -60,7 +61,7 @@ class Choices:
             line = sorted(sorted(names, key=_natural), key=lambda name: 0.0 if by_name else distance(name))
             if abs(number) > len(line):
                 raise RobotError(f"number {abs(number)} is asked for, but there's only {', '.join(line)}")
-            data = {"type": kind, "how": _nth(number), "name": line[number - 1 if number > 0 else number]}
+            data = {"type": kind, "how": nth(number), "name": line[number - 1 if number > 0 else number]}
         elif how in ("largest", "smallest"):
             chosen = max(names, key=size) if how == "largest" else min(names, key=size)
             data = {"type": kind, "how": how, "name": chosen}
@@ -77,15 +78,6 @@ class Choices:
 
         self._made += 1
         return Random(f"{self.seed} {self._made}").choice(names)
-
-
-def _nth(number: int) -> str:
-    """`2nd`, `last`, `2nd last`."""
-    if number == -1:
-        return "last"
-    size = abs(number)
-    ending = "th" if size % 100 in (11, 12, 13) else {1: "st", 2: "nd", 3: "rd"}.get(size % 10, "th")
-    return f"{size}{ending}{' last' if number < 0 else ''}"
 
 
 def _natural(name: str) -> tuple[tuple[int, str], ...]:

@@ -7,10 +7,10 @@ from difflib import unified_diff
 from itertools import takewhile
 
 from btlang.task.checks import refused
-from btlang.task.days import joined
 from btlang.task.messages import Answer, Put
 from btlang.task.moments import length, shown
 from btlang.task.task import MissionText, Revision, Schedule, Task
+from btlang.text.enumeration import joined
 from btlang.text.escaping import one_line
 
 TYPE_CHECKING = False

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from calendar import monthrange
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from datetime import date
 
 from btlang.record import Record
-from btlang.text.time_of_day import WEEKDAYS
+from btlang.text.enumeration import NTH, joined, nth
+from btlang.text.time_of_day import EVERY_DAY, WEEKDAYS, WEEKEND, WORKDAYS
 
 MONTHS = (
     "January", "February", "March", "April", "May", "June",
     "July", "August", "September", "October", "November", "December",
 )  # fmt: skip
-EVERY_DAY, WORKDAYS, WEEKEND = tuple(range(7)), tuple(range(5)), (5, 6)
 LAST = -1
 """The last day of a month, or the last such weekday in it."""
 YEARS = range(1970, 3000)
@@ -31,8 +31,7 @@ ORDINALS = {
     "thirty-first": 31,
     "last": LAST,
 }
-_ENDINGS = {1: "st", 2: "nd", 3: "rd"}
-ORDINAL_ENDINGS = (*_ENDINGS.values(), "th")
+ORDINAL_ENDINGS = (*NTH.values(), "th")
 """Behind the figures of an ordinal number."""
 
 
@@ -74,24 +73,13 @@ class Days(Record):
             year, month, day = self.single
             return f"on {day} {MONTHS[month - 1]} {year}" if year else f"on {day} {MONTHS[month - 1]} of every year"
         if self.month_days:
-            days = joined([_nth(day) for day in self.month_days])
+            days = joined([nth(day) for day in self.month_days])
             return f"on the {days}{' day' if LAST in self.month_days else ''} of every month"
         if self.which:
-            which = joined([_nth(number) for number in self.which])
+            which = joined([nth(number) for number in self.which])
             return f"on the {which} {WEEKDAYS[self.weekdays[0]]} of every month"
         named = {EVERY_DAY: "every day", WORKDAYS: "on weekdays", WEEKEND: "on weekends"}
         left = [WEEKDAYS[day] for day in EVERY_DAY if day not in self.weekdays]
         if self.weekdays not in named and len(left) == 1:
             return f"every day except on {left[0]}s"
         return named.get(self.weekdays) or "on " + joined([f"{WEEKDAYS[day]}s" for day in self.weekdays])
-
-
-def joined(words: Sequence[str]) -> str:
-    """`A, B and C`."""
-    return " and ".join((", ".join(words[:-1]), words[-1])) if len(words) > 1 else "".join(words)
-
-
-def _nth(number: int) -> str:
-    if number == LAST:
-        return "last"
-    return f"{number}{_ENDINGS.get(number % 10, 'th') if number // 10 != 1 else 'th'}"

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from btlang.record import Record
-from btlang.task.days import Days, joined
+from btlang.task.days import Days
+from btlang.text.enumeration import joined
 from btlang.text.time_of_day import shown
 
 _UNITS = (("hour", 3600), ("minute", 60), ("second", 1))

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from btlang.task.days import EVERY_DAY, LAST, Days
+from btlang.task.days import LAST, Days
 from btlang.task.rule import Rule
 from btlang.task.schedule_words import ScheduleWords, Unread
-from btlang.text.time_of_day import DAY, shown
+from btlang.text.time_of_day import DAY, EVERY_DAY, shown
 
 EXAMPLE = "every day at 9:00"
 _SHORTEST = 60  # seconds between two times

@@ -10,9 +10,9 @@ from collections.abc import Callable, Collection, Mapping
 from datetime import date
 
 from btlang.frontends.mission.explanations.times import explain_time
-from btlang.task.days import EVERY_DAY, MONTHS, ORDINAL_ENDINGS, ORDINALS, WEEKEND, WORKDAYS, YEARS
+from btlang.task.days import MONTHS, ORDINAL_ENDINGS, ORDINALS, YEARS
 from btlang.text.source import Source, Span
-from btlang.text.time_of_day import WEEKDAYS, seconds_of
+from btlang.text.time_of_day import EVERY_DAY, WEEKDAYS, WEEKEND, WORKDAYS, seconds_of
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, split
 from btlang.vocabulary.load import load_vocabulary
 

@@ -9,6 +9,8 @@ DAY = 86_400.0
 """Seconds."""
 WEEKDAYS = ("Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday", "Sunday")
 """In English, in the order of their numbers."""
+EVERY_DAY, WORKDAYS, WEEKEND = tuple(range(7)), tuple(range(5)), (5, 6)
+"""The numbers of days."""
 USUAL_START = 9 * 3600.0
 """The time of day at which a world begins that does not say when."""
 _TIME = re.compile(r"([01]?\d|2[0-3]):([0-5]\d)", re.ASCII)

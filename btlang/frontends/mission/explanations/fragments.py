@@ -8,6 +8,7 @@ from functools import cache, lru_cache
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.record import Record
+from btlang.text.enumeration import joined
 from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.entry import Entry
@@ -45,8 +46,7 @@ def explain_fragment(
         by_id = {gap.entry.id: " ".join(gap.missing) for gap in reversed(same)}  # the first of each
         wanted = list(dict.fromkeys(reversed(by_id.values())))[:_MOST_OFFERED]
         head, rest = text.span(at, place).text, text.source.text[text.ends[place - 1] : span.end].strip()
-        shown = ", ".join(f"'{words}'" for words in wanted[:-1])
-        listed = f"{shown} or '{wanted[-1]}'" if shown else f"'{wanted[-1]}'"
+        listed = joined([f"'{words}'" for words in wanted], "or")
         examples = (f"{head} {words} {rest}".strip() for words in wanted)
         return diagnostic("BT012", text.span(at, place), words=head, wanted=listed, example=", or: ".join(examples))
     ways = Counter(gap.entry.id for gap, _ in found)  # what can be said in most ways is what people say most

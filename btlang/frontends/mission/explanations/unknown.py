@@ -18,6 +18,7 @@ from btlang.frontends.mission.symbols.definitions import Definitions
 from btlang.frontends.mission.symbols.nodes import misread_node
 from btlang.frontends.mission.symbols.prefixes import span_of
 from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Called, Token
+from btlang.text.enumeration import joined
 from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
@@ -153,7 +154,7 @@ def _misfit(
 ) -> Diagnostic:
     at = misfits[0].at
     types = [vocabulary.types[misfit.kind] for misfit in misfits]
-    wanted = either([f"{_article(kind.name)} {kind.name.replace('_', ' ')}" for kind in types])
+    wanted = joined([f"{_article(kind.name)} {kind.name.replace('_', ' ')}" for kind in types], "or")
     head = text.span(first, at).text
     example = f"{head} {_value_example(types[0], vocabulary)}"
     if text.words[at] == "(" and end > at and any(kind.name == PLACE for kind in types):
@@ -185,7 +186,7 @@ def _misfit(
     if pronoun is not None:
         is_plural = pronoun[0] in vocabulary.values.plural_pronouns
         said = is_plural and any(kind.name in context.latest for kind in named)
-        kinds = _LIST if said else either([kind.name for kind in named])
+        kinds = _LIST if said else joined([kind.name for kind in named], "or")
         return diagnostic(
             "BT038",
             text.span(at, pronoun[1]),
@@ -195,7 +196,7 @@ def _misfit(
         )
     if named:
         known = [name for kind in named for name in vocabulary.values.said_names(kind.name)]
-        kinds = either([*dict.fromkeys(_KIND_NAMES.get(kind.name, kind.name) for kind in named)])
+        kinds = joined(list(dict.fromkeys(_KIND_NAMES.get(kind.name, kind.name) for kind in named)), "or")
         near = nearest(span.text.lower(), known)
         fix = (span, near[0]) if near else None
         understood = f"I understood '{head} ...'. " if at > first else ""
@@ -387,9 +388,3 @@ def _value_example(kind: ValueType, vocabulary: Lexicon) -> str:
 
 def _article(word: str) -> str:
     return "an" if word[0] in "aeiou" else "a"
-
-
-def either(words: list[str]) -> str:
-    """Several words as alternatives: "a place, a person or a door"."""
-    *others, last = words
-    return f"{', '.join(others)} or {last}" if others else last
