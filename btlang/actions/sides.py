@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from math import dist, hypot
+from math import dist
 
 from btlang.actions.manner import paced
 from btlang.actions.motion import Steps
 from btlang.actions.navigation import accomplish
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.capabilities import Navigation
-from btlang.robots.geometry import Point, Pose
+from btlang.robots.geometry import Point, Pose, centre_of
 from btlang.robots.robot import RobotError
 from btlang.robots.world import said
 
@@ -41,17 +41,14 @@ def _journey(robot: Navigation, side: str, name: str, may_be_region: bool) -> St
     here = robot.pose.x, robot.pose.y
     spots = robot.zones.spots(name, here, inside=True) if may_be_region and robot.zones.has(name) else []
     if spots:
-        x, y = zip(*spots, strict=True)
-        middle = sum(x) / len(x), sum(y) / len(y)
-        goal, faced = _in_region(robot, side, name, here, middle, spots), middle
+        faced = centre_of(spots)
+        goal = _in_region(robot, side, name, here, faced, spots)
     elif side in _AHEAD:
         faced = robot.locate(name)
         goal = _beside(side, here, faced)
     else:
         raise ActionFailed(f"{said(name)} has no {side}: the world doesn't say how far it reaches")
-    x_to, y_to = faced[0] - goal[0], faced[1] - goal[1]
-    looking = Pose(*goal, 0.0)
-    heading = looking.bearing_to(faced) if hypot(x_to, y_to) > 1e-6 else robot.pose.heading
+    heading = Pose(*goal).bearing_to(faced) if dist(goal, faced) > 1e-6 else robot.pose.heading
     yield from accomplish(robot.navigate_to_pose(Pose(*goal, heading), f"the {side} of {said(name)}"))
 
 
@@ -76,10 +73,7 @@ def _in_region(robot: Navigation, side: str, name: str, here: Point, middle: Poi
 
 
 def _beside(side: str, here: Point, there: Point) -> Point:
-    sight = there[0] - here[0], there[1] - here[1]
-    length = hypot(*sight)
-    if length < 1e-6:
+    if dist(here, there) < 1e-6:
         raise RobotError("the robot stands there, and sees no side of it")
     ahead, left = _AHEAD[side]
-    x, y = sight[0] / length, sight[1] / length
-    return there[0] + _BESIDE * (ahead * x - left * y), there[1] + _BESIDE * (ahead * y + left * x)
+    return Pose(*there, Pose(*here).bearing_to(there)).ahead(_BESIDE * ahead, _BESIDE * left)

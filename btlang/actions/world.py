@@ -11,6 +11,7 @@ from btlang.actions.points import where
 from btlang.actions.watch import Driving
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.capabilities import Cautious, Handling, Messenger, Navigation, Perception
+from btlang.robots.geometry import centre_of
 from btlang.robots.world import said
 
 
@@ -199,8 +200,7 @@ def take_picture_of_place(
 def take_picture_of_door(robot: PhotographingDoors, door: str) -> Steps:
     """Turns to a door and takes a picture."""
     spots = robot.beside_door(door)
-    middle = sum(spot.x for spot in spots) / len(spots), sum(spot.y for spot in spots) / len(spots)
-    yield from turn(robot, robot.pose.bearing_to(middle))
+    yield from turn(robot, robot.pose.bearing_to(centre_of([(spot.x, spot.y) for spot in spots])))
     yield from accomplish(robot.take_picture())
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import inf
 
-from btlang.text.time_of_day import DAY, USUAL_START
+from btlang.text.time_of_day import DAY, USUAL_START, weekday_after
 
 SOONEST = 0.001
 """Seconds after which a leaf may be ticked again at the earliest, so that none can hold the time of a mission."""
@@ -36,7 +36,7 @@ class Clock:
     @property
     def weekday(self) -> int:
         """The number of the weekday, 0 for Monday; where nobody knows, the mission began on one."""
-        return int((USUAL_START + self.now) // DAY) % 7 if self.week is None else self.week()
+        return weekday_after(0, USUAL_START + self.now) if self.week is None else self.week()
 
     def advance(self, seconds: float) -> None:
         """Raises ValueError for a negative step."""

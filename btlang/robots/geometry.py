@@ -62,6 +62,12 @@ def segment_distance(point: Point, segment: Segment) -> float:
     return hypot(x - ax - t * dx, y - ay - t * dy)
 
 
+def centre_of(points: Sequence[Point]) -> Point:
+    """The mean of some points."""
+    xs, ys = zip(*points, strict=True)
+    return sum(xs) / len(xs), sum(ys) / len(ys)
+
+
 def edges(polygon: Sequence[Point]) -> Iterator[tuple[Point, Point]]:
     """The sides of a polygon, the one from its last point to its first included."""
     return zip(polygon, (*polygon[1:], polygon[0]), strict=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import dist
 
-from btlang.robots.geometry import Point, Pose, segment_distance, wrap
+from btlang.robots.geometry import Point, Pose, centre_of, segment_distance, wrap
 from btlang.robots.likeness import Parts
 from btlang.robots.robot import RobotError
 from btlang.robots.world import World, WorldObject, said
@@ -193,8 +193,7 @@ class Relations:
                 return door.middle
         for zone in self._world.zones:
             if zone.name == name and not any(place.name == name for place in self._world.places):
-                xs, ys = zip(*zone.points, strict=True)
-                return sum(xs) / len(xs), sum(ys) / len(ys)
+                return centre_of(zone.points)
         try:
             return self._where(name)
         except RobotError:

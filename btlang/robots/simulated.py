@@ -30,7 +30,7 @@ from btlang.robots.world import Place, World, said
 from btlang.robots.zones import Zones
 from btlang.run.robot_state import Whereabouts
 from btlang.run.standstill import Standstill
-from btlang.text.time_of_day import DAY
+from btlang.text.time_of_day import DAY, weekday_after
 from btlang.vocabulary.capabilities import part_of
 
 TYPE_CHECKING = False
@@ -170,7 +170,7 @@ class SimulatedRobot(Guarded):
     @property
     def weekday(self) -> int:
         """As the world says, when it began, and all days since."""
-        return (self.world.weekday + int((self.world.clock + self.time) // DAY)) % 7
+        return weekday_after(self.world.weekday, self.world.clock + self.time)
 
     @property
     def moving(self) -> bool:

@@ -7,7 +7,7 @@ from functools import partial
 from math import dist
 
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.geometry import Point, edges, segment_distance
+from btlang.robots.geometry import Point, centre_of, edges, segment_distance
 from btlang.robots.world import Zone, said
 
 CLEAR = 0.8
@@ -115,8 +115,7 @@ class Zones:
                 away = CLEAR * (by - ay) / length, CLEAR * (bx - ax) / length
                 found += [(x - away[0], y + away[1]), (x + away[0], y - away[1])]
         if inside:
-            xs, ys = zip(*zone.points, strict=True)
-            found.append((sum(xs) / len(xs), sum(ys) / len(ys)))
+            found.append(centre_of(zone.points))
         return sorted((spot for spot in found if zone.contains(spot) == inside), key=partial(dist, point))
 
     def has(self, name: str) -> bool:

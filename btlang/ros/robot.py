@@ -47,7 +47,7 @@ from btlang.ros.subscription_cache import SubscriptionCache
 from btlang.ros.zones import RosZones
 from btlang.run.robot_state import Whereabouts
 from btlang.run.standstill import Standstill
-from btlang.text.time_of_day import DAY, local
+from btlang.text.time_of_day import DAY, local, weekday_after
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -196,17 +196,21 @@ class RosRobot(Guarded):
     @property
     def time_of_day(self) -> float:
         """That of this computer, in its time zone; in simulated time that of the world, which began at 0."""
-        clock = self._node.get_clock()
-        seconds = float(clock.now().nanoseconds * 1e-9)
-        return (self._world_began + seconds) % DAY if clock.ros_time_is_active else local(seconds)
+        seconds, is_simulated = self._moment()
+        return (self._world_began + seconds) % DAY if is_simulated else local(seconds)
 
     @property
     def weekday(self) -> int:
         """As `time_of_day`: that of this computer, or that of the world."""
+        seconds, is_simulated = self._moment()
+        if not is_simulated:
+            return time.localtime(seconds).tm_wday
+        return weekday_after(self.world.weekday, self._world_began + seconds)
+
+    def _moment(self) -> tuple[float, bool]:
+        """Seconds since 1970, or since simulated time began; whether time is simulated."""
         clock = self._node.get_clock()
-        seconds = float(clock.now().nanoseconds * 1e-9)
-        days = int((self._world_began + seconds) // DAY)
-        return (self.world.weekday + days) % 7 if clock.ros_time_is_active else time.localtime(seconds).tm_wday
+        return float(clock.now().nanoseconds * 1e-9), clock.ros_time_is_active
 
     def stop(self) -> None:
         """Zero velocity, no journey, frozen joints, silence, the robot's own stop. From any thread, without waiting."""

@@ -24,6 +24,11 @@ def seconds_of(text: str) -> float:
     return int(found[1]) * 3600.0 + int(found[2]) * 60.0
 
 
+def weekday_after(first: int, seconds: float) -> int:
+    """The number of the weekday so many seconds after the midnight at which another one began."""
+    return (first + int(seconds // DAY)) % len(WEEKDAYS)
+
+
 def shown(seconds: float) -> str:
     """Hours and minutes, with seconds where there are some: "18:30", "18:30:05"."""
     whole = int(round(seconds, 3) % DAY)
