@@ -15,7 +15,8 @@ _HALF, _WHOLE = "TurnAround", "TurnOnceAround"
 def half_turns(compilation: Compilation) -> Iterator[Diagnostic]:
     """Among the loops of the mission and of its definitions."""
     whole = compilation.vocabulary.entry(_WHOLE)
-    for body in ast.bodies(compilation.mission) if whole is not None and whole.example else ():
+    example = whole.example if whole is not None else ""
+    for body in ast.bodies(compilation.mission) if example else ():
         for node in compilation.syntax(body):
             if (
                 type(node) is ast.Repeat
@@ -23,7 +24,7 @@ def half_turns(compilation: Compilation) -> Iterator[Diagnostic]:
                 and node.body.entry.id == _HALF
                 and node.rounds != _ENDLESS
             ):
-                said, turn = node.span.text, node.body.span.text
-                fixed = said.replace(turn, whole.example, 1) if whole is not None else said
+                said = node.span.text
+                fixed = said.replace(node.body.span.text, example, 1)
                 note = diagnostic("BT163", node.span, words=said, fixed=fixed)
                 yield note.replace(readings=((node.span, fixed),))

@@ -166,18 +166,19 @@ class Calls:
     def _note_values(self, match: Match) -> None:
         for value in sorted(match.values, key=lambda value: value.name == value.type):  # a theme last: `it` prefers it
             entry = match.meaning.entry
+            names = (value.text, *value.more) if value.more else ()
+            is_odd = any(text[:1] in _ODD for text in names)
             if value.more and (value.joiner == "or" or (entry is not None and entry.first and value.type == PLACE)):
                 self._context.latest.pop(value.type, None)
                 self._context.listed.pop(value.type, None)
-                if match.meaning.role == "command" and not any(text[:1] in _ODD for text in (value.text, *value.more)):
+                if match.meaning.role == "command" and not is_odd:
                     self._context.latest[value.type] = self._reference(value.type)
                 continue
             self._context.listed.pop(value.type, None)
             if value.more and not value.group:
-                names = (NAMES, ";".join((value.text, *value.more)))
                 key = self._context.keys.get(value.type, value.type)
-                is_odd = any(text[:1] in _ODD for text in (value.text, *value.more))
-                self._context.listed[value.type] = "" if is_odd else Choice(ALL, value.type, key, (names,)).text
+                group = Choice(ALL, value.type, key, ((NAMES, ";".join(names)),)).text
+                self._context.listed[value.type] = "" if is_odd else group
             latest = value.group or (value.more[-1] if value.more else value.text)
             choice = choice_of(latest) if latest[:1] == "{" else None
             if choice is not None:

@@ -41,11 +41,8 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
             _wait(tokens, at)
         elif constraint is not None and until.kind != "until":
             forbidden, whole = span(tokens[at].start, tokens[at].end).text, span(tokens[at].start, until.end)
-            problems.append(
-                diagnostic(
-                    "BT161", whole, words=whole.text, example=f"{forbidden} {vocabulary.word('until')} {_EXAMPLE}"
-                )
-            )
+            example = f"{forbidden} {vocabulary.word('until')} {_EXAMPLE}"
+            problems.append(diagnostic("BT161", whole, words=whole.text, example=example))
         elif constraint is not None and opening is not None and begins_condition(tokens, at + 2):
             _open_again(tokens, at, opening)
         at += 1

@@ -245,9 +245,10 @@ class OrderWords(SentenceReader):
     def _weekly(self, match: Match, at: int) -> int:
         """`on weekdays at 9, A`: as every day at that time, but on such days alone."""
         entry = self._vocabulary.entry(_TODAY)
-        if entry is None or len(match.values) != 2:
+        said = {value.name: value for value in match.values}
+        if entry is None or len(said) != 2:
             return 0
-        days, time = sorted(match.values, key=lambda value: value.name)
+        days, time = said["days"], said["time_of_day"]
         start, end = self._text.starts[at], self._text.ends[match.last - 1]
         named = ";".join((days.text, *days.more))
         asked = Called(entry, ((entry.slots[0].name, named),))

@@ -218,9 +218,9 @@ class PartialCommands:
         if said is None or [token.kind for token in self._tokens[-2:]] in _EITHER_END:
             return None
         words = self._said.get(said.start) or words_of(self._text, said)
-        return (
-            left_out(self._text, words, at, self._tries, self._context) if words else None
-        )  # of an answer there are none
+        if not words:
+            return None  # an answer
+        return left_out(self._text, words, at, self._tries, self._context)
 
 
 def said_before(tokens: Sequence[Token]) -> Token | None:
