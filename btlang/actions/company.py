@@ -189,6 +189,13 @@ def guide(
         robot.guide(name, False)
 
 
+def fetch_person(robot: Guiding, person: str) -> Steps:
+    """Goes to a person and guides him or her to where the robot is now. Fails as `guide` does."""
+    here = robot.pose
+    yield from travel(robot, person)
+    yield from guide(robot, person, x=here.x, y=here.y)
+
+
 def _lead(robot: Guiding, person: str, steps: Steps) -> Generator[None, None, bool]:
     """Goes on while the person keeps up. Whether they came to the end of it together."""
     with_us, arrived = robot.time, False

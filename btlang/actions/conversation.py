@@ -79,6 +79,12 @@ def somebody_says(robot: Listening, text: str) -> bool:
     return _among(robot, robot.ears.news(text, robot.time), text)
 
 
+def person_says(robot: Listening, person: str, text: str) -> bool:
+    """The same of one person. Who can't be told by the voice may be that person."""
+    heard = robot.ears.news(text, robot.time)
+    return _among(robot, [each for each in heard if each.who in (person, "")], text)
+
+
 def answers(texts: Iterable[str], body: Body) -> Expected:
     """What is listened for as one of these answers: the words, politely or not, and all that means yes or no for these.
 

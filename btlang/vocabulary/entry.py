@@ -84,8 +84,9 @@ class Entry(Record, uncompared=("span",)):
     ROS 2. With `replaces` its `call` is what runs, whatever other entries of its id say, on any robot. `verbs` are
     verbs with their roles, from which the vocabulary makes the first of the `phrases`. `needs` names capabilities and
     parts of the robot (btlang.vocabulary.capabilities); what an action takes of them for itself is among its
-    `resources`. `outputs` are the slots whose ports it writes. `denied` are phrases that say that a condition
-    isn't so: `the cup is missing`. An entry that `yields` leaves its words to a mission, or
+    `resources`. `outputs` are the slots whose ports it writes. An action `achieves` the conditions with these ids:
+    for its names they hold once it has succeeded. `denied` are phrases that say that a condition isn't so: `the cup is
+    missing`. An entry that `yields` leaves its words to a mission, or
     another entry, that gives them a meaning. An entry without a `sort` has only phrases: those of a known id.
     """
 
@@ -112,6 +113,7 @@ class Entry(Record, uncompared=("span",)):
     replaces: bool = False
     needs: tuple[str, ...] = ()
     outputs: tuple[str, ...] = ()
+    achieves: tuple[str, ...] = ()
     denied: tuple[str, ...] = ()
     yields: bool = False
     verbs: tuple[tuple[tuple[str, ...], tuple[Role, ...]], ...] = ()

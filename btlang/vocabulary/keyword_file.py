@@ -37,7 +37,9 @@ _ENTRY = {
     "example",
 }  # fmt: skip
 _FLAGS = ("accompaniment", "first", "instant", "uninterruptible", "thread", "touches")
-_MORE = {"action": {*_FLAGS, "constrains"}, "condition": {"touches", "denied"}, "quantity": {"type", "named"}}
+_MORE = {
+    "action": {*_FLAGS, "constrains", "achieves"}, "condition": {"touches", "denied"}, "quantity": {"type", "named"},
+}  # fmt: skip
 """The keys that an entry of one sort has beside those of all."""
 _TYPE = {"name", "units", "whole", "least", "open", "values"}
 _NOUN = {"type", "phrase", "slots", "how"}
@@ -123,6 +125,10 @@ class _Reader:
         if not _strings(needs):
             self.wrong(f"needs of '{near}' must be a list of names such as [\"navigation\"]", near)
             needs = []
+        achieves = table.get("achieves", [])
+        if not isinstance(achieves, list) or not _strings(achieves):
+            self.wrong(f"achieves of '{near}' must be a list of ids of conditions", near)
+            achieves = []
         if sort == "action":
             resources = list(dict.fromkeys((*resources, *resources_of(needs))))
         for key in [key for key in _FLAGS if not isinstance(table.get(key, False), bool)]:
@@ -143,7 +149,8 @@ class _Reader:
             constrains=str(constrains), **flags,
             ros=self.ros(table["ros"], sort, slots, near) if "ros" in table else None,
             denied=tuple(self.denied(table.get("denied", []), slots, near)),
-            needs=tuple(needs), outputs=self.outputs(table.get("outputs", []), slots, near), verbs=verbs,
+            outputs=self.outputs(table.get("outputs", []), slots, near), verbs=verbs, needs=tuple(needs),
+            achieves=tuple(achieves),
         )  # fmt: skip
         return self.quantity(made, table, near) if sort == "quantity" else made
 

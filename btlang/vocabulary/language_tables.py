@@ -40,9 +40,9 @@ ASKING = (
     "journey", "search", "whereabouts", "counting", "asking_be", "asking_do", "answers", "feeling", "there",
     "very", "states", "subject", "been", "towards", "going", "finding_out",
     "inspecting", "telling", "whole", "located", "wishing", "wished", "fetching", "begging", "home",
-    "pleading", "plea", "reminding", "reminder", "addressed", "informing", "informed", "staying",
+    "pleading", "saying_that", "plea", "reminding", "reminder", "addressed", "informing", "informed", "staying",
     "resuming", "interrupting",
-    "if_yes", "if_no",
+    "if_yes", "if_no", "told_of", "standing", "unable", "duties", "reasons",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 
@@ -51,7 +51,7 @@ QUESTIONS = ("ask_value", "ask_where", "ask_how_many")
 
 ORDER = (
     "arrival", "arrival_at", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "any_time", "tries",
-    "weekly",
+    "at_most", "up_to_times", "try_again", "weekly", "instead",
 )  # fmt: skip
 """The roles of words about the order of commands."""
 
@@ -64,7 +64,8 @@ _NO_SLOT = (
     "but", "may", "or_stay",
     "either", "both", "neither", "nor", "not_both", "any_of", "all_of", "none_of", "one_of",
     "do_that", "repeat_that", "again", "start_over", "everything", "here", "ordinal", "following", "keep", "fails",
-    "followed_by", "arrival", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "any_time",
+    "followed_by", "arrival", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "any_time", "instead",
+    "try_again",
     "there_are", "mind", *QUESTIONS,
     "repeat", "try", "retry", "if_possible", "wait_until", "wait_for", "check", "nothing", "never", "fail",
     "in_parallel", "in_order",
@@ -78,7 +79,7 @@ ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),
     **dict.fromkeys(("every", "delay", "for", "up_to", "apart", "within", "wait", "wait_up_to"), "duration"),
     **dict.fromkeys(("without_entering", "without_leaving"), "zone"),
-    **dict.fromkeys(("count", "tries", "more", "at_least_of"), "count"),
+    **dict.fromkeys(("count", "tries", "at_most", "up_to_times", "more", "at_least_of"), "count"),
     **dict.fromkeys(("arrival_at",), "place"),
     "weekly": "days time_of_day",
     **dict.fromkeys(("at", "every_day", "until_time", "wait_time"), "time_of_day"),
@@ -100,7 +101,8 @@ WORD_LISTS = frozenset((
     "halting", "asked_once", "relatives",
     "relative_denials", "particles", "fillers", "speaker", "subjects", "purpose", "determiners", "others",
     "denials",
-    "possessive_endings", "ones", "directions", "clause_openers", "clause_words", "sayings", "of_persons", "colored",
+    "possessive_endings", "ones", "directions", "clause_openers", "clause_words", "question_words", "inverting",
+    "sayings", "of_persons", "colored",
 ))  # fmt: skip
 
 
@@ -250,7 +252,8 @@ _LANGUAGE: dict[str, Any] = {
     "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},
     "relations_to_self": {},
     "determiners": [], "others": [], "denials": [], "possessive_endings": [], "ones": [], "directions": [],
-    "clause_openers": [], "clause_words": [], "sayings": [], "of_persons": [], "colored": [],
+    "clause_openers": [], "clause_words": [], "question_words": [], "inverting": [], "sayings": [], "of_persons": [],
+    "colored": [],
     "possessives": {"speaker": [], "others": []},
     "prepositions": {}, "synonyms": {}, "particles": [], "fillers": [], "speaker": [], "subjects": [], "purpose": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "ordinals": {}, "counts": {}, "negations": {},

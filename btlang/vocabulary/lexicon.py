@@ -131,6 +131,10 @@ class Lexicon:
         """What says in a standing rule that the rest waits, and that it goes on."""
         self.telling = tree_of((words, True) for words in self.asking["telling"])
         """The words before a text in quotes that is to be said: `tell me`."""
+        self.duties, self.reasons, self.unable = (
+            tree_of((words, True) for words in self.asking[name]) for name in ("duties", "reasons", "unable")
+        )
+        """What no sentence has that only tells something, and what begins a reason, and what couldn't be done."""
         self.replies = tree_of((words, is_yes) for name, is_yes in _REPLIES for words in self.asking[name])
         """Words behind a question, each with whether it is for a yes: `if so`."""
         verb = "".join(self.asking["journey"][:1])

@@ -193,6 +193,11 @@ class ReadingContext:
         best, end = max((value for _, value in found), key=lambda value: value[1])
         return tuple(kind for kind, (other, last) in found if last == end and other.lower() == best.lower()), best, end
 
+    def forget(self) -> None:
+        """Pronouns stand for nothing any more."""
+        self.latest.clear()
+        self.listed.clear()
+
     def choice(self, text: Words, at: int, kind: str = "") -> tuple[Description, int] | None:
         """See `Values.choice`."""
         return self.values.choice(text, at, kind)

@@ -6,7 +6,7 @@ has a pronoun for a person, which whoever hears it would take for somebody else.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.pattern import ways
@@ -36,7 +36,11 @@ class Texts:
             return tree_of((words, True) for words in ways(roles.get(role, ()), articles))
 
         self._clause_words = frozenset(language["clause_words"])
-        self._openers = frozenset(language["clause_openers"])
+        self._question_words = frozenset(language["question_words"])
+        self._openers = frozenset((*language["clause_openers"], *self._question_words))
+        self._inverting, self._relatives = frozenset(language["inverting"]), words_of_clauses(language["relatives"])
+        self._owners = frozenset(language["possessives"].get("others", ()))
+        self._addressed = "".join(language["asking"].get("addressed", ())[:1])
         self._sayings = tree_of((phrase, True) for phrase in language["sayings"])
         self._then = words_of("then")
         self._direct = tree_of((words, said) for said, clauses in language["direct"].items() for words in ways(clauses))
@@ -66,6 +70,14 @@ class Texts:
         """Where a clause or saying ends that begins at a word, 0 for none."""
         if at and text.words[at - 1] in self._openers:
             return self.end_of_clause(text, at)
+        return self.end_of_saying(text, at)
+
+    def may_have_sayings(self, text: Words) -> bool:
+        """Whether a text has a word with which a saying begins."""
+        return not text.distinct.isdisjoint(self._sayings)
+
+    def end_of_saying(self, text: Words, at: int) -> int:
+        """Where a saying ends that begins at a word, 0 for none: `good morning`."""
         found = find(self._sayings, text.words, at) if text.words[at] in self._sayings else None
         return found[1] if found is not None else 0
 
@@ -84,11 +96,34 @@ class Texts:
 
     def direct(self, text: Words, first: int, last: int) -> str | None:
         """The question that a clause stands for: `he is hungry` as "Are you hungry?"; None where that can't be told."""
-        front = find(self._direct, text.words, first)
-        if front is None or front[1] >= last or any(word in self._doubtful for word in text.words[front[1] : last]):
+        opener = text.words[first - 1]
+        asks = opener in self._question_words
+        for at in range(first, last) if asks else (first,):  # `what tea he wants`
+            front = find(self._direct, text.words, at)
+            if front is not None and (front[1] < last or asks):
+                parts = [*([opener] if asks else []), *self._said(text, first, at), front[0]]
+                return self._question(parts, self._said(text, front[1], last))
+        verb = next((at for at in range(first, last) if text.words[at] in self._inverting), first)
+        if verb == first or not self._relatives.isdisjoint(text.words[first:verb]):
             return None
-        behind = text.source.text[text.begin(front[1]) : text.ends[last - 1]]
-        return f"{front[0][0].upper()}{front[0][1:]} {behind}?"
+        parts = [*([opener] if asks else []), text.words[verb], *self._said(text, first, verb)]
+        return self._question(parts, self._said(text, verb + 1, last))
+
+    def _question(self, front: Sequence[str], behind: Sequence[str]) -> str | None:
+        """A question of words, None where one of them is somebody else for whoever hears it."""
+        words = (*front, *behind)
+        if any(word != self._addressed and word.lower() in self._doubtful for word in behind):
+            return None
+        asked = " ".join(words)
+        return f"{asked[0].upper()}{asked[1:]}?"
+
+    def _said(self, text: Words, first: int, last: int) -> list[str]:
+        """Words as they are written, but what is theirs is yours for whom is asked."""
+        written = (text.source.text[text.begin(at) : text.ends[at]] for at in range(first, last))
+        return [
+            self._addressed if text.words[at] in self._owners else word
+            for at, word in zip(range(first, last), written, strict=True)
+        ]
 
     def end_of_clause(self, text: Words, at: int) -> int:
         """Where the clause ends that begins at a word, 0 where it is one word."""
@@ -98,3 +133,8 @@ class Texts:
                 break
             end += 1
         return end if end > at + 1 else 0
+
+
+def words_of_clauses(phrases: Iterable[str]) -> frozenset[str]:
+    """The words with which relative clauses begin."""
+    return frozenset(phrase.split()[0] for phrase in phrases)

@@ -28,7 +28,7 @@ def in_one_line(mission: btlang.Mission) -> str:
 
 @pytest.mark.parametrize(
     ("sentence", "tree"),
-    [*rows("meaning.txt"), *rows("said.txt"), *rows("users.txt"), *rows("chosen.txt")],
+    [*rows("meaning.txt"), *rows("said.txt"), *rows("users.txt"), *rows("chosen.txt"), *rows("outcomes.txt")],
     ids=lambda text: text,
 )
 def test_meaning(sentence: str, tree: str) -> None:
@@ -53,6 +53,19 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
     ("sentence", "code"),
     [
         ("go to the lab or avoid the hall", "BT155"),
+        ("go to the lab, charge first", "BT151"),
+        ("pick up the book. If you can't reach it, try again, max 3 times. Then wave", "BT151"),
+        ("say again", "BT159"),
+        ("ask Bob again", "BT159"),
+        ("go to the lab. If nobody is near, wave instead", "BT166"),
+        ("wave no more than 2 times", "BT167"),
+        ("go to the lab and wave at most 3 times", "BT167"),
+        ("go to the lab because it is warm there", "BT165"),
+        ("I have lost my way", "BT164"),
+        ("Bob is coming for tea", "BT164"),
+        ("go to the lab. If you can't lift it, wave", "BT010"),
+        ("do the round", "BT010"),
+        ("ask Bob if the man who is tall is ready", "BT159"),
         ("wave through the door", "BT179"),
         ("put the book on the table and the red cup", "BT019"),
         ("put the book in the box and the red cup", "BT019"),
@@ -76,10 +89,9 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("find Alice or find Bob. Follow them", "BT038"),
         ("say the picture", "BT157"),
         ("ask Alice if bumped", "BT159"),
-        ("ask Alice if the battery is low", "BT159"),
         ("tell Alice that she is late", "BT159"),
         ("tell Alice that tea is ready and wave", "BT159"),
-        ("there are two books near the lab", "BT010"),
+        ("there are two books near the lab", "BT164"),
         ("I am not hungry, wave", "BT010"),
         ("whenever you see someone, wave at them. Follow them", "BT038"),
     ],

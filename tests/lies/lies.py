@@ -172,6 +172,10 @@ def _number(value: float) -> Tell:
     return lambda said, telling: value
 
 
+def _factor(said: float, telling: Telling) -> Any:
+    return telling.strength
+
+
 def _frozen_number(said: float, telling: Telling) -> Any:
     return telling.first
 
@@ -331,15 +335,16 @@ LIES: tuple[Lie, ...] = (
     Lie("a bumper that is never pressed", BUMPER, _number(False), "wall", r"sonar|scanner", (DEVICES, BOARD)),
     # Wheels that do something else than they are told
     Lie("wheels that stand", WHEELS, _number(0.0), "fail", f"{STANDS}|doesn't move|{_DISAGREES}", ALL),
-    Lie("wheels that turn the other way", WHEELS, _number(-1.0), "stop", _DISAGREES, (DEVICES, BOARD, ROS)),
-    Lie("wheels at a quarter of the speed", WHEELS, _number(0.25), "fail", _DISAGREES, (DEVICES, BOARD, ROS)),
+    Lie("wheels that turn the other way", WHEELS, _factor, "stop", _DISAGREES, (DEVICES, BOARD, ROS), -1.0),
+    Lie("wheels at a quarter of the speed", WHEELS, _factor, "fail", _DISAGREES, (DEVICES, BOARD, ROS), 0.25),
     Lie(
         "wheels that run three times as fast",
         WHEELS,
-        _number(3.0),
+        _factor,
         "stop",
         _DISAGREES,
         (DEVICES, BOARD, ROS),
+        3.0,
         way=1.1,
         seconds=1.4,
     ),
@@ -348,6 +353,14 @@ LIES: tuple[Lie, ...] = (
     Lie("a joint that is silent", JOINT, _silent, "fail", "silent", (DEVICES, BOARD)),
     Lie("a joint of NaN", JOINT, _number(nan), "fail", "not a number|doesn't report the joint", (DEVICES, ROS)),
 )
+
+
+def look_true(lies: Sequence[Lie]) -> bool:
+    """Whether wheels and odometry lie so that together they show about what was commanded: nobody can tell that."""
+    factors = [lie.strength for lie in lies if lie.tell in (_factor, _scaled)]
+    return len(factors) == 2 and 0.5 <= factors[0] * factors[1] <= 1.5
+
+
 BY_NAME = {lie.name: lie for lie in LIES}
 
 

@@ -37,6 +37,9 @@ CORRELATIVES = frozenset(("either", "both"))
 RULES = ("whenever", "first_time")
 """Raw kinds that begin standing rules."""
 
+BEFORE_CONDITIONS = frozenset(("if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "not"))
+"""Raw kinds before a condition; behind them a polite word could be a misspelt one: `wave if now bumped`."""
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeAlias

@@ -31,10 +31,13 @@ def asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
         for node in compilation.syntax(body):
             if type(node) is ast.Chain and node.operator == "sequence":
                 before.update((id(item), (node.items, at)) for at, item in enumerate(node.items))
-            if type(node) is ast.If and not node.negated and node.otherwise is None and _is_statement(node, vocabulary):
+            if type(node) is ast.If and not node.negated and node.otherwise is None:
                 sentence = _sentence_before(*before.get(id(node), ((), 0)))
-                warnings = list(_warning(node, sentence[-1] if sentence else None, vocabulary))
-                yield from warnings or _too_late(node, sentence, vocabulary)
+                if _is_statement(node, vocabulary):
+                    warnings = list(_warning(node, sentence[-1] if sentence else None, vocabulary))
+                    yield from warnings or _too_late(node, sentence, vocabulary)
+                elif sentence and "\n" not in node.span.text:
+                    yield from _warning(node, None, vocabulary)  # `A, and when C, B`
 
 
 def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:
@@ -53,12 +56,19 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
     if not isinstance(asked, ast.Phrase):
         return
-    phrases = (each for item in before for each in ast.parents_first(item) if isinstance(each, ast.Phrase))
-    journeys = [phrase for phrase in phrases if MOVES in phrase.entry.resources]
+    parts = [each for item in before for each in ast.parents_first(item)]
+    words = node.span.source.text[node.span.start : node.condition.span.end]
+    if any(isinstance(each, ast.Every) for each in parts):  # `every 10 s until noon, A. If C, B`
+        whole = Span(node.span.source, before[0].span.start, node.span.end)
+        rounds, rest = Span(whole.source, whole.start, before[-1].span.end).text, node.span.text
+        each = f"{rounds}, {vocabulary.word('then')} {rest[:1].lower()}{rest[1:]}"
+        advice = f"All rounds are over by then. To do it in each round, write: {each}"
+        yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((whole, each),))
+        return
+    journeys = [each for each in parts if isinstance(each, ast.Phrase) and MOVES in each.entry.resources]
     if not journeys:
         return
     last = before[-1].span.text
-    words = node.span.source.text[node.span.start : node.condition.span.end]
     if asked.entry.id in _ON_THE_WAY:
         word = words.split(maxsplit=1)[0]
         each = f"{vocabulary.word('whenever')} {node.span.text[len(word) :].lstrip()}"

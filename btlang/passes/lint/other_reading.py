@@ -277,11 +277,11 @@ def _has_otherwise(node: ast.Ast) -> bool:
 def _after_its_body(node: ast.Ast) -> list[Any]:
     """The forms that stand behind one command, the outermost first; none where brackets decide what they are about.
 
-    A round has no words of its own: it begins with its first command.
+    A form without words of its own, such as a round, isn't one of them.
     """
     forms: list[Any] = []
     body: Any = getattr(node, "body", None)
-    while body is not None and body.span.start == node.span.start and not isinstance(node, ast.ForEach):
+    while body is not None and body.span.start == node.span.start and body.span.end < node.span.end:
         forms.append(node)
         node, body = body, getattr(body, "body", None)
     return [] if isinstance(node, ast.Chain) and node.bracketed and not is_list(node) else forms

@@ -15,6 +15,7 @@ from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Form, forms
 from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.value_type import TEXT
 
 _ValueAt = Callable[[str, int], "tuple[str, int] | None"]  # what ReadingContext.read finds in the text
 _MOST_MISSING, _LONGEST, _MOST_OFFERED = 3, 8, 3
@@ -89,9 +90,10 @@ def _read(parts: Form, entry: Entry, text: Words, at: int, value_at: _ValueAt) -
                 return None
             at += 1
         else:
-            value = value_at(entry.slot(part.name).type, at)
-            if value is None:
-                return None
+            kind = entry.slot(part.name).type
+            value = value_at(kind, at)
+            if value is None or (kind == TEXT and text.words[at][0] != '"'):
+                return None  # any word is a text
             at = value[1]
     return at
 

@@ -10,6 +10,7 @@ from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.explanations.fragments import explain_fragment
+from btlang.frontends.mission.explanations.lacking import unreferred, untold, value_example
 from btlang.frontends.mission.explanations.misfits import Misfit, misfits_of
 from btlang.frontends.mission.explanations.roles import explain_role
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
@@ -27,7 +28,6 @@ from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.node_words import BEHIND_ID, near_commands, role_end
 from btlang.vocabulary.pattern import forms, spelled
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.references import DENIED
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import OBJECT, PLACE, WORLD, ValueType, with_unit
 from btlang.vocabulary.verbs import canonical
@@ -61,12 +61,13 @@ def explain_unknown(
         last = next((i for i in range(unnamed, end) if text.words[i] == "}"), unnamed)
         name = " ".join(text.words[unnamed + 1 : last])
         return unknown_value(text.span(unnamed, last + 1), name, context.known or ())
-    untold = _untold(text, at, end, vocabulary)
-    if untold is not None:
-        return untold
+    lacking = untold(text, at, end, vocabulary) or unreferred(text, at, vocabulary, context)
+    if lacking is not None:
+        return lacking
     roots = (vocabulary.trie, definitions.trie)
     start, misfits = at, list(misfits_of(text, at, roots, context))
-    if before and before[-1].kind not in ("comma", "newline", "indent", "dedent", "open", "semi"):
+    asks = _asks(before) and text.words[at][0].isalpha()  # `wave until foo` lacks no duration
+    if before and before[-1].kind not in ("comma", "newline", "indent", "dedent", "open", "semi") and not asks:
         phrase = bisect_left(text.starts, before[-1].start)  # `move forward 5 s`: read that far, and no further
         longer = [found for found in misfits_of(text, phrase, roots, context) if found.at >= at]
         if longer and (not misfits or longer[0].at >= misfits[0].at):
@@ -89,24 +90,6 @@ def explain_unknown(
     goes_on = bool(before) and before[-1].kind == "command" and _ends_in_a_bare_text(before[-1])  # `say still here`
     part = None if goes_on else explain_fragment(text, at, end, _asks(before), vocabulary, context)
     return part or _unknown_phrase(text, at, end, vocabulary, definitions, before)
-
-
-def _untold(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic | None:
-    """BT178 for a size, a state or a color of which nothing is known, before a noun or behind `that is`."""
-    values = vocabulary.values
-    is_told = values.likenesses.is_told
-    for i in range(at, end):
-        is_clause = values.modifiers.ends_clause(text, i)
-        for parts, last in values.adjectives.chains(text, i, values.names_tree):
-            nouns = [kind for kind in (OBJECT, PLACE) if values.begins_noun(kind, text, last)]
-            before_noun = nouns and (i > at or i in text.articles) and last not in text.articles
-            kinds = [kind for kind in nouns or (OBJECT, PLACE) if not all(is_told(kind, part) for part, _ in parts)]
-            if kinds and len(kinds) == len(nouns or (OBJECT, PLACE)) and (before_noun or is_clause):
-                said, value = next((part, value) for part, value in parts if not is_told(kinds[0], part))
-                part, span = DENIED.get(said, said), text.span(i, last)
-                line = f'{part} = ["{value}"]' if part == "state" else f'{part} = "{value}"'
-                return diagnostic("BT178", span, words=span.text, part=part, type=kinds[0], line=line)
-    return None
 
 
 def misread_head(text: Words, at: int, role: str, vocabulary: Lexicon) -> Diagnostic:
@@ -156,7 +139,7 @@ def _misfit(
     types = [vocabulary.types[misfit.kind] for misfit in misfits]
     wanted = joined([f"{_article(kind.name)} {kind.name.replace('_', ' ')}" for kind in types], "or")
     head = text.span(first, at).text
-    example = f"{head} {_value_example(types[0], vocabulary)}"
+    example = f"{head} {value_example(types[0], vocabulary)}"
     if text.words[at] == "(" and end > at and any(kind.name == PLACE for kind in types):
         point = vocabulary.values.point_text("3", "4", "90")
         return diagnostic("BT036", text.span(at, end), example=f"{head} {point}")
@@ -192,7 +175,7 @@ def _misfit(
             text.span(at, pronoun[1]),
             words=pronoun[0],
             type=kinds,
-            example=_value_example(named[0], vocabulary),
+            example=value_example(named[0], vocabulary),
         )
     if named:
         known = [name for kind in named for name in vocabulary.values.said_names(kind.name)]
@@ -267,6 +250,12 @@ def _unknown_phrase(
         fix = None if is_thing else (whole, quoted)
         return diagnostic("BT010", span, fix=fix, kind="word", words=span.text, help=advice)
     kind = "condition" if _asks(before) else "command"
+    unknown_home = next((i for i in range(at, end) if text.words[i] in vocabulary.asking["home"]), None)
+    if unknown_home is not None:  # `go home`
+        places = vocabulary.values.said_names(PLACE) if PLACE in vocabulary.types else []
+        advice = "".join(f'A line of the world file says which place it is: home = "{place}"' for place in places[:1])
+        home = text.span(unknown_home, unknown_home + 1)
+        return diagnostic("BT013", home, type=PLACE, words=home.text, help=advice or _near_names([], places))
     is_node = text.words[at] in (phrase for role in NODE_ROLES for phrase in vocabulary.roles[role])
     meant = longest(vocabulary.trie, text, at + 1, vocabulary.context) if is_node else None
     is_phrase = meant is not None and meant.meaning.entry is not None
@@ -274,6 +263,8 @@ def _unknown_phrase(
         rest = text.span(at + 1, meant.last).text
         whole = text.span(at, meant.last)
         return diagnostic("BT010", whole, fix=(whole, rest), kind=kind, words=whole.text, help=nearest_known([rest]))
+    names = [header.name for header in definitions.headers.values()]
+    written = f" {' '.join(text.words[at:end])} "
     is_lower = span.text[1:] == span.text[1:].lower()
     near_node = near_commands(text.words[at + 1 : end], vocabulary) if is_node and is_lower else []
     if near_node and near_node[0] not in vocabulary.nodes.values():  # `do wavee`
@@ -283,8 +274,10 @@ def _unknown_phrase(
     if node is not None:
         advice = f"A node by its id: {' or '.join(node[1])}"
         return diagnostic("BT010", node[0], fix=(node[0], node[1][0]), kind="node", words=node[0].text, help=advice)
-    names = [header.name for header in definitions.headers.values()]
-    written = f" {' '.join(text.words[at:end])} "
+    if is_node and at + 1 < end and at + 1 in text.articles and not any(f" {name} " in written for name in names):
+        name = text.span(at + 1, end)  # `do the round`
+        advice = f"To give commands this name, write them in a line of their own: {name.text} is ..."
+        return diagnostic("BT010", name, kind="name", words=name.text, help=advice)
     inside = [(name, end - at) for name in names if f" {name} " in written]
     near = dict(inside) | dict(_nearest_phrases(tuple(text.words[at:end]), vocabulary, tuple(names))) | dict(inside)
     if not near:  # a value alone, in a list or where the other words are left out: `if Allice or Bob is near`
@@ -379,11 +372,6 @@ def _near_names(near: list[str], known: list[str]) -> str:
     if len(known) > _MOST_NAMES:
         return f"Known: {', '.join(known[:_MOST_NAMES])} and {len(known) - _MOST_NAMES} more"
     return "Known: " + ", ".join(known) if known else "This world has none."
-
-
-def _value_example(kind: ValueType, vocabulary: Lexicon) -> str:
-    names = vocabulary.values.said_names(kind.name) if kind.kind == "names" else []
-    return names[0] if names else kind.example
 
 
 def _article(word: str) -> str:

@@ -81,11 +81,12 @@ def prohibition(scan: Scan, token: Token) -> None:
     condition = _between(scan, rest[form:end])
     if not condition and scan.stack[-1].kind == "body" and opener is not None and opener.role == "if":
         condition = scan.source.text[opener.end : token.start].strip(" ,")
+    is_known = all(each.kind != "unknown" for each in rest[:form])
     what = _between(scan, [token, *rest[:form]]) or "wave"
     advice = "It does only what it is told, so leave this out, or say what to do in its place."
     if form < end and rest[form].kind == "until":
         advice = f"Write for example: {scan.word('wait_until')} {condition}"
-    elif condition:
+    elif condition and is_known:  # nothing is offered that can't be read
         failing = f"{scan.word('whenever')} {condition}, {scan.word('fail')}"
         advice = f"Write for example: {scan.word('unless')} {condition}, {what}"
         advice += f". Or: {what} {scan.word('stop_when')} {condition}. Or: {failing}"

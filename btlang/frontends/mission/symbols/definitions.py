@@ -11,6 +11,7 @@ from btlang.frontends.mission.symbols.nodes import Unreadable, read_node
 from btlang.frontends.mission.symbols.phrases import Phrases
 from btlang.frontends.mission.token import Header
 from btlang.text.source import Span
+from btlang.text.spelling import nearest
 from btlang.text.words import END_OF_STATEMENT, Words, statements
 from btlang.tree.ast import Definition
 from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
@@ -19,17 +20,19 @@ from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.pattern import Part, Slot, name_form
 from btlang.vocabulary.trie import TrieNode, add, longest
-from btlang.vocabulary.value_type import TEXT
+from btlang.vocabulary.value_type import PERSON, TEXT
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import END, SLOTS, find
 
 # A line that starts with one of these compares; it defines nothing.
 _STARTS_NO_NAME = frozenset((
     "if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "otherwise", "then", "check",
-    "wait_until", "at", "every_day", "until_time",
+    "wait_until", "at", "every_day", "until_time", "once",
 ))  # fmt: skip
 _WEAK = DEFINING[-1]
 _NOT_IN_A_NAME = frozenset((*CONNECTIVES, "if", "unless", "while", "until", "otherwise", "provided"))
+_NO_BODY = frozenset(("", "here", "ordinal", "again", "not", "there_are", "start_at"))
+"""The roles of words that begin no command."""
 
 
 class Definitions:
@@ -183,6 +186,8 @@ def _header(
             named = find(values.names_tree(kind), text.words, start)
             if named is not None and named[1] == at:
                 return None  # `the cup is near the lab`
+    if is_weak and _tells(phrases, start, at):
+        return None
     if start == at:
         problems.append(diagnostic("BT016", text.span(at, at + 1), word=text.words[at]))
         return Header("", text.span(at, at + 1), at + 1, at + 1)
@@ -207,6 +212,38 @@ def _header(
         problems.append(diagnostic("BT016", text.span(start, at), word=text.words[at]))
         return Header("", text.span(start, at), at + 1, reach(text, at))
     return Header(" ".join(parts), text.span(start, at), at + 1, reach(text, at), parameters)
+
+
+def _tells(phrases: Phrases, start: int, at: int) -> bool:
+    """Whether a sentence says something about somebody, and defines nothing: `Carol is coming for tea`.
+
+    No command stands behind its `is`, and before it what is no name of a command.
+    """
+    text, values = phrases.text, phrases.vocabulary.values
+    body = phrases.at(at + 1)
+    if text.words[at + 1][0] in ':"' or (body is not None and not _begins_no_command(body)):
+        return False
+    said, line_starts = text.words[at + 1], {line.first for line in text.lines}
+    if any(
+        word == said and i != at + 1 and (i in line_starts or text.words[i - 1] == END_OF_STATEMENT)
+        for i, word in enumerate(text.words)
+    ):
+        return False  # another name: `patrol is tour`
+    command = phrases.at(start)
+    if command is not None and command.meaning.role == "command" and command.last < at:
+        return True  # `go to the lab because the cup is full of tea`
+    speaks_of = (values.names_tree(PERSON), values.pronoun_words)
+    if _joining_word(phrases, start, at) is not None or text.words[start] in values.texts.of_persons:
+        return True
+    if any(find(tree, text.words, start) for tree in speaks_of):
+        return True
+    is_short = not text.words[at + 2][0].isalnum()  # `the floor is wet`
+    return start in text.articles and (is_short or not nearest(said, [*phrases.vocabulary.trie]))
+
+
+def _begins_no_command(match: Match) -> bool:
+    entry = match.meaning.entry
+    return entry.sort == "condition" if entry is not None else match.meaning.role in _NO_BODY
 
 
 def _pattern(words: list[str]) -> tuple[list[str], tuple[tuple[str, tuple[str, ...]], ...]]:

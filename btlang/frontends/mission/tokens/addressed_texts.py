@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import Called, Token
+from btlang.frontends.mission.token import Called, Listed, Token
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.vocabulary.entry import Entry
@@ -126,6 +126,15 @@ class AddressedTexts(SentenceReader):
         elif not self._doubt(entry, values.texts.doubt(text, at + 1, value.last)):
             self._doubt(entry, at, _NO_QUESTION)
 
+    def _repeat(self, entry: Entry, value: SlotValue, command: Token) -> None:
+        """`ask Bob again`: what was asked, or told, before."""
+        for token in reversed(self._tokens):
+            said = token.value
+            if isinstance(said, Called) and said.entry.id == entry.id:
+                self._set_text(command, value.name, dict(said.arguments)[value.name])
+                return
+        self._doubt(entry, value.first)
+
     def _is_clause(self, value: SlotValue) -> bool:
         """Whether a text stands behind a word such as `that` or `if`."""
         return self._vocabulary.values.texts.opens(self._text.words[value.first - 1])
@@ -141,7 +150,13 @@ class AddressedTexts(SentenceReader):
     def _set_text(self, command: Token, slot: str, text: str, adds: bool = False) -> None:
         """Makes a text that of a command, or `adds` it to the one that it has."""
         value = command.value
-        assert isinstance(value, Called)
-        new = {name: f"{given} {text}" if adds else text for name, given in value.arguments if name == slot}
-        arguments = tuple((name, new.get(name, given)) for name, given in value.arguments)
-        command.value = value.replace(arguments=arguments)
+
+        def with_text(arguments: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
+            said = {slot: f"{dict(arguments)[slot]} {text}" if adds else text}
+            return tuple((name, said.get(name, given)) for name, given in arguments)
+
+        if isinstance(value, Listed):  # `ask Alice and Bob if they are hungry`
+            command.value = value.replace(arguments=tuple(map(with_text, value.arguments)))
+        else:
+            assert isinstance(value, Called)
+            command.value = value.replace(arguments=with_text(value.arguments))

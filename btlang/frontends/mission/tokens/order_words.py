@@ -5,16 +5,14 @@ An arrival goes on as `then` would. A journey behind `on the way to` or `from` b
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
+from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import RULES, Called, Listed, OnDays, Token, constraint_of
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
 from btlang.frontends.mission.tokens.silent_words import BEGINS
-from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import PERSON, PLACE
+from btlang.vocabulary.value_type import PERSON
 from btlang.vocabulary.word_tree import find
 
 _JOINTS = frozenset(("and", "comma", "then"))
@@ -39,28 +37,17 @@ class OrderWords(SentenceReader):
             return self._wait_at(match, at)
         if role == "any_time":
             return self._any_time(match.last)
-        if role == "tries":
-            return self._tries(match, at)
         if role == "weekly":
             return self._weekly(match, at)
+        if role == "instead":
+            return self._instead(match, at)
         return self._back_and_forth(at, match.last) if role == "back_and_forth" else self._arrival(match, at)
-
-    def _journey(self, tokens: Sequence[Token] | None = None) -> Token | None:
-        """The latest command that drives."""
-        for token in reversed(self._tokens if tokens is None else tokens):
-            if token.kind == "define":
-                return None
-            value = token.value
-            if token.kind == "command" and isinstance(value, Called | Listed) and constraint_of(token) is None:
-                if MOVES in value.entry.resources:
-                    return token
-        return None
 
     def _arrival(self, match: Match, at: int) -> int:
         """`when you arrive`: at the end of a statement it says nothing, before a command it says `then`."""
         tokens, end = self._tokens, match.last
         journey = self._journey()
-        if journey is None or (match.values and not _leads_to(journey, match.values[0].text)):
+        if journey is None or (match.values and not leads_to(journey, match.values[0].text)):
             return 0
         if self._may_be_left_out(journey):
             return 0  # `If bumped, go to the lab. When you arrive, wave` might wave without the journey
@@ -145,48 +132,39 @@ class OrderWords(SentenceReader):
         tokens[-1].start = start
         return found[1]
 
-    def at_goal(self, at: int) -> int:
-        """`go to the lab and wave there`, `visit every room and wave in each of them`: where the robot is by then."""
-        tokens, text, context = self._tokens, self._text, self._context
-        first = at + (text.words[at] in self._vocabulary.asking["located"])
-        pronoun = find(context.values.pronoun_words, text.words, first)
-        if pronoun is None or PLACE not in context.pronouns[pronoun[0]]:
-            return 0
-        journey = self._journey(tokens[:-1])
-        behind = longest(self._vocabulary.trie, text, pronoun[1], context)
-        is_polite = behind is not None and behind.meaning.role == "politeness"  # `there, too`
-        if journey is None or not (is_polite or self._is_end(pronoun[1]) or text.words[pronoun[1]] == ","):
-            return 0
-        is_plural = pronoun[0] in context.values.plural_pronouns
-        goal = context.listed[PLACE] if is_plural and PLACE in context.listed else context.latest.get(PLACE)
-        if not goal:
-            return 0
-        if self._calls.is_alternative(journey, goal):
-            return pronoun[1]
-        if goal[:1] == "{":
-            if tokens[-2].kind != "and" or not self._calls.is_round(journey, goal):
-                return 0
-        elif not _leads_to(journey, goal):
-            return 0
-        return pronoun[1]
-
     def aside(self, at: int) -> int:
-        """`whenever A, interrupt, B, then continue`: what a standing rule does by itself."""
+        """`whenever A, interrupt, B, then continue`: what a standing rule does by itself.
+
+        With these words `if A` behind other commands is a rule, too.
+        """
         tokens, words = self._tokens, self._text.words
         interrupting, resuming = self._vocabulary.asides
+        if words[at] not in interrupting and words[at] not in resuming:
+            return 0  # as nearly always
+        first = next((i + 1 for i in range(len(tokens) - 1, -1, -1) if tokens[i].kind in _LINE_STARTS), 0)
+        if tokens[first].kind not in (*RULES, "if"):
+            return 0
         found = find(resuming, words, at)
         if found is not None and self._is_end(found[1]) and any(token.kind == "command" for token in tokens[-3:]):
             while tokens[-1].kind in _JOINTS:
                 tokens.pop()
+            if any(token.kind in ("command", "name") for token in tokens[:first]):
+                self._watch(tokens[first])
             return found[1]
         found = find(interrupting, words, at) if tokens[-1].kind == "comma" else None
         if found is None or tokens[-2].kind != "condition":
             return 0
+        self._watch(tokens[first])
         behind = found[1] + (words[found[1]] == ",")
         joint = longest(self._vocabulary.trie, self._text, behind, self._context)
         if joint is not None and joint.meaning.role in ("and", "then"):
             return joint.last
         return behind if behind > found[1] else 0
+
+    @staticmethod
+    def _watch(form: Token) -> None:
+        """Makes `if` a standing rule."""
+        form.kind = "whenever" if form.kind == "if" else form.kind
 
     def is_doing(self, at: int) -> bool:
         """Whether the form of a verb stands at a word: `keep going back and forth`."""
@@ -195,16 +173,23 @@ class OrderWords(SentenceReader):
         return again or self._partial.doing(at) is not None
 
     def says_nothing(self, match: Match, at: int) -> bool:
-        """Whether words begin nothing: `say bye when that's done`, `take all cups to the sink, one after the other`."""
+        """Whether words begin nothing: `say bye when that's done`, `take all cups away, one after the other`.
+
+        `afterwards` says nothing at the end, either.
+        """
         if match.meaning.role == "following":
             is_behind = bool(self._tokens) and self._tokens[-1].kind in ("command", "comma")
             return is_behind and (self._is_end(match.last) or self._text.words[match.last] == ",")
-        words, once = self._text.words, (*self._vocabulary.asked_once, *self._vocabulary.roles["once"])
-        if words[at] not in once or not self._tokens:
+        tokens, words, roles = self._tokens, self._text.words, self._vocabulary.roles
+        if not tokens or tokens[-1].kind != "command":
             return False
-        behind = longest(self._vocabulary.trie, self._text, match.last, self._context)
-        goes_on = behind is not None and behind.meaning.role in ("and", "then")
-        return self._tokens[-1].kind == "command" and (self._is_end(match.last) or goes_on)
+        if words[at] in (*self._vocabulary.asked_once, *roles["once"]):
+            behind = longest(self._vocabulary.trie, self._text, match.last, self._context)
+            return self._is_end(match.last) or (behind is not None and behind.meaning.role in ("and", "then"))
+        is_later = self._is_end(match.last) and len(tokens) > 1 and tokens[-2].kind in (*_JOINTS, "semi", "newline")
+        if is_later and tokens[-2].kind == "and":  # `go to the lab and wave afterwards`
+            tokens[-2].kind = "then"
+        return is_later
 
     def inspection(self, at: int, end: int) -> int:
         """`check the lab`: no condition, but a place that is looked at."""
@@ -224,22 +209,19 @@ class OrderWords(SentenceReader):
             if token.kind in BEGINS and token.kind != "comma":
                 break
             if token.kind == "if":
-                token.kind = "whenever"
+                self._watch(token)
                 return end
         return 0
 
-    def _tries(self, match: Match, at: int) -> int:
-        """`pick up the cup, at most 3 attempts`: again if it fails, so many times in all."""
-        tokens = self._tokens
-        before = next((number for number in (-1, -2) if len(tokens) >= -number and tokens[number].kind == "command"), 0)
-        if not before or (before == -2 and tokens[-1].kind != "comma"):
-            return 0
-        del tokens[len(tokens) + before + 1 :]
-        if len(tokens) < 2 or tokens[-2].kind not in ("try", "retry"):
-            tokens.insert(-1, Token("retry", tokens[-1].start, tokens[-1].start))
-        count = self._calls.token(match, at)
-        count.kind = "count"
-        tokens.append(count)
+    def _instead(self, match: Match, at: int) -> int:
+        """`otherwise wave instead`; elsewhere it is open what isn't done."""
+        for token in reversed(self._tokens):
+            if token.kind in ("otherwise", "or"):
+                return match.last
+            if token.kind in _LINE_STARTS:
+                break
+        span, otherwise = self._text.span(at, match.last), self._vocabulary.word("otherwise")
+        self._calls.problems.append(diagnostic("BT166", span, words=span.text, otherwise=otherwise))
         return match.last
 
     def _weekly(self, match: Match, at: int) -> int:
@@ -280,6 +262,8 @@ class OrderWords(SentenceReader):
     def _on_way(self, at: int, end: int) -> int:
         """`A, and on the way B`: with the journey, before it if it is a task; at the end of a statement nothing."""
         tokens, text = self._tokens, self._text
+        if tokens[-1:] and tokens[-1].kind == "condition":
+            return self._any_time(end)  # `if the battery gets low on the way, A`
         if self._journey() is None:
             return 0
         if self._is_end(end):
@@ -327,9 +311,3 @@ class OrderWords(SentenceReader):
         value = token.value
         goes_along = isinstance(value, Called | Listed) and value.entry.accompaniment
         return "meanwhile" if goes_along else "then"
-
-
-def _leads_to(journey: Token, place: str) -> bool:
-    """Whether a command drives to a place."""
-    value = journey.value
-    return isinstance(value, Called) and place in [text for _, text in value.arguments]

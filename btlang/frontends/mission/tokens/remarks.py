@@ -1,4 +1,5 @@
-"""Remarks, about which nothing is done: `I am hungry`, `there are some cups on the table`, `the cup is on the table`.
+"""Remarks, about which nothing is done: `I am hungry`, `there are some cups on the table`, `the cup is on the table`,
+`good morning`.
 
 A remark is only what has no verb of a command, no number, no negation and no word that is unknown.
 """
@@ -22,7 +23,10 @@ class Remarks:
         self._text, self._vocabulary, self._context = text, vocabulary, context
         self._feeling, self._there, self._states = vocabulary.remarks
         self._very, self._be = vocabulary.asking["very"], vocabulary.asking["asking_be"]
-        self.is_possible = not text.distinct.isdisjoint((*self._feeling, *self._there, *self._be))
+        self._texts = vocabulary.values.texts
+        self.is_possible = not text.distinct.isdisjoint(
+            (*self._feeling, *self._there, *self._be)
+        ) or self._texts.may_have_sayings(text)
         """Whether there may be any."""
 
     def end(self, at: int) -> int:
@@ -31,6 +35,9 @@ class Remarks:
         Pronouns behind it stand for what it is about.
         """
         words = self._text.words
+        saying = self._texts.end_of_saying(self._text, at)
+        if saying and words[saying] in _ENDS:
+            return saying
         feeling, there = find(self._feeling, words, at), find(self._there, words, at)
         if feeling is not None:
             return self._state(feeling[1])
@@ -74,7 +81,8 @@ class Remarks:
     def _place(self, kind: str, at: int) -> tuple[Parts, int]:
         """Where a thing stands, and where the words about that end; 0 if there are none."""
         context, text = self._context, self._text
-        if text.words[at] not in self._be or text.words[at + 1] not in context.modifiers:
+        stands = at + 1 + (text.words[at + 1] in self._vocabulary.asking["standing"])
+        if text.words[at] not in self._be or text.words[stands] not in context.modifiers:
             return (), 0
-        behind = context.values.modifiers.behind(kind, text, at + 1, context.values.names_tree)
+        behind = context.values.modifiers.behind(kind, text, stands, context.values.names_tree)
         return max(behind, key=lambda way: way[1], default=((), 0))

@@ -21,6 +21,7 @@ _MOST_WORDS = 8  # of the subject of a question
 _EXAMPLE = "hello"
 _ASK, _ANSWERED = "Ask", "AnswerIs"
 _BEHIND = ("politeness", "then", "and")
+_STOPS = frozenset(("semi", "newline"))
 _BETWEEN = frozenset(("semi", "newline", "comma", "then", "and", "stop"))
 _OF_CONDITIONS = frozenset(("condition", "not", "and", "or", "either", "neither", "nor", "both"))
 
@@ -51,6 +52,10 @@ class Requests(AddressedTexts):
             return 0
         if self._text.words[value.first][0] == '"':
             return self._value_behind(value.last, value.name, at, command) if value.last == match.last else 0
+        again = longest(self._vocabulary.trie, self._text, value.first, self._context)
+        if again is not None and again.meaning.role == "again":
+            self._repeat(entry, value, command)
+            return 0
         if entry.id == _ASK:
             self._ask(entry, value, command)
             return 0
@@ -243,19 +248,34 @@ class Requests(AddressedTexts):
             self._tokens.append(Token("not", start, start))
         self._tokens += [condition, Token("comma", end, end)]
 
-    def reply(self, at: int) -> int:
+    def reply(self, at: int, role: str) -> int:
         """`ask Alice "Tea?". If so, A`: a command that depends on the answer, not on whether there was one."""
         found = find(self._vocabulary.replies, self._text.words, at)
-        before = next((token for token in reversed(self._tokens) if token.kind not in ("semi", "newline")), None)
-        entry = self._vocabulary.entry(_ANSWERED)
-        if found is None or before is None or entry is None or not isinstance(before.value, Called):
-            return 0
-        if before.kind != "command" or before.value.entry.id != _ASK:
+        entry = self._vocabulary.entry(_ANSWERED) if found is not None else None
+        if found is None or entry is None or not self._is_asked(right_before=role == "otherwise"):
             return 0
         start, end = self._text.starts[at], self._text.ends[found[1] - 1]
         yes = Called(entry, ((entry.slots[0].name, self._vocabulary.asking["answers"][0]),))
         self._if(Token("condition", start, end, yes), found[0])
         return found[1] + (self._text.words[found[1]] == ",")
+
+    def _is_asked(self, right_before: bool) -> bool:
+        """Whether the statement before asks, or depends on the answer: `ask "Tea?". If so, A. If he wants none, B`."""
+        tokens, last = self._tokens, len(self._tokens)
+        while last:
+            if tokens[last - 1].kind in _STOPS:
+                last -= 1
+                continue
+            first = last
+            while first and tokens[first - 1].kind not in _STOPS:
+                first -= 1
+            values = [token.value for token in tokens[first:last] if isinstance(token.value, Called)]
+            if tokens[last - 1].kind == "command" and values and values[-1].entry.id == _ASK:
+                return True
+            if right_before or tokens[first].kind != "if" or not values or values[0].entry.id != _ANSWERED:
+                return False
+            last = first
+        return False
 
     def tell(self, at: int) -> int:
         """`tell me "hello"`: says it; `if the door is open, tell me`: says what was asked."""
@@ -264,6 +284,8 @@ class Requests(AddressedTexts):
             return self._inform(at, self._ends)
         if text.words[told[1]][0] == '"':
             said, end = text.words[told[1]][1:], told[1] + 1
+        elif self._opens_clause(told[1]):
+            said, end = self._clause(at, told[1])
         else:
             said, end = self._asked_of() if self._ends(told[1]) else "", told[1]
         if not said and not self._ends(end):
@@ -274,6 +296,23 @@ class Requests(AddressedTexts):
             self._calls.problems.append(diagnostic("BT012", words, words=words.text, wanted="a text", example=example))
         self._tokens.append(Token("command", text.starts[at], text.ends[end - 1], self._saying_of(said)))
         return end
+
+    def _opens_clause(self, at: int) -> bool:
+        """`tell me that ...`, `remind me to ...`, but not `report to Alice`."""
+        asking, words = self._vocabulary.asking, self._text.words
+        is_told = words[at - 1] in self._vocabulary.values.role_words.speaker
+        return words[at] in asking["saying_that"] or (is_told and words[at] in asking["pleading"])
+
+    def _clause(self, at: int, opener: int) -> tuple[str, int]:
+        """`remind me to drink some water`, `tell me that tea is ready`: what is said, and where it ends."""
+        text, asking, texts = self._text, self._vocabulary.asking, self._vocabulary.values.texts
+        end = texts.end_of_clause(text, opener + 1) or opener + 2
+        assert self._saying is not None
+        self._doubt(self._saying, texts.doubt(text, opener + 1, end))
+        said = text.source.text[text.begin(opener + 1) : text.ends[end - 1]]
+        if text.words[opener] in asking["pleading"]:
+            said = f"{asking['reminder' if text.words[at] in asking['reminding'] else 'plea'][0]} {said}"
+        return said[:1].upper() + said[1:], end
 
     def finding_out(self, end: int) -> None:
         """`check whether A. If B, C`: what is checked decides nothing by itself, behind the `if` that ends at a word.

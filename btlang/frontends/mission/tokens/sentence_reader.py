@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import Token
+from collections.abc import Sequence
+
+from btlang.frontends.mission.token import Called, Listed, Token, constraint_of
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
@@ -35,3 +38,20 @@ class SentenceReader:
     def _with_front(self, at: int, end: int, front: str) -> Match | None:
         """The phrase that words of the table `asking` make of those from `end` on."""
         return self._partial.with_front(at, end, self._vocabulary.asking[front])
+
+    def _journey(self, tokens: Sequence[Token] | None = None) -> Token | None:
+        """The latest command that drives."""
+        for token in reversed(self._tokens if tokens is None else tokens):
+            if token.kind == "define":
+                return None
+            value = token.value
+            if token.kind == "command" and isinstance(value, Called | Listed) and constraint_of(token) is None:
+                if MOVES in value.entry.resources:
+                    return token
+        return None
+
+
+def leads_to(journey: Token, place: str) -> bool:
+    """Whether a command drives to a place."""
+    value = journey.value
+    return isinstance(value, Called) and place in [text for _, text in value.arguments]

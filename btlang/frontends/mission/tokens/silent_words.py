@@ -17,6 +17,7 @@ LINES = frozenset(("newline", "semi", "indent", "dedent", "define"))
 MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 """The raw kinds of marks."""
 _STAYS_BEFORE = (",", ";", ")", END_OF_STATEMENT, END_OF_TEXT)
+_JOINTS, _OPERANDS = frozenset(("and", "comma", "then")), frozenset(("command", "name", "close", "and", "comma"))
 BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon", "comma", "then"))
 """Behind these a statement, or an item of a list, begins."""
 
@@ -86,7 +87,8 @@ def without_meaning(
         start = next((token for token in reversed(tokens) if token.kind in BEGINS or token.kind == "but"), before)
         start.value = "first" if start.kind == "but" else start.value
         follows = longest(vocabulary.trie, text, match.last, context)
-        is_last = text.words[match.last] in (",", ";", END_OF_TEXT)
+        is_behind = len(tokens) > 2 and tokens[-2].kind in _JOINTS and tokens[-3].kind in _OPERANDS
+        is_last = text.words[match.last] in (",", ";", END_OF_TEXT, END_OF_STATEMENT) and not is_behind
         goes_on = follows is not None and follows.meaning.role in ("then", "and")
         return match.last if start.kind == "but" or is_last or goes_on else 0
     purpose = find(vocabulary.purpose, text.words, at) if before.kind == "command" else None

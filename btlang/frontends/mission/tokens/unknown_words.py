@@ -8,16 +8,19 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.definitions import Definitions
 from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.includes import misplaced
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import BEFORE_CONDITIONS, Token
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
-from btlang.frontends.mission.tokens.silent_words import MARKS, begins
+from btlang.frontends.mission.tokens.silent_words import MARKS, begins, begins_item
 from btlang.frontends.mission.tokens.word_matches import with_verb
+from btlang.text.source import Span
 from btlang.text.words import Words
-from btlang.vocabulary.language_tables import NOT_ALONE
+from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
+from btlang.vocabulary.value_type import OBJECT, PERSON
+from btlang.vocabulary.word_tree import find
 
 
 class UnknownWords:
@@ -64,6 +67,8 @@ class UnknownWords:
             text = self._text
             if text.words[at] in self._vocabulary.roles["define"] and begins(self._tokens):
                 return diagnostic("BT016", text.span(at, at + 1), word=text.words[at])
+            if role == "ordinal" and len(self._tokens) > 2 and self._tokens[-1].kind == "command":
+                return self._which_first(at, end)
             doing = self._partial.doing(at) if text.words[at - 1] in self._vocabulary.halting else None
             if doing is not None:
                 return fragments.stopped(text.span(at - 1, doing.last), self._vocabulary)
@@ -76,6 +81,45 @@ class UnknownWords:
             return misplaced(self._text.span(at, end), self._vocabulary)
         return unknown.misread_head(self._text, at, role, self._vocabulary)
 
+    def _which_first(self, at: int, end: int) -> Diagnostic:
+        """BT151 for `A, B first`."""
+        text, tokens, then = self._text, self._tokens, self._vocabulary.word("then")
+        first = next((i + 1 for i in range(len(tokens) - 1, -1, -1) if begins(tokens[: i + 1])), 0)
+        before = text.source.text[tokens[first].start : tokens[-2].start].strip(" ,")
+        behind = text.source.text[tokens[-1].start : tokens[-1].end]
+        span = Span(text.source, tokens[-1].start, text.ends[end - 1])
+        one, other = f"{behind}, {then} {before}", f"{before}, {then} {behind}"
+        return diagnostic("BT151", span, words=span.text, one=one, other=other)
+
+    def told(self, at: int, last: int) -> tuple[int, Diagnostic] | None:
+        """Where a sentence or clause ends that only tells something, or why, and what to say about it."""
+        text, vocabulary = self._text, self._vocabulary
+        end = next((i for i in range(at, last) if text.words[i] in MARKS), last)
+        why = find(vocabulary.reasons, text.words, at)
+        if why is None and not (begins_item(self._tokens) and self._tells(at, end)):
+            return None
+        for kind in (OBJECT, PERSON):  # `I have mislaid my book. Please look for it`
+            tree = self._vocabulary.values.names_tree(kind)
+            named = next((found[0] for i in range(at, end) if (found := find(tree, text.words, i))), None)
+            if named is not None:
+                self._context.latest[kind] = named
+        span = Span(text.source, text.begin(at), text.ends[end - 1])
+        return end, diagnostic("BT164" if why is None else "BT165", span, words=span.text)
+
+    def _tells(self, at: int, end: int) -> bool:
+        """Whether words speak of somebody or something, and say nothing that must be or must not."""
+        words, vocabulary = self._text.words, self._vocabulary
+        persons = vocabulary.values.names_tree(PERSON)
+        is_told = words[at] in vocabulary.asking["told_of"] or find(persons, words, at) is not None
+        if not is_told and at not in self._text.articles:
+            return False
+        value = self._context.any(self._text, at)
+        if value is not None and value[2] == end:
+            return False  # `the kitchen` alone
+        if not vocabulary.quantifiers.isdisjoint(words[at:end]):
+            return False
+        return all(find(vocabulary.duties, words, i) is None for i in range(at, end))
+
     def end(self, at: int, last: int) -> int:
         """Unknown words reach to the next mark or connective, or to a phrase that is more than one word.
 
@@ -83,6 +127,7 @@ class UnknownWords:
         """
         text, context = self._text, self._context.with_references()
         context.latest = dict.fromkeys(context.types, "")
+        is_asked = bool(self._tokens) and self._tokens[-1].kind in BEFORE_CONDITIONS  # up to its command
         while True:
             at += 1
             if at < last and text.words[at] == "(" and context.values.number(text, at + 1):
@@ -92,5 +137,9 @@ class UnknownWords:
             match = longest(self._vocabulary.trie, text, at, context)
             if match is not None and match.meaning.role in (*NODE_ROLES, *NOT_ALONE):
                 continue
-            if match is not None and (match.meaning.entry is None or match.last > at + 1):
+            if match is None:
+                continue
+            if match.meaning.role in CONNECTIVES or (
+                not is_asked and (match.meaning.entry is None or match.last > at + 1)
+            ):
                 return at

@@ -1,0 +1,127 @@
+"""Conditions that the command before them has settled: `look for the cup. If it isn't there, A`, `wait for Bob. When
+he comes, A`, `get the cup. If you can't reach it, A`.
+
+The command fails where the condition doesn't hold. So its denial means that the command failed, and `when` means then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from btlang.frontends.mission.token import RULES, Called, Listed, Token, go_on
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.vocabulary.references import choice_of
+from btlang.vocabulary.trie import longest
+from btlang.vocabulary.word_tree import find
+
+_JOINTS = frozenset(("newline", "semi", "stop", "comma", "and", "then"))
+_ENDS = frozenset(("newline", "semi", "stop"))
+_MEASURES = frozenset(("for", "up_to", "within", "count"))
+_ASKING = frozenset(("if", "as_soon_as", "once"))
+_LINE_STARTS = frozenset(("newline", "semi", "indent", "dedent", "define"))
+_FORMS = frozenset((*RULES, "if", "unless", "while", "until", "otherwise", "if_doing", "if_works", "every_day"))
+
+
+class Outcomes(SentenceReader):
+    """Those of one text, behind the tokens that it has so far."""
+
+    def settle(self) -> None:
+        """What the latest condition asks is left out where the command before it has settled it."""
+        tokens = self._tokens
+        denied = tokens[-2].kind == "not"
+        form = len(tokens) - (3 if denied else 2)
+        if form < 1 or tokens[form].kind not in _ASKING or not self._asks(tokens[form], denied):
+            return
+        command = self._before(form)
+        if command is not None and _achieves(tokens[command], tokens[-1]):
+            self._join(command, form, tokens[-1].end, denied)
+
+    def unable(self, at: int) -> int:
+        """`if you can't grab it`, behind a command about it: if that fails."""
+        front, form = find(self._vocabulary.unable, self._text.words, at), len(self._tokens) - 1
+        command = self._before(form) if front is not None and form > 0 else None
+        if front is None or command is None:
+            return 0
+        match = longest(self._vocabulary.trie, self._text, front[1], self._context)
+        if match is None or match.meaning.entry is None or match.meaning.entry.sort != "action":
+            return 0
+        asked = {name for value in match.values for name in _names(value.text)}
+        first = next((i for i in reversed(range(command)) if self._tokens[i].kind in _LINE_STARTS), 0)
+        for token in self._tokens[first : command + 1]:
+            value = token.value
+            if isinstance(value, Called | Listed) and (asked or value.entry.id == match.meaning.entry.id):
+                if asked <= _named(value):
+                    self._join(command, form, self._text.ends[match.last - 1], True)
+                    return match.last
+        return 0
+
+    def if_works(self, end: int) -> None:
+        """`look for the key, and bring it to me if you find it`: words that end there go before their command."""
+        tokens = self._tokens
+        first = command = len(tokens) - 2
+        while first > 0 and tokens[first - 1].kind in ("comma", "and", "then"):
+            first -= 1
+        found = tokens[first - 1].value if 0 < first < command else None
+        if not self._is_end(end) or tokens[command].kind != "command" or not isinstance(found, Called | Listed):
+            return
+        if found.entry.achieves:
+            start = tokens[command].start
+            tokens[first:] = [Token("stop", start, start), Token("if_works", start, start), tokens[command]]
+
+    def _before(self, form: int) -> int | None:
+        """The command right before a form, with measures of it between them; None where it may not have run."""
+        tokens, command = self._tokens, form - 1
+        while command >= 0 and tokens[command].kind in _JOINTS:
+            command -= 1
+        is_new = any(token.kind in _ENDS for token in tokens[command + 1 : form])
+        while command > 0 and tokens[command].kind in _MEASURES:
+            command -= 1
+        if command < 0 or tokens[command].kind != "command":
+            return None
+        for token in reversed(tokens[:command] if is_new else ()):
+            if token.kind in _LINE_STARTS:
+                break
+            if token.kind in _FORMS:
+                return None  # `If bumped, look for the cup. If it isn't there, A`
+        return command
+
+    def _join(self, command: int, form: int, end: int, denied: bool) -> None:
+        """Makes a form that ends at a character the word between the command and what comes behind."""
+        tokens = self._tokens
+        start, behind = tokens[form].start, command + 1
+        while tokens[behind].kind in _MEASURES:
+            behind += 1
+        is_new = any(token.kind in _ENDS for token in tokens[behind:form])
+        del tokens[form:]
+        if is_new:
+            go_on(tokens)
+        else:
+            del tokens[behind:]
+        tokens.append(Token("or", start, end, "if_fails") if denied else Token("then", start, end))
+
+    def _asks(self, form: Token, denied: bool) -> bool:
+        """Whether a form asks what the command has settled: `if` it isn't so, or `when` it is."""
+        word = self._text.source.text[form.start : form.end].lower()
+        if denied:
+            return form.kind == "if"
+        return form.kind != "if" or word in self._vocabulary.asked_once
+
+
+def _achieves(command: Token, asked: Token) -> bool:
+    """Whether a condition holds once a command has succeeded: it is about the same things."""
+    value, condition = command.value, asked.value
+    if not isinstance(value, Called | Listed) or not isinstance(condition, Called):
+        return False
+    return condition.entry.id in value.entry.achieves and {text for _, text in condition.arguments} <= _named(value)
+
+
+def _named(value: Called | Listed) -> set[str]:
+    """What refers to the values of a command."""
+    given: Iterable[tuple[tuple[str, str], ...]] = [value.arguments] if isinstance(value, Called) else value.arguments
+    return {name for arguments in given for _, text in arguments for name in _names(text)}
+
+
+def _names(text: str) -> set[str]:
+    """What refers to the value of a port: its text, and the key of what is chosen."""
+    choice = choice_of(text)
+    return {text} if choice is None else {text, f"{{{choice.key}}}"}

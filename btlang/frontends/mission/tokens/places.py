@@ -1,0 +1,93 @@
+"""Where a command is done: `go to the lab and wave there`, `wave in the kitchen`, `in every room, take a picture`."""
+
+from __future__ import annotations
+
+from btlang.frontends.mission.token import Called, Listed, Token, constraint_of
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
+from btlang.vocabulary.match import Match
+from btlang.vocabulary.trie import longest
+from btlang.vocabulary.value_type import OBJECT, PLACE
+from btlang.vocabulary.word_tree import find
+
+_TRAVELS = "navigation"
+"""What a command needs that drives by itself: it takes a place in its own way, or none."""
+_HOLD = "Hold"
+_JOINS = ("and", "then", "or")
+
+
+class Places(SentenceReader):
+    """Those of one text."""
+
+    def at_goal(self, at: int) -> int:
+        """`go to the lab and wave there`, `visit every room and wave in each of them`: where the robot is by then."""
+        tokens, text, context = self._tokens, self._text, self._context
+        first = at + (text.words[at] in self._vocabulary.asking["located"])
+        pronoun = find(context.values.pronoun_words, text.words, first)
+        if pronoun is None or PLACE not in context.pronouns[pronoun[0]]:
+            return 0
+        journey = self._journey(tokens[:-1])
+        behind = longest(self._vocabulary.trie, text, pronoun[1], context)
+        is_polite = behind is not None and behind.meaning.role == "politeness"  # `there, too`
+        if journey is None or not (is_polite or self._is_end(pronoun[1]) or text.words[pronoun[1]] == ","):
+            return 0
+        is_plural = pronoun[0] in context.values.plural_pronouns
+        goal = context.listed[PLACE] if is_plural and PLACE in context.listed else context.latest.get(PLACE)
+        if not goal:
+            return 0
+        if self._calls.is_alternative(journey, goal):
+            return pronoun[1]
+        if goal[:1] == "{":
+            if tokens[-2].kind != "and" or not self._calls.is_round(journey, goal):
+                return 0
+        elif not leads_to(journey, goal):
+            return 0
+        return pronoun[1]
+
+    def behind(self, at: int) -> int:
+        """`wave in the kitchen`: goes there first. Also to who speaks: `bring the cup to me in the kitchen`."""
+        tokens = self._tokens
+        journey = self._to(at)
+        value = tokens[-1].value
+        if journey is None or not isinstance(value, Called | Listed) or constraint_of(tokens[-1]) is not None:
+            return 0
+        following = longest(self._vocabulary.trie, self._text, journey.last, self._context)
+        ends = self._is_end(journey.last) or self._text.words[journey.last] == ","
+        is_to_speaker = self._text.words[at - 1] in self._vocabulary.values.role_words.speaker
+        if (_TRAVELS in value.entry.needs and not is_to_speaker) or not (
+            ends or (following is not None and following.meaning.role in _JOINS)
+        ):
+            return 0
+        said = tokens.pop()
+        end = said.end = self._text.ends[journey.last - 1]
+        tokens.append(Token("open", said.start, said.start))
+        hold, theme = self._vocabulary.entry(_HOLD), value.entry.slots[0] if value.entry.slots else None
+        if is_to_speaker and hold is not None and theme is not None and theme.type == OBJECT:
+            if not isinstance(value, Called):
+                tokens[-1:] = [said]
+                return 0
+            held = Called(hold, ((hold.slots[0].name, dict(value.arguments)[theme.name]),))
+            tokens += [Token("command", said.start, said.start, held), Token("and", said.start, said.start)]
+        self._partial.append(journey, at)
+        tokens[-1].start = said.start
+        tokens += [Token("and", said.start, said.start), said, Token("close", end, end)]
+        return journey.last
+
+    def before(self, at: int) -> int:
+        """`in the kitchen, wave`: goes there first."""
+        journey = self._to(at)
+        if journey is None or self._text.words[journey.last] != ",":
+            return 0
+        following = longest(self._vocabulary.trie, self._text, journey.last + 1, self._context)
+        if following is None or following.meaning.role != "command":
+            return 0
+        self._partial.append(journey, at)
+        end = self._text.ends[journey.last - 1]
+        self._tokens.append(Token("and", end, end))
+        return journey.last + 1
+
+    def _to(self, at: int) -> Match | None:
+        """The journey to where words say that something is done."""
+        if self._text.words[at] not in self._vocabulary.asking["located"]:
+            return None
+        journey = self._with_front(at, at + 1, "journey")
+        return journey if journey is not None and journey.values[0].type == PLACE else None

@@ -1,0 +1,132 @@
+"""How often something is tried: `pick up the cup, at most 3 attempts`, `if that fails, wait 5 s and try again`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
+from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.match import Match
+from btlang.vocabulary.trie import longest
+
+_LINE_STARTS = frozenset(("newline", "semi", "dedent"))
+_JOINTS = frozenset(("and", "comma", "then", "stop"))
+_BLOCKED = frozenset(("WallInFront", "SomethingInTheWay", "SomeoneInTheWay"))
+_STATEMENT_ENDS = (END_OF_STATEMENT, END_OF_TEXT)
+_TWICE = "2"
+
+
+class Tries(SentenceReader):
+    """Those of one text."""
+
+    def number(self, match: Match, at: int) -> int:
+        """`pick up the cup, at most 3 attempts`: again if it fails, so many times in all.
+
+        Behind a comma it is about all commands of the statement. `wave at most 3 times` leaves open how often.
+        """
+        tokens = self._tokens
+        last = len(tokens) - (2 if tokens and tokens[-1].kind == "comma" else 1)
+        if last < 0 or tokens[last].kind not in ("command", "name", "close"):
+            return 0
+        first = next((i + 1 for i in range(last, -1, -1) if tokens[i].kind in _LINE_STARTS), 0)
+        may_fail = True
+        if not any(token.kind in ("try", "retry", "repeat") for token in tokens[first:]):
+            whole = last < len(tokens) - 1
+            first = _first_of_form(tokens, first, last) if whole else _first_of_operand(tokens, last)
+            may_fail = match.meaning.role == "tries" or any(map(_may_fail, tokens[first : last + 1]))
+            if may_fail:
+                tokens.insert(first, Token("retry", tokens[first].start, tokens[first].start))
+            elif match.meaning.role == "at_most":
+                span = self._text.span(at, match.last)
+                fixed = self._text.source.text[tokens[first].start : tokens[last].end]
+                fixed += f" {match.values[0].text} {self._vocabulary.word('count').split()[-1]}"
+                self._calls.problems.append(diagnostic("BT167", span, words=span.text, fixed=fixed))
+        if may_fail and tokens[-1].kind == "comma":
+            tokens.pop()
+        count = self._calls.token(match, at)
+        count.kind = "count"
+        tokens.append(count)
+        return match.last
+
+    def again(self, match: Match, at: int) -> int:
+        """`A. If that fails, wait 5 s and try again, at most 3 times`: A again, with pauses; without a number once."""
+        tokens, end = self._tokens, len(self._tokens)
+        end = self._behind(end)
+        pause = tokens[end - 1] if end and tokens[end - 1].kind == "wait" else None
+        end = self._behind(end - 1) if pause is not None else end
+        form = self._condition(end)
+        last = self._behind(form)
+        if not form or not last or tokens[last - 1].kind not in ("command", "name", "close"):
+            return 0
+        first = next((i + 1 for i in range(last - 1, -1, -1) if tokens[i].kind in _LINE_STARTS), 0)
+        first = _first_of_form(tokens, first, last)
+        start, stop, number = self._text.starts[at], self._text.ends[match.last - 1], _TWICE
+        behind = match.last + (self._text.words[match.last] == ",")
+        behind += self._text.words[behind] in self._vocabulary.roles["but"]
+        amount = longest(self._vocabulary.trie, self._text, behind, self._context)
+        if amount is not None and amount.meaning.role in ("at_most", "up_to_times", "tries", "count"):
+            stop, number = self._text.ends[amount.last - 1], str(self._calls.token(amount, behind).value)
+        else:
+            amount = None
+        del tokens[last:]
+        tokens.insert(first, Token("retry", tokens[first].start, tokens[first].start))
+        tokens.append(Token("count", start, stop, number))
+        if pause is not None:
+            tokens.append(Token("every", pause.start, pause.end, pause.value))
+        end = amount.last if amount is not None else match.last
+        self._doubt(end)
+        return end
+
+    def _doubt(self, at: int) -> None:
+        """`..., try again, at most 3 times. Then B`: B in any case, or only if all tries fail (BT151)."""
+        text = self._text
+        at += text.words[at] == END_OF_STATEMENT
+        joint = longest(self._vocabulary.trie, text, at, self._context)
+        if joint is None or joint.meaning.role != "then":
+            return
+        end = next(i for i in range(joint.last, len(text.words)) if text.words[i] in _STATEMENT_ENDS)
+        span, rest = text.span(at, end), text.span(joint.last, end).text
+        one = f"... {self._vocabulary.word('otherwise')} {rest}"
+        self._calls.problems.append(diagnostic("BT151", span, words=span.text, one=one, other=rest))
+
+    def _behind(self, end: int) -> int:
+        """Where the tokens before a place end without what joins them."""
+        while end and self._tokens[end - 1].kind in _JOINTS:
+            end -= 1
+        return end
+
+    def _condition(self, end: int) -> int:
+        """Where `if that fails` begins that ends at a place, or `if the way is blocked` behind a journey; else 0."""
+        tokens = self._tokens
+        if end and tokens[end - 1].kind == "or" and tokens[end - 1].value == "if_fails":
+            return end - 1
+        asked = tokens[end - 1].value if end > 2 and tokens[end - 2].kind == "if" else None
+        journey = tokens[self._behind(end - 2) - 1].value if isinstance(asked, Called) else None
+        if not isinstance(asked, Called) or asked.entry.id not in _BLOCKED or not isinstance(journey, Called | Listed):
+            return 0
+        return end - 2 if MOVES in journey.entry.resources else 0
+
+
+def _first_of_form(tokens: Sequence[Token], first: int, last: int) -> int:
+    """Where the commands of a statement begin: behind `if bumped,`."""
+    begins = (i + 1 for i in range(first + 1, last) if tokens[i].kind == "comma" and tokens[i - 1].kind == "condition")
+    return next(begins, first)
+
+
+def _first_of_operand(tokens: Sequence[Token], last: int) -> int:
+    """Where the command, name or bracket begins that ends at a token."""
+    depth = 0
+    for at in range(last, -1, -1):
+        depth += (tokens[at].kind == "close") - (tokens[at].kind == "open")
+        if not depth:
+            return at
+    return last
+
+
+def _may_fail(token: Token) -> bool:
+    """Whether a command is a task, or a name whose commands may have one."""
+    value = token.value
+    return token.kind == "name" or (isinstance(value, Called | Listed) and not value.entry.accompaniment)

@@ -1,0 +1,400 @@
+"""Reads the words of a line: each is a mark, begins a phrase or a name, or is explained.
+
+A step that reads something returns the word at which to go on; the next step is asked where it returns 0.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
+from btlang.frontends.mission.symbols.names import Names
+from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
+from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
+from btlang.frontends.mission.token import BEFORE_CONDITIONS, RULES, Token, constraint_of, go_on
+from btlang.frontends.mission.tokens.calls import NEGATED, Calls
+from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
+from btlang.frontends.mission.tokens.order_words import OrderWords
+from btlang.frontends.mission.tokens.outcomes import Outcomes
+from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
+from btlang.frontends.mission.tokens.places import Places
+from btlang.frontends.mission.tokens.remarks import Remarks
+from btlang.frontends.mission.tokens.requests import Requests
+from btlang.frontends.mission.tokens.silent_words import (
+    MARKS,
+    after_politeness,
+    begins,
+    begins_item,
+    begins_question,
+    verb_forms,
+    without_meaning,
+)
+from btlang.frontends.mission.tokens.tries import Tries
+from btlang.frontends.mission.tokens.unknown_words import UnknownWords
+from btlang.text.words import END_OF_STATEMENT, Words
+from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE, ORDER, QUESTIONS
+from btlang.vocabulary.lexicon import NODE_ROLES
+from btlang.vocabulary.match import Match
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.trie import longest
+from btlang.vocabulary.word_tree import SLOTS, find
+
+_ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
+"""What a word is inside a statement, and where it goes on with the one before."""
+_NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
+_CONDITIONS = frozenset(("condition", *NEGATED))
+_JOINING = ("and", "or")
+_JOINTS = ("comma", "and", "then")
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.frontends.mission.tokens.condition_words import Origin
+
+
+class WordReader:
+    """Reads the words of one text into `tokens`; what is wrong with them becomes `problems`."""
+
+    def __init__(
+        self,
+        text: Words,
+        names: Names,
+        context: ReadingContext,
+        tokens: list[Token],
+        problems: list[Diagnostic],
+        explain: bool,
+    ) -> None:
+        self._text, self._names, self._context, self._tokens, self._problems = text, names, context, tokens, problems
+        self._explain, self._vocabulary = explain, names.vocabulary
+        vocabulary, self._named = self._vocabulary, names.definitions.trie
+        self._bounds = [*names.bounds, len(text.words)]
+        has_values = names.known or names.bounds  # a name in it may be longer than a phrase
+        self._meanings_of = CONNECTIVES.keys() if names.meanings else ()
+        self._found = {} if has_values else names.phrases.fixed
+        self._calls = Calls(text, vocabulary, context, problems)
+        self._partial = PartialCommands(text, vocabulary, self._named, context, self._calls, tokens)
+        shared = text, vocabulary, context, self._calls, self._partial, tokens
+        self._order, self._places, self._tries = OrderWords(*shared), Places(*shared), Tries(*shared)
+        self._requests, self._outcomes = Requests(*shared), Outcomes(*shared)
+        self._remarks = Remarks(text, vocabulary, context)
+        self._verb_forms = verb_forms(text, vocabulary)
+        self._unknown = UnknownWords(
+            text, vocabulary, context, names.definitions, self._partial, tokens, problems, self._verb_forms
+        )
+        behind = ("called", "with", "giving")
+        self._details = {phrase.split()[0] for role in behind for phrase in vocabulary.roles[role]}
+        self._before_doing = {phrase.split()[0] for phrase in vocabulary.roles["without_entering"]}
+        self._asking = {*vocabulary.asking["asking_be"], *vocabulary.asking["asking_do"]}
+        self._joint = vocabulary.word("and")
+        self._is_apart = False  # the statement that is read runs at another time than the next one
+        self._origin: Origin | None = None  # the latest condition of the line that was read as a whole
+        self._shares = False  # the match at hand has the words of that condition in front
+        self._root = vocabulary.trie  # where the match at hand was found
+
+    def read(self, at: int, last: int) -> None:
+        """Reads the words of a line from one to another (exclusive)."""
+        words, others, tokens = self._text.words, self._names.others, self._tokens
+        self._origin = None
+        while at < last:
+            if at >= self._bounds[0]:
+                self._bounds = self._bounds[bisect_right(self._bounds, at) :]
+                self._context.set_known(self._names.known_at(at))
+            if at in others:
+                at = self._no_command(at)
+            elif tokens and tokens[-1].kind in _JOINTS and (end := self._order.aside(at)):
+                self._is_apart = True
+                at = end
+            elif words[at] in MARKS:
+                tokens.append(Token(MARKS[words[at]], self._text.starts[at], self._text.ends[at]))
+                if words[at] == END_OF_STATEMENT and at + 1 < last and at + 1 not in self._text.going_on:
+                    self.end_statement()
+                at += 1
+            else:
+                at = self._phrase(at, last)
+
+    def end_statement(self) -> None:
+        """Pronouns reach back to earlier statements, but not out of a definition or a standing rule."""
+        self._calls.end_statement()
+        if self._is_apart:
+            self._context.forget()
+            self._is_apart = False
+
+    def _no_command(self, at: int) -> int:
+        """A statement about a value of the mission, a fact, or the head of a definition."""
+        if at in self._names.prefixes:
+            return self._statement(self._names.prefixes[at], at)
+        if at in self._names.ends:
+            return self._names.ends[at]
+        header = self._names.definitions.headers[at]
+        self._context.forget()
+        self._is_apart = True
+        self._tokens.append(Token("define", self._text.starts[at], self._text.ends[header.body - 1], header))
+        return header.body
+
+    def _phrase(self, at: int, last: int) -> int:
+        """What begins at a word, known or unknown."""
+        match = self._match(at)
+        if match is not None and match.meaning.role in NODE_ROLES:
+            if end := self._node(match, at):
+                return end
+            match = None
+        match = self._with_names(match, at)
+        role = match.meaning.role if match is not None else ""
+        if match is not None and role in ("politeness", "never") and self._is_doubtful(match, role, at):
+            match, role = None, ""
+        end = self._sentence(match, role, at)
+        if not end and (role in NOT_ALONE or self._text.words[at] in self._verb_forms):
+            end = self._in_its_place(match, role, at)
+        if not end and (match is None or match.meaning.entry is not None):
+            end = self._left_out(match, role, at)
+        if not end and match is not None and role not in _NOT_READ:
+            return self._known(match, at)
+        return end or self._other(match, role, at, last)
+
+    def _match(self, at: int) -> Match | None:
+        """The phrase at a word, which was looked for before unless values or commands that share a thing may end it."""
+        trie, names = self._vocabulary.trie, self._named
+        if at not in self._found or at in self._partial.sharing:
+            return longest(trie, self._text, at, self._context, names)
+        match = self._found[at]
+        if names and match is not None and any(value.more for value in match.values):
+            match = longest(trie, self._text, at, self._context, names)  # a name may end the list
+        return match
+
+    def _with_names(self, match: Match | None, at: int) -> Match | None:
+        """The same, a name that is longer, or the rest of a condition with the words of the one before it in front."""
+        names, tokens = self._named, self._tokens
+        self._root, self._shares = self._vocabulary.trie, False
+        if names and (self._text.words[at] in names or SLOTS in names):
+            named = longest(names, self._text, at, self._context, self._root)
+            if named is not None and (match is None or named.last >= match.last):
+                match, self._root = named, names
+        if self._origin is not None and tokens[-1].kind in _JOINING:
+            if match is None or match.meaning.role == "not":
+                shared, problem = with_words_before(
+                    self._origin, tokens, self._text, match, at, self._vocabulary, names, self._context
+                )
+                self._problems += [problem] if problem is not None else []
+                self._shares = shared is not None
+                match = shared or match
+        return match
+
+    def _is_doubtful(self, match: Match, role: str, at: int) -> bool:
+        """Whether words that are polite or forbid something could say something else where they stand."""
+        is_asked = bool(self._tokens) and self._tokens[-1].kind in BEFORE_CONDITIONS
+        if role == "politeness":  # `wave if now bumped`, `so that nobody trips`
+            return is_asked or find(self._vocabulary.reasons, self._text.words, at) is not None
+        if is_asked and self._partial.forbidden(at, match.last) is None:
+            return True  # `if you can't lift it`
+        return self._text.words[at] in self._before_doing and self._unknown.lack_name(at, match.last)
+
+    def _sentence(self, match: Match | None, role: str, at: int) -> int:
+        """Replies, prohibitions, questions, wishes and remarks."""
+        tokens, text = self._tokens, self._text
+        if tokens and tokens[-1].kind == "if" and (end := self._outcomes.unable(at)):
+            return end
+        is_first = begins(tokens)
+        if is_first and (end := self._requests.reply(at, role)):
+            return end
+        if match is not None and role == "never" and (end := self._partial.add_forbidden(at, match.last)):
+            return end
+        if role != "command":
+            is_question = role in QUESTIONS
+            if (is_question or text.words[at] in self._asking) and begins_question(tokens, is_question):
+                if end := self._requests.question(match, role, at):
+                    return end
+            if is_first and (end := self._requests.begged(at)):
+                return end
+        if is_first and self._remarks.is_possible and (match is None or role in ("condition", "there_are")):
+            if end := self._remarks.end(at):
+                span = text.span(at, end)
+                self._problems.append(diagnostic("BT158", span, words=span.text))
+                return end + (text.words[end] == ",")
+        return 0
+
+    def _in_its_place(self, match: Match | None, role: str, at: int) -> int:
+        """Words that say something in one place only, and forms of verbs. Returns where to go on, 0 for any other."""
+        text, tokens = self._text, self._tokens
+        if match is not None and role in ORDER:
+            self._is_apart |= role == "any_time"
+            if role in ("tries", "at_most", "up_to_times"):
+                return self._tries.number(match, at)
+            return self._tries.again(match, at) if role == "try_again" else self._order.read(match, at)
+        if role == "ordinal" and match is not None and at not in text.articles and begins_item(tokens):
+            return match.last + (text.words[match.last] == ",")
+        if match is not None and role == "mind":
+            return self._partial.add(match.last)
+        if match is not None and role == "keep" and self._order.is_doing(match.last):
+            tokens.append(Token("repeat", text.starts[at], text.ends[match.last - 1], role="doing"))
+            return match.last
+        end = self._partial.add_doing(at, match) if at and may_be_doing(tokens) else 0
+        return end or self._partial.add_third(at, match)
+
+    def _left_out(self, match: Match | None, role: str, at: int) -> int:
+        """Where a command is done, and commands that share their thing."""
+        tokens = self._tokens
+        if (match is None or role == "condition") and tokens and tokens[-1].kind == "command":
+            if end := self._places.at_goal(at) or self._places.behind(at):
+                return end
+        if match is None or (role == "command" and not match.values and self._text.words[match.last] == self._joint):
+            return self._partial.add_sharing(at, match)
+        return 0
+
+    def _other(self, match: Match | None, role: str, at: int, last: int) -> int:
+        """Words that are no phrase, or one that doesn't stand alone: they say something here, or are unknown."""
+        tokens, text = self._tokens, self._text
+        end = (
+            without_meaning(tokens, text, match, role, at, self._vocabulary, self._context)
+            or self._order.start_of_leg(at)
+            or self._order.journey_of_constraint(at)
+            or self._order.wait_for(at)
+            or self._partial.add_left_out(at)
+            or self._partial.add_without_theme(at)
+            or self._requests.tell(at)
+            or (self._partial.add_contracted(at) if tokens and tokens[-1].kind in BEFORE_CONDITIONS else 0)
+        )
+        if end:
+            return end
+        told = self._unknown.told(at, last)
+        if told is not None:
+            end = told[0]
+            self._problems += [told[1]] if self._explain else []
+        else:
+            end = self._unknown.end(at, last)
+            end += role == INCLUDE and text.words[end][0] == '"'
+            if self._explain and not self._unknown.is_reported(text.starts[at], text.ends[end - 1]):
+                why = self._unknown.why(at, end, match)
+                if why.fix is not None or not tokens or tokens[-1].kind != "never":  # which is told as a whole
+                    self._problems.append(why)
+        tokens.append(Token("unknown", text.starts[at], text.ends[end - 1]))
+        return end
+
+    def _known(self, match: Match, at: int) -> int:
+        """A phrase, a connective or a name."""
+        tokens, role = self._tokens, match.meaning.role
+        if role == "politeness" or (role in ("following", "then") and self._order.says_nothing(match, at)):
+            return after_politeness(tokens, self._text.words, match)
+        if at in self._text.going_on:
+            go_on(tokens)
+        if end := self._read_otherwise(match, role, at):
+            return end
+        if role in _CONDITIONS:
+            self._condition(match, at)
+        else:
+            if end := self._operand(match, role, at):
+                return end
+        if self._text.words[match.last] in self._details and match.meaning.entry is not None:
+            end = self._calls.with_details(tokens[-1], match.last, self._named)
+            self._calls.note(match)
+            return end
+        if match.meaning.entry is None:
+            self._connect(match, role, at)
+        if match.values or self._calls.speaks_of_people:
+            self._calls.note(match, len(tokens) > 1 and tokens[-2].kind in ("or", "otherwise"))
+        return match.last
+
+    def _read_otherwise(self, match: Match, role: str, at: int) -> int:
+        """Phrases that are a part of a command where they stand."""
+        tokens = self._tokens
+        if role == "condition":
+            if len(tokens) > 1 and tokens[-2].kind == "command":
+                if end := self._partial.add_left_out(at, match.last):  # `go to the kitchen and then in the lab`
+                    return end
+            return self._places.before(at) or self._partial.add_third(at + 1, None) if begins(tokens) else 0
+        if role == "check":
+            return self._order.inspection(at, match.last)
+        if role == "command" and at in self._text.articles:  # `then the dock`: with an article it is a name
+            return self._partial.add_left_out(at, match.last)
+        return 0
+
+    def _condition(self, match: Match, at: int) -> None:
+        """The tokens of a condition, and what it says of the command before it."""
+        tokens, start = self._tokens, self._text.starts[at]
+        if match.meaning.role != "condition":
+            tokens.append(Token("not", start, start))
+            if not self._shares:
+                self._problems += check_negation(self._text, match, at, self._vocabulary, tokens)
+        token = self._calls.token(match, at)
+        tokens.append(token)
+        if match.meaning.role != "negated_twice":
+            shared = self._origin if self._shares else None
+            self._origin = (token, *shared[1:]) if shared is not None else (token, at, match, self._root)
+        if len(tokens) > 2:
+            self._outcomes.settle()
+
+    def _operand(self, match: Match, role: str, at: int) -> int:
+        """The token of a command or connective; where a value in it is asked for, the commands that say it."""
+        tokens, word = self._tokens, self._text.words[at]
+        said = self._calls.token(match, at)
+        if tokens and tokens[-1].kind == "not" and role == "command":
+            self._requests.otherwise()
+        end = self._requests.value_in(match, at, said) if match.values and match.meaning.entry else 0
+        if end:
+            return end
+        if (word in self._before_doing or word in self._verb_forms) and constraint_of(said) is not None:
+            said.role = "fronted"
+        tokens.append(said)
+        if len(tokens) > 1 and tokens[-2].kind == "while" and constraint_of(said) is not None:
+            tokens[-2].kind = "while_doing"  # `while avoiding the kitchen`
+        return 0
+
+    def _connect(self, match: Match, role: str, at: int) -> None:
+        """What the token of a connective is where it stands."""
+        tokens = self._tokens
+        if role in self._meanings_of:
+            words = " ".join(self._text.words[at : match.last])
+            tokens[-1].role = self._names.meanings.get(words, tokens[-1].role)
+        if role in RULES:
+            self._is_apart = True
+        if role in ("if", "unless"):
+            self._requests.finding_out(match.last)
+        if role == "if_works":
+            self._outcomes.if_works(match.last)
+        if role == "if_fails":
+            tokens[-1].kind, tokens[-1].value = "or", role
+        if role in _ROLES:
+            tokens[-1].kind = _ROLES[role][len(tokens) > 1 and tokens[-2].kind == "stop"]
+
+    def _statement(self, prefix: Prefix, at: int) -> int:
+        """A statement about a value of the mission. Returns where to go on."""
+        from btlang.frontends.mission.tokens.assignments import read_statement  # most missions have none
+
+        read = read_statement(prefix, self._text, at, self._vocabulary, self._context, self._calls)
+        if read is None:
+            span = span_of(self._text, at)
+            if self._explain and (
+                prefix.role in ("each", "remember") or prefix.key in self._names.known
+            ):  # else it has been reported
+                self._problems.append(self._unknown.why(at, at, Match(Meaning(prefix.role), at)))
+            self._tokens.append(Token("unknown", span.start, span.end))
+            return bisect_right(self._text.starts, span.end - 1)
+        self._tokens.append(read[0])
+        return read[1]
+
+    def _node(self, head: Match, at: int) -> int:
+        """A node that is said by its id. Returns where to go on, 0 where the words are no such node."""
+        text, names = self._text, self._named
+        named = longest(names, text, at, self._context) if names else None
+        is_described = head.last in text.articles and not self._names.definitions.subtrees
+        if is_described and not (names and longest(names, text, head.last, self._context)):
+            return 0  # `do the round`
+        if named is not None and named.last > head.last and text.words[head.last][0] != '"':
+            return 0  # `do twist is turn right`
+        try:
+            definitions = self._names.definitions
+            read = read_node(text, head.last, head.meaning, self._vocabulary, definitions.subtrees, definitions.trie)
+        except Unreadable as problem:
+            self._problems.append(unreadable(text, at, problem))
+            end = self._unknown.end(at, bisect_right(text.starts, span_of(text, at).end - 1))
+            self._tokens.append(Token("unknown", text.starts[at], text.ends[end - 1]))
+            return end
+        if read is None:
+            return 0
+        call, end = read
+        named = longest(names, text, head.last, self._context) if names and head.meaning.role == "do" else None
+        if named is not None and named.last >= end and not head.meaning.node:
+            return head.last  # `do patrol`
+        kind = "condition" if head.meaning.role == "test" else "node" if text.words[end] == ":" else "command"
+        self._tokens.append(Token(kind, text.starts[at], text.ends[end - 1], call))
+        return end
