@@ -59,7 +59,7 @@ def codes(text: str, parser: str, language: str = "en") -> list[str]:
 
 @pytest.mark.long
 def test_both_parsers_read_what_the_grammar_makes() -> None:
-    count = amount(600, 10_000)
+    count = amount(800, 10_000)
     sampler = Sampler(gbnf(), seed=20)
     found: Counter[str] = Counter()
     for _ in range(count):
