@@ -60,7 +60,9 @@ def diagnostic(
     """
     if fix is not None and (fix[0].text.lower() == fix[1].lower() or _grows_together(*fix)):
         fix = None
-    return Diagnostic(code, span, tuple((name, _shown(text)) for name, text in arguments.items()), notes, fix)
+    said = CODES[code].message
+    shown = ((name, _shown(text) if f"{{{name}}}" in said else one_line(text)) for name, text in arguments.items())
+    return Diagnostic(code, span, tuple(shown), notes, fix)
 
 
 def _grows_together(span: Span, words: str) -> bool:

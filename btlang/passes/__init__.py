@@ -17,6 +17,7 @@ from btlang.passes.lint.busy import busy_loops
 from btlang.passes.lint.cut_off import cut_off
 from btlang.passes.lint.half_turns import half_turns
 from btlang.passes.lint.line_end import line_ends
+from btlang.passes.lint.next_day import next_day
 from btlang.passes.lint.no_rounds import no_rounds
 from btlang.passes.lint.only_rules import only_rules
 from btlang.passes.lint.starts_again import starts_again
@@ -45,6 +46,7 @@ PASSES = (
     Pass("two readings", two_readings, needs_text=True),
     Pass("asked once", asked_once, needs_text=True),
     Pass("half turns", half_turns, needs_text=True),
+    Pass("next day", next_day, needs_text=True),
     Pass("starts again", starts_again, needs_text=True),
     Pass("only rules", only_rules, needs_text=True),
     Pass("unused", unused_names, needs_text=True),

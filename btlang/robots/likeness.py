@@ -19,6 +19,15 @@ def of_thing(
     return (*((name, text.lower()) for name, text in named if text), *([("owner", owner)] if owner else []))
 
 
+def head_of(name: str) -> str:
+    """The kind of what has a name of several words: `parcel` of "big parcel", `room` of "room 1"; else ""."""
+    words = name.split()
+    if len(words) > 1 and not words[-1].isalpha():
+        words.pop()  # a number
+        return words[-1] if words[-1].isalpha() else ""
+    return words[-1] if len(words) > 1 and words[-1].isalpha() else ""
+
+
 def of_person(wears: tuple[str, ...], gesture: str) -> Parts:
     """The same of a person: a red coat is a coat too."""
     clothes = (("clothing", text) for text in chain.from_iterable(map(_clothes, wears)))

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from btlang.record import Record
 from btlang.robots.geometry import Point, Pose, Segment, contains
-from btlang.robots.likeness import Parts, of_person, of_thing, wears
+from btlang.robots.likeness import Parts, head_of, of_person, of_thing, wears
 from btlang.robots.visits import Visits
 from btlang.text.time_of_day import USUAL_START
 from btlang.vocabulary.references import HOME, PARTS
@@ -45,7 +45,7 @@ class Place(Record):
     @property
     def parts(self) -> Parts:
         """What it can be described by."""
-        return of_thing(self.kind, self.color, self.sized, self.state, self.owner)
+        return of_thing(self.kind or head_of(self.name), self.color, self.sized, self.state, self.owner)
 
 
 class Thing(Record):
@@ -90,7 +90,7 @@ class WorldObject(Thing):
     @property
     def parts(self) -> Parts:
         """What it can be described by."""
-        return of_thing(self.kind, self.color, self.sized, self.state, self.owner, self.uses)
+        return of_thing(self.kind or head_of(self.name), self.color, self.sized, self.state, self.owner, self.uses)
 
 
 class Stop(Record):

@@ -42,7 +42,7 @@ ASKING = (
     "inspecting", "telling", "whole", "located", "wishing", "wished", "fetching", "begging", "home",
     "pleading", "saying_that", "plea", "reminding", "reminder", "addressed", "informing", "informed", "staying",
     "resuming", "interrupting",
-    "if_yes", "if_no", "told_of", "standing", "unable", "duties", "reasons",
+    "if_yes", "if_no", "told_of", "standing", "unable", "waiting", "standing_verbs", "events", "duties", "reasons",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from btlang.vocabulary.nouns import Description, Features
 from btlang.vocabulary.references import ALL, COUNT, DENIED, NAMES, RELATIONS, Choice, Parts
@@ -62,6 +62,13 @@ class Likenesses:
         if not meant.parts:
             return self._listed(meant.type)
         return tuple(name for name, parts in self.features.get(meant.type, ()) if set(meant.parts) <= set(parts))
+
+    def so_many(self, sets: Iterable[tuple[Description, int]], count: float) -> Iterator[tuple[Description, int]]:
+        """The sets, without a number, of which the world has just so many: `all three shelves`."""
+        for meant, end in sets:
+            every = meant.replace(parts=tuple(part for part in meant.parts if part[0] != COUNT))
+            if len(self.described(every)) == count:
+                yield every, end
 
     @staticmethod
     def is_listed(meant: Description) -> bool:

@@ -86,6 +86,10 @@ class Texts:
         behind = text.words[at + 1] if text.words[at] in self._clause_words else END_OF_TEXT
         return behind[0].isalpha() and behind not in self._joining and behind not in self._then
 
+    def asks(self, word: str) -> bool:
+        """Whether a word alone is a question: `ask Bob why`."""
+        return word in self._question_words
+
     def opens(self, word: str) -> bool:
         """Whether a clause stands behind a word."""
         return word in self._openers

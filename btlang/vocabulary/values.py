@@ -69,7 +69,7 @@ class Values(Measures):
         self._choice_starts: frozenset[str] | None
         self._group_starts: frozenset[str] | None
         self._forget()
-        self._both = frozenset(language["roles"].get("both", ()))
+        self._both, self._every = (frozenset(language["roles"].get(role, ())) for role in ("both", "all_names"))
         self._joining = frozenset((*language["roles"].get("and", ()), *language["roles"].get("or", ())))
 
     def add_name(self, kind: str, words: str, name: str) -> None:
@@ -276,6 +276,9 @@ class Values(Measures):
 
         `every cup on the table`, `two red cups`, `the cups except the blue one`; where it `is_bare` also `red cup`.
         """
+        if text.words[at] in self._every and (number := self.number(text, at + 1)) is not None:
+            yield from self.likenesses.so_many(self.groups(text, at + 1, kind), number[0])  # `all three shelves`
+            return
         found = one = self.choice(text, at, kind)
         count = ""
         if found is None or found[0].how != ALL:
@@ -376,9 +379,7 @@ class Values(Measures):
             if word == "(" and kind == PLACE:
                 return self._point_text(text, at)
             found = find(self._names[kind], text.words, at)
-            if found is None and word[0] == '"':
-                found = self._quoted_name(kind, text, at)
-            return found
+            return self._quoted_name(kind, text, at) if found is None and word[0] == '"' else found
         if value_type.kind == "time":
             return self.time_of_day(text, at)
         return self.texts.read(text, at)

@@ -33,6 +33,7 @@ UNKNOWABLE = {
     "BT068": "a condition behind `when` is checked once",
     "BT160": "16:45 is in no morning",
     "BT163": "half turns are counted",
+    "BT169": "a time comes on the next day",
     "BT171": "what follows `as soon as` waits, too",
     "BT176": "`or stay here` is permitted only",
     "BT172": "of several statements `start over` repeats all",

@@ -136,8 +136,8 @@ def test_what_two_readings_shows() -> None:
     assert warning.message == "This can be read in two ways."
     assert warning.hint.splitlines() == [
         "I read: go to lobby then (wave and look around)",
+        "To keep that, write: go to the lobby, then wave and look around",
         "It could also mean: (go to lobby then wave) and look around at the same time",
-        "Decide with a comma or brackets, for example: go to the lobby, then wave and look around",
     ]
 
 

@@ -71,7 +71,7 @@ def test_its_own_mission(start_node, client: Client, run_mission: Any, tmp_path:
     node = start_node("--speed", "10", "--mission", str(file))
     node.wait_for("the mission succeeded after")
     assert state(client) == "active"
-    assert mission(client, run_mission, "say again").result().result.success
+    assert mission(client, run_mission, 'say "again"').result().result.success
 
 
 def test_a_mission_that_cannot_be_read(tmp_path: Path, domain: int, run_mission: Any):

@@ -19,6 +19,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import OBJECT, PERSON
 
+_ANSWERS = "AnswerIs"
 _SENTENCE_END = re.compile(r"[.;!?\n]")
 _ON_THE_WAY = ("SomeoneInTheWay", "SomethingInTheWay")
 
@@ -57,13 +58,22 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     if not isinstance(asked, ast.Phrase):
         return
     parts = [each for item in before for each in ast.parents_first(item)]
+    timed = before[-1] if before and node.body.span.start > node.condition.span.start else None
+    while isinstance(timed, ast.UntilTime | ast.For) and isinstance(timed.body, ast.Every):
+        timed = timed.body
     words = node.span.source.text[node.span.start : node.condition.span.end]
-    if any(isinstance(each, ast.Every) for each in parts):  # `every 10 s until noon, A. If C, B`
+    if isinstance(timed, ast.Every):  # `every 10 s until noon, A. If C, B`
         whole = Span(node.span.source, before[0].span.start, node.span.end)
         rounds, rest = Span(whole.source, whole.start, before[-1].span.end).text, node.span.text
         each = f"{rounds}, {vocabulary.word('then')} {rest[:1].lower()}{rest[1:]}"
         advice = f"All rounds are over by then. To do it in each round, write: {each}"
         yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((whole, each),))
+        return
+    if isinstance(timed, ast.UntilTime | ast.For | ast.WaitTime):
+        word, last = words.split(maxsplit=1)[0], before[-1].span.text
+        each = f"{vocabulary.word('whenever')} {node.span.text[len(word) :].lstrip()}"
+        advice = f"'{last}' is over by then. To do it meanwhile, write: {each}"
+        yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((node.span, each),))
         return
     journeys = [each for each in parts if isinstance(each, ast.Phrase) and MOVES in each.entry.resources]
     if not journeys:
@@ -77,6 +87,13 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     elif isinstance(node.condition, ast.Not) and any(_named(journey) & _named(asked) for journey in journeys):
         advice = f"'{last}' comes first, and fails if it can't be done. What decides about it stands before it."
         yield diagnostic("BT068", node.span, words=words, advice=advice)
+
+
+def _is_event(condition: ast.Ast, vocabulary: Lexicon) -> bool:
+    """Whether a condition says that something happens: `somebody comes`. An answer has been given by then."""
+    events = vocabulary.asking["events"]
+    is_phrase = isinstance(condition, ast.Phrase) and condition.entry.id != _ANSWERS
+    return is_phrase and not set(events).isdisjoint(condition.span.text.lower().split())
 
 
 def _named(phrase: ast.Phrase) -> set[str]:
@@ -111,7 +128,7 @@ def _warning(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Itera
             yield diagnostic("BT068", node.span, words=node.span.text, advice=advice).replace(readings=(reading,))
         return
     word = next(iter(source.text[node.span.start : condition.start].split(maxsplit=1)), "")  # none before a question
-    if word.lower() in vocabulary.asked_once:
+    if word.lower() in vocabulary.asked_once or _is_event(node.condition, vocabulary):
         rest = source.text[node.span.start + len(word) : node.span.end].lstrip()
         once, each = (f"{vocabulary.word(role)} {rest}" for role in ("as_soon_as", "whenever"))
         advice, other = f"To wait until it is true, write: {once}", f"To do it each time, write: {each}"

@@ -112,7 +112,9 @@ class AddressedTexts(SentenceReader):
         """`ask Bob if he is hungry`: the question that the clause stands for."""
         values, text, at = self._vocabulary.values, self._text, value.first
         if not self._is_clause(value):
-            if at not in text.articles and find(values.names_tree("person"), text.words, at) is not None:
+            if text.words[at][0] != '"' and not values.texts.asks(text.words[at]) and value.last == at + 1:
+                self._doubt(entry, at, _NO_QUESTION)
+            elif at not in text.articles and find(values.names_tree("person"), text.words, at) is not None:
                 self._doubt(entry, at, _PERSON)
             return
         question = values.texts.direct(text, at, value.last)
@@ -125,6 +127,22 @@ class AddressedTexts(SentenceReader):
             self._set_text(command, value.name, question)
         elif not self._doubt(entry, values.texts.doubt(text, at + 1, value.last)):
             self._doubt(entry, at, _NO_QUESTION)
+
+    def _opens_clause(self, at: int) -> bool:
+        """`tell me that ...`, `remind me to ...`, but not `report to Alice`."""
+        asking, words = self._vocabulary.asking, self._text.words
+        is_told = words[at - 1] in self._vocabulary.values.role_words.speaker
+        return words[at] in asking["saying_that"] or (is_told and words[at] in asking["pleading"])
+
+    def _clause(self, entry: Entry, at: int, opener: int) -> tuple[str, int]:
+        """`remind me to drink some water`, `tell me that tea is ready`: what is said, and where it ends."""
+        text, asking, texts = self._text, self._vocabulary.asking, self._vocabulary.values.texts
+        end = texts.end_of_clause(text, opener + 1) or opener + 2
+        self._doubt(entry, texts.doubt(text, opener + 1, end))
+        said = text.source.text[text.begin(opener + 1) : text.ends[end - 1]]
+        if text.words[opener] in asking["pleading"]:
+            said = f"{asking['reminder' if text.words[at] in asking['reminding'] else 'plea'][0]} {said}"
+        return said[:1].upper() + said[1:], end
 
     def _repeat(self, entry: Entry, value: SlotValue, command: Token) -> None:
         """`ask Bob again`: what was asked, or told, before."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.token import Called, Listed, Token, begins_condition, constraint_of
+from btlang.frontends.mission.token import WAITING, Called, Listed, Token, begins_condition, constraint_of
 from btlang.frontends.mission.tokens.silent_words import LINES
 from btlang.text.source import Span
 from btlang.vocabulary.entry import Entry
@@ -20,9 +20,8 @@ _OPEN = "OpenZone"
 _ENDS = frozenset(("newline", "semi", "stop", "dedent", "close"))
 _JOINTS = frozenset(("comma", "and", "then"))
 _IN_CONDITIONS = frozenset(("condition", "not", "open", "either", "neither", "both"))
-_WAITING = {"until": "wait_until", "for": "wait", "until_time": "wait_time"}
 """What who stays somewhere does there meanwhile."""
-_ENDING = frozenset((*_WAITING, "up_to"))
+_ENDING = frozenset((*WAITING, "up_to"))
 
 
 def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int], Span]) -> list[Diagnostic]:
@@ -37,7 +36,7 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
         until = tokens[at + 1]
         begins = at == 0 or tokens[at - 1].kind in LINES
         constraint = constraint_of(tokens[at]) if begins and until.kind in _ENDING else None
-        if constraint is not None and constraint.kind == "keep in" and until.kind in _WAITING:
+        if constraint is not None and constraint.kind == "keep in" and until.kind in WAITING:
             _wait(tokens, at)
         elif constraint is not None and until.kind != "until":
             forbidden, whole = span(tokens[at].start, tokens[at].end).text, span(tokens[at].start, until.end)
@@ -55,7 +54,7 @@ def _wait(tokens: list[Token], at: int) -> None:
     last, _ = _condition_end(tokens, at + 2) if until.kind == "until" else (at + 2, at + 2)
     end = tokens[last - 1].end
     tokens[last:last] = [Token("close", end, end)]
-    waiting = Token(_WAITING[until.kind], until.start, until.end, until.value)
+    waiting = Token(WAITING[until.kind], until.start, until.end, until.value)
     tokens[at : at + 2] = [Token("open", start, start), tokens[at], Token("and", until.start, until.start), waiting]
 
 

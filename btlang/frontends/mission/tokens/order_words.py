@@ -5,8 +5,10 @@ An arrival goes on as `then` would. A journey behind `on the way to` or `from` b
 
 from __future__ import annotations
 
+from bisect import bisect_left
+
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import RULES, Called, Listed, OnDays, Token, constraint_of
+from btlang.frontends.mission.token import RULES, WAITING, Called, Listed, OnDays, Token, constraint_of
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.vocabulary.entry import Meaning
@@ -108,7 +110,7 @@ class OrderWords(SentenceReader):
         journey = self._with_front(at, match.last, "journey")
         if journey is None:
             return 0
-        waiting = self._partial.with_front(at, journey.last, self._text.words[at : at + 1])
+        waiting = self._with_front(at, journey.last, "waiting")
         self._partial.append(journey, at)
         if waiting is None:
             return journey.last
@@ -119,6 +121,15 @@ class OrderWords(SentenceReader):
             return waiting.last
         self._partial.append(waiting, journey.last)
         return waiting.last
+
+    def waits(self, role: str) -> None:
+        """`stand at the door until noon`: goes there, then waits until then."""
+        tokens, text = self._tokens, self._text
+        if len(tokens) > 1 and tokens[-2].kind == "command":
+            verb = text.words[bisect_left(text.starts, tokens[-2].start)]
+            if verb in self._vocabulary.asking["standing_verbs"]:
+                tokens[-1].kind = WAITING[role]
+                tokens.insert(-1, Token("then", tokens[-1].start, tokens[-1].start))
 
     def wait_for(self, at: int) -> int:
         """`wait for Bob`: until he comes."""
@@ -197,7 +208,7 @@ class OrderWords(SentenceReader):
         if found is None:
             return 0
         behind = longest(self._vocabulary.trie, self._text, found.last, self._context)
-        joint = behind is not None and behind.meaning.role in ("then", "and")
+        joint = behind is not None and behind.meaning.role in ("then", "and", "following")
         if not (joint or self._is_end(found.last) or self._text.words[found.last] == ","):
             return 0
         self._partial.append(found, at)

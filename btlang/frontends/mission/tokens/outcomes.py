@@ -10,6 +10,7 @@ from collections.abc import Iterable
 
 from btlang.frontends.mission.token import RULES, Called, Listed, Token, go_on
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import find
@@ -33,7 +34,10 @@ class Outcomes(SentenceReader):
         if form < 1 or tokens[form].kind not in _ASKING or not self._asks(tokens[form], denied):
             return
         command = self._before(form)
-        if command is not None and _achieves(tokens[command], tokens[-1]):
+        if command is None:
+            return
+        first = self._first(command) if denied else command
+        if any(_achieves(token, tokens[-1]) for token in tokens[first : command + 1]):
             self._join(command, form, tokens[-1].end, denied)
 
     def unable(self, at: int) -> int:
@@ -46,8 +50,7 @@ class Outcomes(SentenceReader):
         if match is None or match.meaning.entry is None or match.meaning.entry.sort != "action":
             return 0
         asked = {name for value in match.values for name in _names(value.text)}
-        first = next((i for i in reversed(range(command)) if self._tokens[i].kind in _LINE_STARTS), 0)
-        for token in self._tokens[first : command + 1]:
+        for token in self._tokens[self._first(command) : command + 1]:
             value = token.value
             if isinstance(value, Called | Listed) and (asked or value.entry.id == match.meaning.entry.id):
                 if asked <= _named(value):
@@ -67,6 +70,31 @@ class Outcomes(SentenceReader):
         if found.entry.achieves:
             start = tokens[command].start
             tokens[first:] = [Token("stop", start, start), Token("if_works", start, start), tokens[command]]
+
+    def found(self, match: Match, at: int) -> None:
+        """`look for the key. When you find it, A, if not B`: with the `if not` it is `if that works`."""
+        tokens, words = self._tokens, self._text.words
+        once = (*self._vocabulary.asked_once, *self._vocabulary.roles["once"], *self._words_of_once)
+        if words[at] not in once and words[at + 1] not in once:
+            return
+        end = at
+        while not self._is_end(end):
+            end += 1
+        commas = (i + 1 for i in range(match.last + 1, end) if words[i] == ",")
+        replies = (find(self._vocabulary.replies, words, i) for i in commas)
+        if any(reply is not None and not reply[0] for reply in replies):
+            form = tokens.pop()
+            while tokens and tokens[-1].kind in ("comma", "stop"):
+                tokens.pop()
+            tokens += [Token("stop", form.start, form.start), Token("if_works", form.start, form.end)]
+
+    @property
+    def _words_of_once(self) -> set[str]:
+        return {phrase.split()[0] for phrase in self._vocabulary.roles["as_soon_as"]}
+
+    def _first(self, command: int) -> int:
+        """Where the statement of a command begins."""
+        return next((i + 1 for i in reversed(range(command)) if self._tokens[i].kind in _LINE_STARTS), 0)
 
     def _before(self, form: int) -> int | None:
         """The command right before a form, with measures of it between them; None where it may not have run."""

@@ -75,15 +75,16 @@ class Places(SentenceReader):
     def before(self, at: int) -> int:
         """`in the kitchen, wave`: goes there first."""
         journey = self._to(at)
-        if journey is None or self._text.words[journey.last] != ",":
+        if journey is None:
             return 0
-        following = longest(self._vocabulary.trie, self._text, journey.last + 1, self._context)
+        behind = journey.last + (self._text.words[journey.last] == ",")
+        following = longest(self._vocabulary.trie, self._text, behind, self._context)
         if following is None or following.meaning.role != "command":
             return 0
         self._partial.append(journey, at)
         end = self._text.ends[journey.last - 1]
         self._tokens.append(Token("and", end, end))
-        return journey.last + 1
+        return behind
 
     def _to(self, at: int) -> Match | None:
         """The journey to where words say that something is done."""

@@ -13,13 +13,13 @@ from btlang.vocabulary.entry import COUNT, SAY, Entry
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import free_key
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import TEXT
+from btlang.vocabulary.value_type import PERSON, TEXT
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import find
 
 _MOST_WORDS = 8  # of the subject of a question
 _EXAMPLE = "hello"
-_ASK, _ANSWERED = "Ask", "AnswerIs"
+_ASK, _ANSWERED, _PERSON_SAYS, _SOMEBODY_SAYS = "Ask", "AnswerIs", "PersonSays", "SomebodySays"
 _BEHIND = ("politeness", "then", "and")
 _STOPS = frozenset(("semi", "newline"))
 _BETWEEN = frozenset(("semi", "newline", "comma", "then", "and", "stop"))
@@ -259,6 +259,21 @@ class Requests(AddressedTexts):
         self._if(Token("condition", start, end, yes), found[0])
         return found[1] + (self._text.words[found[1]] == ",")
 
+    def said(self, token: Token, at: int) -> None:
+        """`wait until she says stop` where nobody is asked: what is heard, not an answer."""
+        value, entry = token.value, self._vocabulary.entry(_ASK)
+        if not isinstance(value, Called) or value.entry.id != _ANSWERED or entry is None:
+            return
+        pronoun = find(self._vocabulary.values.pronoun_words, self._text.words, at)
+        asking = {phrase.split()[0] for phrase in entry.phrases}
+        if pronoun is None or not asking.isdisjoint(self._text.distinct):
+            return
+        words, person = value.arguments[0][1], self._context.latest.get(PERSON, "")
+        heard = self._vocabulary.entry(_PERSON_SAYS if person else _SOMEBODY_SAYS)
+        if heard is not None:
+            by_type = {PERSON: person, TEXT: words}
+            token.value = Called(heard, tuple((slot.name, by_type[slot.type]) for slot in heard.slots))
+
     def _is_asked(self, right_before: bool) -> bool:
         """Whether the statement before asks, or depends on the answer: `ask "Tea?". If so, A. If he wants none, B`."""
         tokens, last = self._tokens, len(self._tokens)
@@ -285,7 +300,7 @@ class Requests(AddressedTexts):
         if text.words[told[1]][0] == '"':
             said, end = text.words[told[1]][1:], told[1] + 1
         elif self._opens_clause(told[1]):
-            said, end = self._clause(at, told[1])
+            said, end = self._clause(self._saying, at, told[1])
         else:
             said, end = self._asked_of() if self._ends(told[1]) else "", told[1]
         if not said and not self._ends(end):
@@ -296,23 +311,6 @@ class Requests(AddressedTexts):
             self._calls.problems.append(diagnostic("BT012", words, words=words.text, wanted="a text", example=example))
         self._tokens.append(Token("command", text.starts[at], text.ends[end - 1], self._saying_of(said)))
         return end
-
-    def _opens_clause(self, at: int) -> bool:
-        """`tell me that ...`, `remind me to ...`, but not `report to Alice`."""
-        asking, words = self._vocabulary.asking, self._text.words
-        is_told = words[at - 1] in self._vocabulary.values.role_words.speaker
-        return words[at] in asking["saying_that"] or (is_told and words[at] in asking["pleading"])
-
-    def _clause(self, at: int, opener: int) -> tuple[str, int]:
-        """`remind me to drink some water`, `tell me that tea is ready`: what is said, and where it ends."""
-        text, asking, texts = self._text, self._vocabulary.asking, self._vocabulary.values.texts
-        end = texts.end_of_clause(text, opener + 1) or opener + 2
-        assert self._saying is not None
-        self._doubt(self._saying, texts.doubt(text, opener + 1, end))
-        said = text.source.text[text.begin(opener + 1) : text.ends[end - 1]]
-        if text.words[opener] in asking["pleading"]:
-            said = f"{asking['reminder' if text.words[at] in asking['reminding'] else 'plea'][0]} {said}"
-        return said[:1].upper() + said[1:], end
 
     def finding_out(self, end: int) -> None:
         """`check whether A. If B, C`: what is checked decides nothing by itself, behind the `if` that ends at a word.

@@ -16,6 +16,7 @@ _LINE_STARTS = frozenset(("newline", "semi", "dedent"))
 _JOINTS = frozenset(("and", "comma", "then", "stop"))
 _BLOCKED = frozenset(("WallInFront", "SomethingInTheWay", "SomeoneInTheWay"))
 _STATEMENT_ENDS = (END_OF_STATEMENT, END_OF_TEXT)
+_OPERANDS = frozenset(("command", "name", "close", "wait", "nothing", "fail", "node"))
 _TWICE = "2"
 
 
@@ -29,11 +30,12 @@ class Tries(SentenceReader):
         """
         tokens = self._tokens
         last = len(tokens) - (2 if tokens and tokens[-1].kind == "comma" else 1)
-        if last < 0 or tokens[last].kind not in ("command", "name", "close"):
-            return 0
         first = next((i + 1 for i in range(last, -1, -1) if tokens[i].kind in _LINE_STARTS), 0)
+        is_closed = any(token.kind in ("try", "retry", "repeat") for token in tokens[first:])
+        if last < 0 or (tokens[last].kind not in _OPERANDS and not is_closed):
+            return 0
         may_fail = True
-        if not any(token.kind in ("try", "retry", "repeat") for token in tokens[first:]):
+        if not is_closed:
             whole = last < len(tokens) - 1
             first = _first_of_form(tokens, first, last) if whole else _first_of_operand(tokens, last)
             may_fail = match.meaning.role == "tries" or any(map(_may_fail, tokens[first : last + 1]))
@@ -59,7 +61,7 @@ class Tries(SentenceReader):
         end = self._behind(end - 1) if pause is not None else end
         form = self._condition(end)
         last = self._behind(form)
-        if not form or not last or tokens[last - 1].kind not in ("command", "name", "close"):
+        if not form or not last or tokens[last - 1].kind not in _OPERANDS:
             return 0
         first = next((i + 1 for i in range(last - 1, -1, -1) if tokens[i].kind in _LINE_STARTS), 0)
         first = _first_of_form(tokens, first, last)

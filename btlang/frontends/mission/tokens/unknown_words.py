@@ -39,6 +39,7 @@ class UnknownWords:
     ) -> None:
         self._text, self._vocabulary, self._context, self._definitions = text, vocabulary, context, definitions
         self._partial, self._tokens, self._problems, self._verb_forms = partial, tokens, problems, verb_forms
+        self._before_doing = {phrase.split()[0] for phrase in vocabulary.roles["without_entering"]}
 
     def is_reported(self, start: int, end: int) -> bool:
         """Whether the latest problem is about these characters already."""
@@ -53,6 +54,15 @@ class UnknownWords:
         from btlang.frontends.mission.explanations.misfits import misfits_of  # most missions have nothing to explain
 
         return any(each.at > last for each in misfits_of(self._text, at, (self._vocabulary.trie,), self._context))
+
+    def is_doubtful(self, match: Match, role: str, at: int) -> bool:
+        """Whether words that are polite or forbid something could say something else where they stand."""
+        is_asked = bool(self._tokens) and self._tokens[-1].kind in BEFORE_CONDITIONS
+        if role == "politeness":  # `wave if now bumped`, `so that nobody trips`
+            return is_asked or find(self._vocabulary.reasons, self._text.words, at) is not None
+        if is_asked and self._partial.forbidden(at, match.last) is None:
+            return True  # `if you can't lift it`
+        return self._text.words[at] in self._before_doing and self.lack_name(at, match.last)
 
     def why(self, at: int, end: int, match: Match | None) -> Diagnostic:
         """What is wrong with words that are no phrase, or one that stands where it cannot."""
@@ -96,7 +106,7 @@ class UnknownWords:
         text, vocabulary = self._text, self._vocabulary
         end = next((i for i in range(at, last) if text.words[i] in MARKS), last)
         why = find(vocabulary.reasons, text.words, at)
-        if why is None and not (begins_item(self._tokens) and self._tells(at, end)):
+        if why is None and not self._tells(at, end):
             return None
         for kind in (OBJECT, PERSON):  # `I have mislaid my book. Please look for it`
             tree = self._vocabulary.values.names_tree(kind)
@@ -111,7 +121,8 @@ class UnknownWords:
         words, vocabulary = self._text.words, self._vocabulary
         persons = vocabulary.values.names_tree(PERSON)
         is_told = words[at] in vocabulary.asking["told_of"] or find(persons, words, at) is not None
-        if not is_told and at not in self._text.articles:
+        is_described = at in self._text.articles and begins(self._tokens)
+        if not (is_described or (is_told and begins_item(self._tokens))):
             return False
         value = self._context.any(self._text, at)
         if value is not None and value[2] == end:
@@ -139,7 +150,10 @@ class UnknownWords:
                 continue
             if match is None:
                 continue
-            if match.meaning.role in CONNECTIVES or (
-                not is_asked and (match.meaning.entry is None or match.last > at + 1)
-            ):
+            ends = match.meaning.role in CONNECTIVES
+            if is_asked and match.last > at + 1:  # `if you can't find it just let me know`
+                ends |= match.meaning.role == "command" and text.words[match.last] in MARKS
+            elif not is_asked:
+                ends = match.meaning.entry is None or match.last > at + 1
+            if ends:
                 return at

@@ -12,7 +12,7 @@ from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.names import Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
-from btlang.frontends.mission.token import BEFORE_CONDITIONS, RULES, Token, constraint_of, go_on
+from btlang.frontends.mission.token import BEFORE_CONDITIONS, RULES, WAITING, Token, constraint_of, go_on
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
 from btlang.frontends.mission.tokens.order_words import OrderWords
@@ -39,7 +39,7 @@ from btlang.vocabulary.lexicon import NODE_ROLES
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.word_tree import SLOTS, find
+from btlang.vocabulary.word_tree import SLOTS
 
 _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
 """What a word is inside a statement, and where it goes on with the one before."""
@@ -141,7 +141,7 @@ class WordReader:
             match = None
         match = self._with_names(match, at)
         role = match.meaning.role if match is not None else ""
-        if match is not None and role in ("politeness", "never") and self._is_doubtful(match, role, at):
+        if match is not None and role in ("politeness", "never") and self._unknown.is_doubtful(match, role, at):
             match, role = None, ""
         end = self._sentence(match, role, at)
         if not end and (role in NOT_ALONE or self._text.words[at] in self._verb_forms):
@@ -179,15 +179,6 @@ class WordReader:
                 self._shares = shared is not None
                 match = shared or match
         return match
-
-    def _is_doubtful(self, match: Match, role: str, at: int) -> bool:
-        """Whether words that are polite or forbid something could say something else where they stand."""
-        is_asked = bool(self._tokens) and self._tokens[-1].kind in BEFORE_CONDITIONS
-        if role == "politeness":  # `wave if now bumped`, `so that nobody trips`
-            return is_asked or find(self._vocabulary.reasons, self._text.words, at) is not None
-        if is_asked and self._partial.forbidden(at, match.last) is None:
-            return True  # `if you can't lift it`
-        return self._text.words[at] in self._before_doing and self._unknown.lack_name(at, match.last)
 
     def _sentence(self, match: Match | None, role: str, at: int) -> int:
         """Replies, prohibitions, questions, wishes and remarks."""
@@ -316,6 +307,7 @@ class WordReader:
             if not self._shares:
                 self._problems += check_negation(self._text, match, at, self._vocabulary, tokens)
         token = self._calls.token(match, at)
+        self._requests.said(token, at)
         tokens.append(token)
         if match.meaning.role != "negated_twice":
             shared = self._origin if self._shares else None
@@ -349,6 +341,10 @@ class WordReader:
             self._is_apart = True
         if role in ("if", "unless"):
             self._requests.finding_out(match.last)
+        if role in WAITING:
+            self._order.waits(role)
+        if role == "then" and len(tokens) > 1:
+            self._outcomes.found(match, at)
         if role == "if_works":
             self._outcomes.if_works(match.last)
         if role == "if_fails":
