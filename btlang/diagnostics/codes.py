@@ -193,6 +193,8 @@ _ALL = (
     Code("BT166", "'{words}' leaves open what isn't done then.",
          "Say both, for example: if Alice is near, say hello, {otherwise} go to the dock"),
     Code("BT167", "'{words}' leaves open how often: this doesn't fail, so it would be done each time.", "Write: {fixed}"),
+    Code("BT168", "It isn't clear whether '{words}' is about the first command or about what is done if that fails.",
+         "Say what is done if it works first, for example: {example}"),
     Code("BT169", "'{words}' waits until tomorrow: what comes before ends at that time.", "Leave it out.", "warning", "next day"),
     Code("BT170", "'{words}' starts again each time it has ended.",
          "To keep that, write: {again}\nTo do it once, write: {once}", "warning", "starts again"),

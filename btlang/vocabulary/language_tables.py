@@ -42,7 +42,8 @@ ASKING = (
     "inspecting", "telling", "whole", "located", "wishing", "wished", "fetching", "begging", "home",
     "pleading", "saying_that", "plea", "reminding", "reminder", "addressed", "informing", "informed", "staying",
     "resuming", "interrupting",
-    "if_yes", "if_no", "told_of", "standing", "unable", "waiting", "standing_verbs", "events", "duties", "reasons",
+    "if_yes", "if_no", "told_of", "standing", "unable", "waiting", "between_joint", "standing_verbs", "events",
+    "duties", "reasons",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 
@@ -51,7 +52,7 @@ QUESTIONS = ("ask_value", "ask_where", "ask_how_many")
 
 ORDER = (
     "arrival", "arrival_at", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "any_time", "tries",
-    "at_most", "up_to_times", "try_again", "weekly", "instead",
+    "at_most", "up_to_times", "try_again", "weekly", "instead", "between_times",
 )  # fmt: skip
 """The roles of words about the order of commands."""
 
@@ -82,7 +83,7 @@ ROLES = {
     **dict.fromkeys(("count", "tries", "at_most", "up_to_times", "more", "at_least_of"), "count"),
     **dict.fromkeys(("arrival_at",), "place"),
     "weekly": "days time_of_day",
-    **dict.fromkeys(("at", "every_day", "until_time", "wait_time"), "time_of_day"),
+    **dict.fromkeys(("at", "every_day", "until_time", "wait_time", "between_times"), "time_of_day"),
 }
 """The roles that words can have, each with the slot that its phrases hold."""
 

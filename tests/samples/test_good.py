@@ -58,6 +58,7 @@ ROWS = {
     'A comma before "and" or "or"': "commas", "A comma before a form at the end": "reach", "Merging": "merging",
     # sentences.md
     **dict.fromkeys(("Going on after a full stop", "If that works", "In any case"), "going_on"),
+    "What a command has settled": "order",
     "Do that again": "again",
     # things.md
     "Lists": "lists_and_quantities", "Every name": "every_name", "Which one": "which_one",

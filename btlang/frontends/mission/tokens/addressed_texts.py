@@ -112,7 +112,12 @@ class AddressedTexts(SentenceReader):
         """`ask Bob if he is hungry`: the question that the clause stands for."""
         values, text, at = self._vocabulary.values, self._text, value.first
         if not self._is_clause(value):
-            if text.words[at][0] != '"' and not values.texts.asks(text.words[at]) and value.last == at + 1:
+            if (
+                value.name == "question"
+                and text.words[at][0] != '"'
+                and not values.texts.asks(text.words[at])
+                and value.last == at + 1
+            ):
                 self._doubt(entry, at, _NO_QUESTION)
             elif at not in text.articles and find(values.names_tree("person"), text.words, at) is not None:
                 self._doubt(entry, at, _PERSON)

@@ -9,9 +9,9 @@ from btlang.frontends.mission.symbols.nodes import read_details
 from btlang.frontends.mission.token import Called, Listed, Token
 from btlang.frontends.mission.tokens.two_goals import two_goals
 from btlang.text.source import Span
-from btlang.text.words import Words
+from btlang.text.words import END_OF_TEXT, Words
 from btlang.vocabulary.adjectives import OWNER
-from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.entry import MANNER, Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
@@ -19,6 +19,7 @@ from btlang.vocabulary.references import ALL, NAMES, Choice, choice_of, free_key
 from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.value_type import PERSON, PLACE, WORLD, ZONE
 from btlang.vocabulary.values import key_of
+from btlang.vocabulary.word_tree import find
 
 NEGATED = frozenset(("negated", "negated_twice"))
 """The roles of conditions that say `not` themselves."""
@@ -42,6 +43,8 @@ class Calls:
 
     def __init__(self, text: Words, vocabulary: Lexicon, context: ReadingContext, problems: list[Diagnostic]) -> None:
         self._text, self._vocabulary, self._context, self.problems = text, vocabulary, context, problems
+        self.manner = ""
+        """How all journeys are made whose command says nothing else: `drive slowly`."""
         self._lists: dict[str, tuple[Token, SlotValue]] = {}
         self._alternatives: dict[str, tuple[Token, SlotValue]] = {}  # by the reference to the one that succeeds
         # in most missions nobody is spoken of by a pronoun
@@ -199,12 +202,20 @@ class Calls:
             if self._text.words[first] not in said:
                 span = self._text.span(first, last)
                 self.problems.append(diagnostic("BT177", span, words=span.text))
+                name = self._text.words[first].removesuffix(known.adjectives.ending)
+                owner = find(known.names_tree(PERSON), [name, END_OF_TEXT], 0)
+                if owner is not None:  # `find Bob's book and bring it to him`
+                    self._context.latest[PERSON] = owner[0]
 
     def _called(self, entry: Entry, match: Match, at: int) -> Called | Listed:
         """The entry with its arguments, or with several of them where one slot holds a list."""
         if entry.sort == "value" and not (self._context.known and entry.id in self._context.known):
             self._unknown_value(self._text.span(at, match.last), entry.id)
         arguments = []
+        if self.manner and any(slot.name == MANNER for slot in entry.slots):
+            if all(value.name != MANNER for value in match.values):
+                given = SlotValue(MANNER, MANNER, self.manner, match.last, match.last)
+                match = match.replace(values=(*match.values, given))
         sets = [value for value in match.values if value.group and not _leaves_none(value)]
         if sets and entry.sort in ("action", "name"):
             values = [value.replace(text=value.group, more=()) if value in sets else value for value in match.values]

@@ -10,16 +10,17 @@ from bisect import bisect_left
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import RULES, WAITING, Called, Listed, OnDays, Token, constraint_of
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
-from btlang.frontends.mission.tokens.silent_words import BEGINS
+from btlang.frontends.mission.tokens.silent_words import BEGINS, begins_item
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PERSON
 from btlang.vocabulary.word_tree import find
 
+_TIME = "time_of_day"
 _JOINTS = frozenset(("and", "comma", "then"))
 _LINE_STARTS = frozenset(("newline", "semi", "dedent"))
-_TODAY, _COMES = "TodayIs", "WaitForPerson"
+_TODAY, _COMES, _DAYTIME = "TodayIs", "WaitForPerson", "TimeOfDay"
 _FORMS = frozenset((*RULES, "if", "unless", "while", "until", "otherwise", "if_doing", "if_works"))
 
 
@@ -43,6 +44,8 @@ class OrderWords(SentenceReader):
             return self._weekly(match, at)
         if role == "instead":
             return self._instead(match, at)
+        if role == "between_times":
+            return self._between(match, at)
         return self._back_and_forth(at, match.last) if role == "back_and_forth" else self._arrival(match, at)
 
     def _arrival(self, match: Match, at: int) -> int:
@@ -73,6 +76,19 @@ class OrderWords(SentenceReader):
             if token.kind in _FORMS:
                 return True
         return False
+
+    def pace(self, at: int) -> int:
+        """`drive slowly` before all journeys: how they are made."""
+        words = self._text.words
+        manner = find(self._context.manners, words, at + 1) if words[at] in self._vocabulary.journey_verbs else None
+        if manner is None or not begins_item(self._tokens) or self._journey() is not None:
+            return 0
+        behind = longest(self._vocabulary.trie, self._text, manner[1], self._context)
+        joins = behind is not None and behind.meaning.role in ("and", "then")
+        if not (self._is_end(manner[1]) or words[manner[1]] == "," or joins):
+            return 0
+        self._calls.manner = manner[0]
+        return behind.last if behind is not None and joins else manner[1] + (words[manner[1]] == ",")
 
     def _start(self, at: int, end: int) -> int:
         """`from the lab, go to the hall`, `go from the lab to the hall`: to the first place, then on."""
@@ -223,6 +239,18 @@ class OrderWords(SentenceReader):
                 self._watch(token)
                 return end
         return 0
+
+    def _between(self, match: Match, at: int) -> int:
+        """`every 15 minutes between 10 pm and 6 am, A`: each time, if it is then."""
+        tokens, words, entry = self._tokens, self._text.words, self._vocabulary.entry(_DAYTIME)
+        joins = words[match.last] in self._vocabulary.asking["between_joint"]
+        last = self._context.read(_TIME, self._text, match.last + 1) if joins else None
+        if last is None or entry is None or not tokens or tokens[-1].kind != "every" or words[last[1]] != ",":
+            return 0
+        start, end = self._text.starts[at], self._text.ends[last[1] - 1]
+        asked = Called(entry, (("at_least", match.values[0].text), ("at_most", last[0])))
+        tokens += [Token("comma", start, start), Token("if", start, start), Token("condition", start, end, asked)]
+        return last[1]
 
     def _instead(self, match: Match, at: int) -> int:
         """`otherwise wave instead`; elsewhere it is open what isn't done."""

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import RULES, Called, Listed, Token, go_on
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.text.source import Span
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.trie import longest
@@ -31,7 +33,7 @@ class Outcomes(SentenceReader):
         tokens = self._tokens
         denied = tokens[-2].kind == "not"
         form = len(tokens) - (3 if denied else 2)
-        if form < 1 or tokens[form].kind not in _ASKING or not self._asks(tokens[form], denied):
+        if form < 1 or tokens[form].kind not in _ASKING:
             return
         command = self._before(form)
         if command is None:
@@ -115,24 +117,41 @@ class Outcomes(SentenceReader):
 
     def _join(self, command: int, form: int, end: int, denied: bool) -> None:
         """Makes a form that ends at a character the word between the command and what comes behind."""
-        tokens = self._tokens
-        start, behind = tokens[form].start, command + 1
+        tokens, behind = self._tokens, command + 1
         while tokens[behind].kind in _MEASURES:
             behind += 1
         is_new = any(token.kind in _ENDS for token in tokens[behind:form])
+        meaning = self._meaning(tokens[form], denied, is_new)
+        if meaning is None:
+            return
+        meaning.end = end
         del tokens[form:]
         if is_new:
             go_on(tokens)
+            role = meaning.kind if meaning.value is None else str(meaning.value)
+            self.doubt(role, Span(self._text.source, meaning.start, end))
         else:
             del tokens[behind:]
-        tokens.append(Token("or", start, end, "if_fails") if denied else Token("then", start, end))
+        tokens.append(meaning)
 
-    def _asks(self, form: Token, denied: bool) -> bool:
-        """Whether a form asks what the command has settled: `if` it isn't so, or `when` it is."""
-        word = self._text.source.text[form.start : form.end].lower()
+    def _meaning(self, form: Token, denied: bool, is_new: bool) -> Token | None:
+        """What a form says that asks what the command has settled: that it failed, or worked, or `then`."""
+        word, at = self._text.source.text[form.start : form.end].lower(), form.start
         if denied:
-            return form.kind == "if"
-        return form.kind != "if" or word in self._vocabulary.asked_once
+            return Token("or", at, at, "if_fails") if form.kind == "if" else None
+        if form.kind != "if" or word in self._vocabulary.asked_once:
+            return Token("then", at, at)
+        return Token("if_works", at, at) if is_new else None
+
+    def doubt(self, role: str, words: Span) -> None:
+        """BT168 for what goes on with a failure where something stands between: `A. If that fails, B. Otherwise C`."""
+        first = self._first(len(self._tokens))
+        fails = any(token.kind == "or" and token.value == "if_fails" for token in self._tokens[first:])
+        works = any(token.kind == "if_works" for token in self._tokens[first:])
+        if (fails and not works and role in ("otherwise", "if_works")) or (works and role == "if_fails"):
+            word = self._vocabulary.word
+            example = f"dock. {word('if_works')}, wave. {word('otherwise')} nod"
+            self._calls.problems.append(diagnostic("BT168", words, words=words.text, example=example))
 
 
 def _achieves(command: Token, asked: Token) -> bool:

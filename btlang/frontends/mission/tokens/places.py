@@ -47,25 +47,22 @@ class Places(SentenceReader):
         """`wave in the kitchen`: goes there first. Also to who speaks: `bring the cup to me in the kitchen`."""
         tokens = self._tokens
         journey = self._to(at)
-        value = tokens[-1].value
-        if journey is None or not isinstance(value, Called | Listed) or constraint_of(tokens[-1]) is not None:
+        value, is_wait = tokens[-1].value, tokens[-1].kind == "wait"
+        if journey is None or not (is_wait or (isinstance(value, Called | Listed) and not constraint_of(tokens[-1]))):
             return 0
         following = longest(self._vocabulary.trie, self._text, journey.last, self._context)
         ends = self._is_end(journey.last) or self._text.words[journey.last] == ","
+        if not ends and (following is None or following.meaning.role not in _JOINS):
+            return 0
         is_to_speaker = self._text.words[at - 1] in self._vocabulary.values.role_words.speaker
-        if (_TRAVELS in value.entry.needs and not is_to_speaker) or not (
-            ends or (following is not None and following.meaning.role in _JOINS)
-        ):
+        if isinstance(value, Called | Listed) and _TRAVELS in value.entry.needs and not is_to_speaker:
             return 0
         said = tokens.pop()
         end = said.end = self._text.ends[journey.last - 1]
         tokens.append(Token("open", said.start, said.start))
-        hold, theme = self._vocabulary.entry(_HOLD), value.entry.slots[0] if value.entry.slots else None
-        if is_to_speaker and hold is not None and theme is not None and theme.type == OBJECT:
-            if not isinstance(value, Called):
-                tokens[-1:] = [said]
-                return 0
-            held = Called(hold, ((hold.slots[0].name, dict(value.arguments)[theme.name]),))
+        hold = self._vocabulary.entry(_HOLD) if is_to_speaker and isinstance(value, Called) else None
+        if hold is not None and isinstance(value, Called) and value.entry.slots[0].type == OBJECT:
+            held = Called(hold, ((hold.slots[0].name, dict(value.arguments)[value.entry.slots[0].name]),))
             tokens += [Token("command", said.start, said.start, held), Token("and", said.start, said.start)]
         self._partial.append(journey, at)
         tokens[-1].start = said.start
@@ -81,6 +78,8 @@ class Places(SentenceReader):
         following = longest(self._vocabulary.trie, self._text, behind, self._context)
         if following is None or following.meaning.role != "command":
             return 0
+        if any(value.group or value.more for value in journey.values) and not self._is_end(following.last):
+            return 0  # `in every room, look around, and if you see Alice, greet her`
         self._partial.append(journey, at)
         end = self._text.ends[journey.last - 1]
         self._tokens.append(Token("and", end, end))
@@ -91,4 +90,6 @@ class Places(SentenceReader):
         if self._text.words[at] not in self._vocabulary.asking["located"]:
             return None
         journey = self._with_front(at, at + 1, "journey")
-        return journey if journey is not None and journey.values[0].type == PLACE else None
+        goal = journey.values[0] if journey is not None and journey.values else None
+        is_list = goal is not None and bool(goal.more) and not goal.group  # `wave in the kitchen and the lab`
+        return journey if goal is not None and goal.type == PLACE and not is_list else None

@@ -6,7 +6,7 @@ Each becomes the commands that answer it: what is asked is measured, and said.
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import Called, Remembered, Token
+from btlang.frontends.mission.token import Called, Listed, Remembered, Token
 from btlang.frontends.mission.tokens.addressed_texts import TELL, AddressedTexts
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.entry import COUNT, SAY, Entry
@@ -26,8 +26,11 @@ _BETWEEN = frozenset(("semi", "newline", "comma", "then", "and", "stop"))
 _OF_CONDITIONS = frozenset(("condition", "not", "and", "or", "either", "neither", "nor", "both"))
 
 
-def _text(argument: tuple[str, str]) -> str:
-    return argument[1]
+def _texts(token: Token) -> set[str]:
+    """The values of a phrase, or of all that a list stands for."""
+    value = token.value
+    given = [value.arguments] if isinstance(value, Called) else value.arguments if isinstance(value, Listed) else []
+    return {text for arguments in given for _, text in arguments}
 
 
 class Requests(AddressedTexts):
@@ -52,6 +55,11 @@ class Requests(AddressedTexts):
             return 0
         if self._text.words[value.first][0] == '"':
             return self._value_behind(value.last, value.name, at, command) if value.last == match.last else 0
+        values, word = self._vocabulary.values, self._text.words[value.first]
+        is_pronoun = word not in values.ones and find(values.pronoun_words, self._text.words, value.first) is not None
+        if is_pronoun and value.last == value.first + 1 and entry.id in (SAY, TELL):
+            self._doubt(entry, value.first)  # `say it again`
+            return 0
         again = longest(self._vocabulary.trie, self._text, value.first, self._context)
         if again is not None and again.meaning.role == "again":
             self._repeat(entry, value, command)
@@ -221,9 +229,15 @@ class Requests(AddressedTexts):
         if condition is None or self._saying is None:
             return 0
         end = text.ends[condition.last - 1]
-        if condition.last + 1 in text.going_on:
-            reply = find(self._vocabulary.replies, text.words, condition.last + 1)
-            return self._depend(condition, at, reply) if reply is not None else 0
+        if text.words[condition.last] == END_OF_STATEMENT:
+            joint = longest(self._vocabulary.trie, text, condition.last + 1, self._context)
+            is_then = joint is not None and joint.meaning.role == "then"  # `is the battery low? Then dock`
+            reply = (True, joint.last) if joint is not None and is_then else None
+            if condition.last + 1 in text.going_on:
+                reply = find(self._vocabulary.replies, text.words, condition.last + 1) or reply
+                return self._depend(condition, at, reply) if reply is not None else 0
+            if reply is not None:
+                return self._depend(condition, at, reply)
         asked = self._calls.token(condition, at)
         yes, no = (self._saying_of(answer) for answer in self._vocabulary.asking["answers"])
         self._if(asked, condition.meaning.role == "condition")
@@ -326,7 +340,7 @@ class Requests(AddressedTexts):
             written = self._text.source.text[tokens[at].start : tokens[at].end].lower()
             following = longest(self._vocabulary.trie, self._text, end, self._context)
             asked = {value.text for value in following.values} if following is not None else set()
-            same = any(asked.intersection(map(_text, getattr(token.value, "arguments", ()))) for token in tokens[at:])
+            same = any(asked.intersection(_texts(token)) for token in tokens[at:])
             if " ".join(written.split()) in self._vocabulary.asking["finding_out"] or same:
                 tokens.insert(at, Token("try", tokens[at].start, tokens[at].start))
 

@@ -73,7 +73,12 @@ class Tries(SentenceReader):
             stop, number = self._text.ends[amount.last - 1], str(self._calls.token(amount, behind).value)
         else:
             amount = None
+        delay = longest(self._vocabulary.trie, self._text, match.last, self._context)
+        if delay is not None and delay.meaning.role in ("delay", "more"):
+            return 0  # `try again after 5 minutes`
         del tokens[last:]
+        if tokens[first].kind in ("try", "retry"):
+            del tokens[first]
         tokens.insert(first, Token("retry", tokens[first].start, tokens[first].start))
         tokens.append(Token("count", start, stop, number))
         if pause is not None:

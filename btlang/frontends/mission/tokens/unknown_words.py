@@ -19,7 +19,7 @@ from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import OBJECT, PERSON
+from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
 
@@ -79,6 +79,8 @@ class UnknownWords:
                 return diagnostic("BT016", text.span(at, at + 1), word=text.words[at])
             if role == "ordinal" and len(self._tokens) > 2 and self._tokens[-1].kind == "command":
                 return self._which_first(at, end)
+            if text.words[at] in self._vocabulary.journey_verbs and find(self._context.manners, text.words, at + 1):
+                return self._where_to(at)
             doing = self._partial.doing(at) if text.words[at - 1] in self._vocabulary.halting else None
             if doing is not None:
                 return fragments.stopped(text.span(at - 1, doing.last), self._vocabulary)
@@ -100,6 +102,14 @@ class UnknownWords:
         span = Span(text.source, tokens[-1].start, text.ends[end - 1])
         one, other = f"{behind}, {then} {before}", f"{before}, {then} {behind}"
         return diagnostic("BT151", span, words=span.text, one=one, other=other)
+
+    def _where_to(self, at: int) -> Diagnostic:
+        """BT012 for `drive slowly` behind journeys: it lacks a place."""
+        text, places = self._text, self._vocabulary.values.said_names(PLACE)
+        verb, manner = text.span(at, at + 1), text.span(at + 1, at + 2).text
+        to = " ".join(self._vocabulary.asking["journey"][1:])
+        example = f"{verb.text} {to} {places[0] if places else PLACE} {manner}"
+        return diagnostic("BT012", verb, words=verb.text, wanted="a place", example=example)
 
     def told(self, at: int, last: int) -> tuple[int, Diagnostic] | None:
         """Where a sentence or clause ends that only tells something, or why, and what to say about it."""

@@ -225,7 +225,7 @@ class WordReader:
     def _left_out(self, match: Match | None, role: str, at: int) -> int:
         """Where a command is done, and commands that share their thing."""
         tokens = self._tokens
-        if (match is None or role == "condition") and tokens and tokens[-1].kind == "command":
+        if (match is None or role == "condition") and tokens and tokens[-1].kind in ("command", "wait"):
             if end := self._places.at_goal(at) or self._places.behind(at):
                 return end
         if match is None or (role == "command" and not match.values and self._text.words[match.last] == self._joint):
@@ -238,6 +238,7 @@ class WordReader:
         end = (
             without_meaning(tokens, text, match, role, at, self._vocabulary, self._context)
             or self._order.start_of_leg(at)
+            or self._order.pace(at)
             or self._order.journey_of_constraint(at)
             or self._order.wait_for(at)
             or self._partial.add_left_out(at)
@@ -268,6 +269,7 @@ class WordReader:
             return after_politeness(tokens, self._text.words, match)
         if at in self._text.going_on:
             go_on(tokens)
+            self._outcomes.doubt(role, self._text.span(at, match.last))
         if end := self._read_otherwise(match, role, at):
             return end
         if role in _CONDITIONS:
