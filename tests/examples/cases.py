@@ -298,8 +298,8 @@ CASES |= {
     ),
     "greeter": Case(
         world="hotel",
-        done=("GoTo reception", "WaitForPerson Vera", "GreetPerson Vera", "Ask Vera May I show you your room?", "Guide Vera room 1",
-              "Say Here we are."),
+        done=("GoTo reception", "WaitForPerson Vera", "GreetPerson Vera", "Ask Vera May I show you your room?",
+              "Guide Vera room 1", "Say Here we are."),
         said=("Hello, Vera!", "May I show you your room?", "Please follow me, Vera.", "Here we are."),
         met=("come Vera", "see Vera", "hear"),
         at="room 1",
