@@ -6,7 +6,7 @@ has a pronoun for a person, which whoever hears it would take for somebody else.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.pattern import ways
@@ -38,7 +38,8 @@ class Texts:
         self._clause_words = frozenset(language["clause_words"])
         self._question_words = frozenset(language["question_words"])
         self._openers = frozenset((*language["clause_openers"], *self._question_words))
-        self._inverting, self._relatives = frozenset(language["inverting"]), words_of_clauses(language["relatives"])
+        self._inverting = frozenset(language["inverting"])
+        self._relatives = frozenset(phrase.split()[0] for phrase in language["relatives"])
         self._owners = frozenset(language["possessives"].get("others", ()))
         self._addressed = "".join(language["asking"].get("addressed", ())[:1])
         self._sayings = tree_of((phrase, True) for phrase in language["sayings"])
@@ -115,18 +116,16 @@ class Texts:
 
     def _question(self, front: Sequence[str], behind: Sequence[str]) -> str | None:
         """A question of words, None where one of them is somebody else for whoever hears it."""
-        words = (*front, *behind)
         if any(word != self._addressed and word.lower() in self._doubtful for word in behind):
             return None
-        asked = " ".join(words)
+        asked = " ".join((*front, *behind))
         return f"{asked[0].upper()}{asked[1:]}?"
 
     def _said(self, text: Words, first: int, last: int) -> list[str]:
         """Words as they are written, but what is theirs is yours for whom is asked."""
-        written = (text.source.text[text.begin(at) : text.ends[at]] for at in range(first, last))
         return [
-            self._addressed if text.words[at] in self._owners else word
-            for at, word in zip(range(first, last), written, strict=True)
+            self._addressed if text.words[at] in self._owners else text.source.text[text.begin(at) : text.ends[at]]
+            for at in range(first, last)
         ]
 
     def end_of_clause(self, text: Words, at: int) -> int:
@@ -137,8 +136,3 @@ class Texts:
                 break
             end += 1
         return end if end > at + 1 else 0
-
-
-def words_of_clauses(phrases: Iterable[str]) -> frozenset[str]:
-    """The words with which relative clauses begin."""
-    return frozenset(phrase.split()[0] for phrase in phrases)

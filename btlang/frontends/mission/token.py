@@ -39,6 +39,12 @@ WAITING = {"until": "wait_until", "for": "wait", "until_time": "wait_time"}
 
 RULES = ("whenever", "first_time")
 """Raw kinds that begin standing rules."""
+LINES = frozenset(("newline", "semi", "indent", "dedent", "define"))
+"""Behind these kinds of tokens a statement begins, out of brackets."""
+JOINTS = frozenset(("and", "comma", "then"))
+"""Raw kinds between the commands of a statement."""
+FORMS = frozenset((*RULES, "if", "unless", "while", "until", "otherwise", "if_doing", "if_works"))
+"""Raw kinds with which a statement may leave out its commands, or run them beside others."""
 
 BEFORE_CONDITIONS = frozenset(("if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "not"))
 """Raw kinds before a condition; behind them a polite word could be a misspelt one: `wave if now bumped`."""
@@ -173,6 +179,11 @@ def go_on(tokens: list[Token]) -> None:
     if 0 < kept < len(tokens) and tokens[kept - 1].kind not in ("indent", "open", "define"):
         end = tokens[kept - 1].end
         tokens[kept:] = [Token("stop", end, end)]
+
+
+def statement_start(tokens: Sequence[Token], end: int) -> int:
+    """Where the statement begins in which the tokens before one stand."""
+    return next((at + 1 for at in reversed(range(end)) if tokens[at].kind in LINES), 0)
 
 
 def constraint_of(token: Token) -> Constraint | None:

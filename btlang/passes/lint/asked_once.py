@@ -57,7 +57,6 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
     if not isinstance(asked, ast.Phrase):
         return
-    parts = [each for item in before for each in ast.parents_first(item)]
     timed = before[-1] if before and node.body.span.start > node.condition.span.start else None
     while isinstance(timed, ast.UntilTime | ast.For) and isinstance(timed.body, ast.Every):
         timed = timed.body
@@ -69,20 +68,15 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         advice = f"All rounds are over by then. To do it in each round, write: {each}"
         yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((whole, each),))
         return
-    if isinstance(timed, ast.UntilTime | ast.For | ast.WaitTime):
-        word, last = words.split(maxsplit=1)[0], before[-1].span.text
-        each = f"{vocabulary.word('whenever')} {node.span.text[len(word) :].lstrip()}"
-        advice = f"'{last}' is over by then. To do it meanwhile, write: {each}"
-        yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((node.span, each),))
-        return
-    journeys = [each for each in parts if isinstance(each, ast.Phrase) and MOVES in each.entry.resources]
-    if not journeys:
+    is_timed = isinstance(timed, ast.UntilTime | ast.For | ast.WaitTime)
+    phrases = (each for item in before for each in ast.parents_first(item) if isinstance(each, ast.Phrase))
+    journeys = [] if is_timed else [each for each in phrases if MOVES in each.entry.resources]
+    if not (is_timed or journeys):
         return
     last = before[-1].span.text
-    if asked.entry.id in _ON_THE_WAY:
-        word = words.split(maxsplit=1)[0]
-        each = f"{vocabulary.word('whenever')} {node.span.text[len(word) :].lstrip()}"
-        advice = f"'{last}' is over by then. To do it on the way, write: {each}"
+    if is_timed or asked.entry.id in _ON_THE_WAY:
+        each = f"{vocabulary.word('whenever')} {node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()}"
+        advice = f"'{last}' is over by then. To do it {'meanwhile' if is_timed else 'on the way'}, write: {each}"
         yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((node.span, each),))
     elif isinstance(node.condition, ast.Not) and any(_named(journey) & _named(asked) for journey in journeys):
         advice = f"'{last}' comes first, and fails if it can't be done. What decides about it stands before it."

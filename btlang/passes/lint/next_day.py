@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
-from btlang.text.source import Span
 from btlang.tree import ast
 
 
@@ -20,9 +19,7 @@ def next_day(compilation: Compilation) -> Iterator[Diagnostic]:
             for item in node.items:
                 wait = next((each for each in ast.parents_first(item) if isinstance(each, ast.WaitTime)), None)
                 if wait is not None and ended and wait.time == ended:
-                    yield diagnostic(
-                        "BT169", Span(wait.span.source, wait.span.start, wait.span.end), words=wait.span.text
-                    )
+                    yield diagnostic("BT169", wait.span, words=wait.span.text)
                 if isinstance(item, ast.Whenever):
                     continue
                 ends = (each.time for each in ast.parents_first(item) if isinstance(each, ast.UntilTime | ast.WaitTime))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Container, Iterable, Mapping
+from functools import lru_cache
 from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -223,11 +224,8 @@ def _tells(phrases: Phrases, start: int, at: int) -> bool:
     body = phrases.at(at + 1)
     if text.words[at + 1][0] in ':"' or (body is not None and not _begins_no_command(body)):
         return False
-    said, line_starts = text.words[at + 1], {line.first for line in text.lines}
-    if any(
-        word == said and i != at + 1 and (i in line_starts or text.words[i - 1] == END_OF_STATEMENT)
-        for i, word in enumerate(text.words)
-    ):
+    said = text.words[at + 1]
+    if said in phrases.first_words:
         return False  # another name: `patrol is tour`
     command = phrases.at(start)
     if command is not None and command.meaning.role == "command" and command.last < at:
@@ -238,7 +236,13 @@ def _tells(phrases: Phrases, start: int, at: int) -> bool:
     if any(find(tree, text.words, start) for tree in speaks_of):
         return True
     is_short = not text.words[at + 2][0].isalnum()  # `the floor is wet`
-    return start in text.articles and (is_short or not nearest(said, [*phrases.vocabulary.trie]))
+    return start in text.articles and (is_short or not _may_begin(said, phrases.vocabulary))
+
+
+@lru_cache(maxsize=256)  # mistakes repeat
+def _may_begin(word: str, vocabulary: Lexicon) -> bool:
+    """Whether a word could be a misspelt one with which a phrase begins."""
+    return bool(nearest(word, [*vocabulary.trie]))
 
 
 def _begins_no_command(match: Match) -> bool:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from btlang.text.words import Words
+from functools import cached_property
+from itertools import pairwise
+
+from btlang.text.words import END_OF_STATEMENT, Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
@@ -21,6 +24,13 @@ class Phrases:
         self.fixed: dict[int, Match | None] = {}
         self._others: dict[int, Match | None] = {}
         self._context = ReadingContext(vocabulary.values)
+
+    @cached_property
+    def first_words(self) -> frozenset[str]:
+        """Those with which statements begin."""
+        words = self.text.words
+        behind = (word for before, word in pairwise(words) if before == END_OF_STATEMENT)
+        return frozenset((*(words[line.first] for line in self.text.lines), *behind))
 
     def at(self, word: int) -> Match | None:
         """The longest phrase that begins at a word."""

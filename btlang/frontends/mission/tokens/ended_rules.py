@@ -9,8 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.token import WAITING, Called, Listed, Token, begins_condition, constraint_of
-from btlang.frontends.mission.tokens.silent_words import LINES
+from btlang.frontends.mission.token import (
+    JOINTS,
+    LINES,
+    WAITING,
+    Called,
+    Listed,
+    Token,
+    begins_condition,
+    constraint_of,
+)
 from btlang.text.source import Span
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
@@ -18,7 +26,6 @@ from btlang.vocabulary.lexicon import Lexicon
 _EXAMPLE = "it is after 6 pm"
 _OPEN = "OpenZone"
 _ENDS = frozenset(("newline", "semi", "stop", "dedent", "close"))
-_JOINTS = frozenset(("comma", "and", "then"))
 _IN_CONDITIONS = frozenset(("condition", "not", "open", "either", "neither", "both"))
 """What who stays somewhere does there meanwhile."""
 _ENDING = frozenset((*WAITING, "up_to"))
@@ -62,7 +69,7 @@ def _condition_end(tokens: list[Token], at: int) -> tuple[int, int]:
     """Where a condition ends, and where the command begins that may stand behind it, after words that join them."""
     while at < len(tokens) and tokens[at].kind not in _ENDS:
         behind = at
-        while behind < len(tokens) and tokens[behind].kind in _JOINTS:
+        while behind < len(tokens) and tokens[behind].kind in JOINTS:
             behind += 1
         if behind > at and tokens[behind : behind + 1] and tokens[behind].kind not in _IN_CONDITIONS:
             return at, behind

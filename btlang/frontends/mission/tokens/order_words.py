@@ -8,7 +8,18 @@ from __future__ import annotations
 from bisect import bisect_left
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import RULES, WAITING, Called, Listed, OnDays, Token, constraint_of
+from btlang.frontends.mission.token import (
+    FORMS,
+    JOINTS,
+    RULES,
+    WAITING,
+    Called,
+    Listed,
+    OnDays,
+    Token,
+    constraint_of,
+    statement_start,
+)
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
 from btlang.frontends.mission.tokens.silent_words import BEGINS, begins_item
 from btlang.vocabulary.entry import Meaning
@@ -18,10 +29,7 @@ from btlang.vocabulary.value_type import PERSON
 from btlang.vocabulary.word_tree import find
 
 _TIME = "time_of_day"
-_JOINTS = frozenset(("and", "comma", "then"))
-_LINE_STARTS = frozenset(("newline", "semi", "dedent"))
 _TODAY, _COMES, _DAYTIME = "TodayIs", "WaitForPerson", "TimeOfDay"
-_FORMS = frozenset((*RULES, "if", "unless", "while", "until", "otherwise", "if_doing", "if_works"))
 
 
 class OrderWords(SentenceReader):
@@ -58,7 +66,7 @@ class OrderWords(SentenceReader):
             return 0  # `If bumped, go to the lab. When you arrive, wave` might wave without the journey
         if self._is_end(end):
             return end if tokens[-1].kind == "command" else 0
-        while tokens[-1].kind in _JOINTS:
+        while tokens[-1].kind in JOINTS:
             tokens.pop()
         if tokens[-1].kind not in ("command", "name", "close", *BEGINS):
             return 0
@@ -68,14 +76,9 @@ class OrderWords(SentenceReader):
     def _may_be_left_out(self, journey: Token) -> bool:
         """Whether the journey is that of an earlier statement that doesn't always run, or runs beside the others."""
         at = self._tokens.index(journey)
-        if not any(token.kind in _LINE_STARTS for token in self._tokens[at:]):
-            return False
-        for token in reversed(self._tokens[:at]):
-            if token.kind in _LINE_STARTS:
-                return False
-            if token.kind in _FORMS:
-                return True
-        return False
+        is_earlier = statement_start(self._tokens, len(self._tokens)) > at
+        before = self._tokens[statement_start(self._tokens, at) : at]
+        return is_earlier and any(token.kind in FORMS for token in before)
 
     def pace(self, at: int) -> int:
         """`drive slowly` before all journeys: how they are made."""
@@ -93,7 +96,7 @@ class OrderWords(SentenceReader):
     def _start(self, at: int, end: int) -> int:
         """`from the lab, go to the hall`, `go from the lab to the hall`: to the first place, then on."""
         tokens, words = self._tokens, self._text.words
-        if tokens and tokens[-1].kind not in (*BEGINS, *_JOINTS):
+        if tokens and tokens[-1].kind not in (*BEGINS, *JOINTS):
             return 0
         journey = self._with_front(at, end, "journey")
         if journey is None or self._is_end(journey.last) or any("{" in value.text for value in journey.values):
@@ -168,12 +171,12 @@ class OrderWords(SentenceReader):
         interrupting, resuming = self._vocabulary.asides
         if words[at] not in interrupting and words[at] not in resuming:
             return 0  # as nearly always
-        first = next((i + 1 for i in range(len(tokens) - 1, -1, -1) if tokens[i].kind in _LINE_STARTS), 0)
+        first = statement_start(tokens, len(tokens))
         if tokens[first].kind not in (*RULES, "if"):
             return 0
         found = find(resuming, words, at)
         if found is not None and self._is_end(found[1]) and any(token.kind == "command" for token in tokens[-3:]):
-            while tokens[-1].kind in _JOINTS:
+            while tokens[-1].kind in JOINTS:
                 tokens.pop()
             if any(token.kind in ("command", "name") for token in tokens[:first]):
                 self._watch(tokens[first])
@@ -213,7 +216,7 @@ class OrderWords(SentenceReader):
         if words[at] in (*self._vocabulary.asked_once, *roles["once"]):
             behind = longest(self._vocabulary.trie, self._text, match.last, self._context)
             return self._is_end(match.last) or (behind is not None and behind.meaning.role in ("and", "then"))
-        is_later = self._is_end(match.last) and len(tokens) > 1 and tokens[-2].kind in (*_JOINTS, "semi", "newline")
+        is_later = self._is_end(match.last) and len(tokens) > 1 and tokens[-2].kind in (*JOINTS, "semi", "newline")
         if is_later and tokens[-2].kind == "and":  # `go to the lab and wave afterwards`
             tokens[-2].kind = "then"
         return is_later
@@ -254,11 +257,9 @@ class OrderWords(SentenceReader):
 
     def _instead(self, match: Match, at: int) -> int:
         """`otherwise wave instead`; elsewhere it is open what isn't done."""
-        for token in reversed(self._tokens):
-            if token.kind in ("otherwise", "or"):
-                return match.last
-            if token.kind in _LINE_STARTS:
-                break
+        before = self._tokens[statement_start(self._tokens, len(self._tokens)) :]
+        if any(token.kind in ("otherwise", "or") for token in before):
+            return match.last
         span, otherwise = self._text.span(at, match.last), self._vocabulary.word("otherwise")
         self._calls.problems.append(diagnostic("BT166", span, words=span.text, otherwise=otherwise))
         return match.last
@@ -311,7 +312,7 @@ class OrderWords(SentenceReader):
         match = longest(self._vocabulary.trie, text, behind, self._context)
         if match is None or match.meaning.entry is None:
             return 0
-        while tokens[-1].kind in _JOINTS:
+        while tokens[-1].kind in JOINTS:
             tokens.pop()
         joint = self._joint(self._calls.token(match, behind))
         tokens.append(Token("after" if joint == "then" else joint, text.starts[at], text.ends[end - 1]))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import RULES, Called, Listed, Token, go_on
+from btlang.frontends.mission.token import FORMS, JOINTS, LINES, Called, Listed, Token, go_on
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.text.source import Span
 from btlang.vocabulary.match import Match
@@ -17,16 +17,19 @@ from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import find
 
-_JOINTS = frozenset(("newline", "semi", "stop", "comma", "and", "then"))
 _ENDS = frozenset(("newline", "semi", "stop"))
+_JOINTS = JOINTS | _ENDS
+_FAILS, _WORKS = "if_fails", "if_works"
 _MEASURES = frozenset(("for", "up_to", "within", "count"))
 _ASKING = frozenset(("if", "as_soon_as", "once"))
-_LINE_STARTS = frozenset(("newline", "semi", "indent", "dedent", "define"))
-_FORMS = frozenset((*RULES, "if", "unless", "while", "until", "otherwise", "if_doing", "if_works", "every_day"))
+_FORMS = FORMS | {"every_day"}
 
 
 class Outcomes(SentenceReader):
     """Those of one text, behind the tokens that it has so far."""
+
+    _looked: tuple[int, Token | None, int, frozenset[str]] = 0, None, 0, frozenset()
+    """How many tokens have been looked at, the last of them, where its statement begins, and the kinds in that."""
 
     def settle(self) -> None:
         """What the latest condition asks is left out where the command before it has settled it."""
@@ -38,8 +41,8 @@ class Outcomes(SentenceReader):
         command = self._before(form)
         if command is None:
             return
-        first = self._first(command) if denied else command
-        if any(_achieves(token, tokens[-1]) for token in tokens[first : command + 1]):
+        first = self._statement(command)[0] if denied else command
+        if any(_achieves(tokens[at], tokens[-1]) for at in range(command, first - 1, -1)):
             self._join(command, form, tokens[-1].end, denied)
 
     def unable(self, at: int) -> int:
@@ -52,7 +55,7 @@ class Outcomes(SentenceReader):
         if match is None or match.meaning.entry is None or match.meaning.entry.sort != "action":
             return 0
         asked = {name for value in match.values for name in _names(value.text)}
-        for token in self._tokens[self._first(command) : command + 1]:
+        for token in self._tokens[self._statement(command)[0] : command + 1]:
             value = token.value
             if isinstance(value, Called | Listed) and (asked or value.entry.id == match.meaning.entry.id):
                 if asked <= _named(value):
@@ -71,12 +74,13 @@ class Outcomes(SentenceReader):
             return
         if found.entry.achieves:
             start = tokens[command].start
-            tokens[first:] = [Token("stop", start, start), Token("if_works", start, start), tokens[command]]
+            tokens[first:] = [Token("stop", start, start), Token(_WORKS, start, start), tokens[command]]
 
     def found(self, match: Match, at: int) -> None:
         """`look for the key. When you find it, A, if not B`: with the `if not` it is `if that works`."""
         tokens, words = self._tokens, self._text.words
-        once = (*self._vocabulary.asked_once, *self._vocabulary.roles["once"], *self._words_of_once)
+        as_soon_as = (phrase.split()[0] for phrase in self._vocabulary.roles["as_soon_as"])
+        once = {*self._vocabulary.asked_once, *self._vocabulary.roles["once"], *as_soon_as}
         if words[at] not in once and words[at + 1] not in once:
             return
         end = at
@@ -88,15 +92,23 @@ class Outcomes(SentenceReader):
             form = tokens.pop()
             while tokens and tokens[-1].kind in ("comma", "stop"):
                 tokens.pop()
-            tokens += [Token("stop", form.start, form.start), Token("if_works", form.start, form.end)]
+            tokens += [Token("stop", form.start, form.start), Token(_WORKS, form.start, form.end)]
 
-    @property
-    def _words_of_once(self) -> set[str]:
-        return {phrase.split()[0] for phrase in self._vocabulary.roles["as_soon_as"]}
+    def _statement(self, end: int) -> tuple[int, frozenset[str]]:
+        """Where the statement begins in which the tokens before one stand, and their kinds.
 
-    def _first(self, command: int) -> int:
-        """Where the statement of a command begins."""
-        return next((i + 1 for i in reversed(range(command)) if self._tokens[i].kind in _LINE_STARTS), 0)
+        A statement that goes on and on is looked at from where it was looked at last.
+        """
+        tokens, (done, latest, start, kinds) = self._tokens, self._looked
+        is_known = 0 < done <= end and tokens[done - 1] is latest
+        at, found = end, set[str]()
+        while at > (done if is_known else 0) and tokens[at - 1].kind not in LINES:
+            at -= 1
+            found.add(_FAILS if tokens[at].value == _FAILS else tokens[at].kind)
+        if is_known and at == done:
+            at, found = start, found | kinds
+        self._looked = end, tokens[end - 1] if end else None, at, frozenset(found)
+        return at, self._looked[3]
 
     def _before(self, form: int) -> int | None:
         """The command right before a form, with measures of it between them; None where it may not have run."""
@@ -108,11 +120,8 @@ class Outcomes(SentenceReader):
             command -= 1
         if command < 0 or tokens[command].kind != "command":
             return None
-        for token in reversed(tokens[:command] if is_new else ()):
-            if token.kind in _LINE_STARTS:
-                break
-            if token.kind in _FORMS:
-                return None  # `If bumped, look for the cup. If it isn't there, A`
+        if is_new and not _FORMS.isdisjoint(self._statement(command)[1]):
+            return None  # `If bumped, look for the cup. If it isn't there, A`
         return command
 
     def _join(self, command: int, form: int, end: int, denied: bool) -> None:
@@ -138,17 +147,17 @@ class Outcomes(SentenceReader):
         """What a form says that asks what the command has settled: that it failed, or worked, or `then`."""
         word, at = self._text.source.text[form.start : form.end].lower(), form.start
         if denied:
-            return Token("or", at, at, "if_fails") if form.kind == "if" else None
+            return Token("or", at, at, _FAILS) if form.kind == "if" else None
         if form.kind != "if" or word in self._vocabulary.asked_once:
             return Token("then", at, at)
-        return Token("if_works", at, at) if is_new else None
+        return Token(_WORKS, at, at) if is_new else None
 
     def doubt(self, role: str, words: Span) -> None:
         """BT168 for what goes on with a failure where something stands between: `A. If that fails, B. Otherwise C`."""
-        first = self._first(len(self._tokens))
-        fails = any(token.kind == "or" and token.value == "if_fails" for token in self._tokens[first:])
-        works = any(token.kind == "if_works" for token in self._tokens[first:])
-        if (fails and not works and role in ("otherwise", "if_works")) or (works and role == "if_fails"):
+        if role not in ("otherwise", _FAILS, _WORKS):
+            return
+        kinds = self._statement(len(self._tokens))[1]
+        if _WORKS in kinds if role == _FAILS else _FAILS in kinds and _WORKS not in kinds:
             word = self._vocabulary.word
             example = f"dock. {word('if_works')}, wave. {word('otherwise')} nod"
             self._calls.problems.append(diagnostic("BT168", words, words=words.text, example=example))

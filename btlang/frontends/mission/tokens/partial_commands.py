@@ -7,10 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.mission.token import Listed, Token, constraint_of
+from btlang.frontends.mission.token import LINES, Listed, Token, constraint_of
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.left_out import left_out
-from btlang.frontends.mission.tokens.silent_words import LINES
 from btlang.frontends.mission.tokens.word_matches import (
     DOING,
     doing,

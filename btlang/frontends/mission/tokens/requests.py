@@ -7,21 +7,20 @@ from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Listed, Remembered, Token
-from btlang.frontends.mission.tokens.addressed_texts import TELL, AddressedTexts
+from btlang.frontends.mission.tokens.addressed_texts import TELL
+from btlang.frontends.mission.tokens.answers import ASK, Answers
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.entry import COUNT, SAY, Entry
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import free_key
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import PERSON, TEXT
+from btlang.vocabulary.value_type import TEXT
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import find
 
 _MOST_WORDS = 8  # of the subject of a question
 _EXAMPLE = "hello"
-_ASK, _ANSWERED, _PERSON_SAYS, _SOMEBODY_SAYS = "Ask", "AnswerIs", "PersonSays", "SomebodySays"
 _BEHIND = ("politeness", "then", "and")
-_STOPS = frozenset(("semi", "newline"))
 _BETWEEN = frozenset(("semi", "newline", "comma", "then", "and", "stop"))
 _OF_CONDITIONS = frozenset(("condition", "not", "and", "or", "either", "neither", "nor", "both"))
 
@@ -33,7 +32,7 @@ def _texts(token: Token) -> set[str]:
     return {text for arguments in given for _, text in arguments}
 
 
-class Requests(AddressedTexts):
+class Requests(Answers):
     """Those of one text."""
 
     @property
@@ -64,7 +63,7 @@ class Requests(AddressedTexts):
         if again is not None and again.meaning.role == "again":
             self._repeat(entry, value, command)
             return 0
-        if entry.id == _ASK:
+        if entry.id == ASK:
             self._ask(entry, value, command)
             return 0
         if self._is_clause(value):
@@ -253,58 +252,6 @@ class Requests(AddressedTexts):
         self._calls.note(condition)
         self._if(asked, (condition.meaning.role == "condition") == is_yes)
         return reply[1] + (self._text.words[reply[1]] == ",")
-
-    def _if(self, condition: Token, is_so: bool) -> None:
-        """Begins a command that is done if a condition is so, or isn't."""
-        start, end = condition.start, condition.end
-        self._tokens.append(Token("if", start, start))
-        if not is_so:
-            self._tokens.append(Token("not", start, start))
-        self._tokens += [condition, Token("comma", end, end)]
-
-    def reply(self, at: int, role: str) -> int:
-        """`ask Alice "Tea?". If so, A`: a command that depends on the answer, not on whether there was one."""
-        found = find(self._vocabulary.replies, self._text.words, at)
-        entry = self._vocabulary.entry(_ANSWERED) if found is not None else None
-        if found is None or entry is None or not self._is_asked(right_before=role == "otherwise"):
-            return 0
-        start, end = self._text.starts[at], self._text.ends[found[1] - 1]
-        yes = Called(entry, ((entry.slots[0].name, self._vocabulary.asking["answers"][0]),))
-        self._if(Token("condition", start, end, yes), found[0])
-        return found[1] + (self._text.words[found[1]] == ",")
-
-    def said(self, token: Token, at: int) -> None:
-        """`wait until she says stop` where nobody is asked: what is heard, not an answer."""
-        value, entry = token.value, self._vocabulary.entry(_ASK)
-        if not isinstance(value, Called) or value.entry.id != _ANSWERED or entry is None:
-            return
-        pronoun = find(self._vocabulary.values.pronoun_words, self._text.words, at)
-        asking = {phrase.split()[0] for phrase in entry.phrases}
-        if pronoun is None or not asking.isdisjoint(self._text.distinct):
-            return
-        words, person = value.arguments[0][1], self._context.latest.get(PERSON, "")
-        heard = self._vocabulary.entry(_PERSON_SAYS if person else _SOMEBODY_SAYS)
-        if heard is not None:
-            by_type = {PERSON: person, TEXT: words}
-            token.value = Called(heard, tuple((slot.name, by_type[slot.type]) for slot in heard.slots))
-
-    def _is_asked(self, right_before: bool) -> bool:
-        """Whether the statement before asks, or depends on the answer: `ask "Tea?". If so, A. If he wants none, B`."""
-        tokens, last = self._tokens, len(self._tokens)
-        while last:
-            if tokens[last - 1].kind in _STOPS:
-                last -= 1
-                continue
-            first = last
-            while first and tokens[first - 1].kind not in _STOPS:
-                first -= 1
-            values = [token.value for token in tokens[first:last] if isinstance(token.value, Called)]
-            if tokens[last - 1].kind == "command" and values and values[-1].entry.id == _ASK:
-                return True
-            if right_before or tokens[first].kind != "if" or not values or values[0].entry.id != _ANSWERED:
-                return False
-            last = first
-        return False
 
     def tell(self, at: int) -> int:
         """`tell me "hello"`: says it; `if the door is open, tell me`: says what was asked."""

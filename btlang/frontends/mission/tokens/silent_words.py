@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.mission.token import Token, constraint_of
+from btlang.frontends.mission.token import JOINTS, LINES, Token, constraint_of
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
@@ -12,12 +12,10 @@ from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import find
 
-LINES = frozenset(("newline", "semi", "indent", "dedent", "define"))
-"""Behind these kinds of tokens a statement begins, out of brackets."""
 MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 """The raw kinds of marks."""
 _STAYS_BEFORE = (",", ";", ")", END_OF_STATEMENT, END_OF_TEXT)
-_JOINTS, _OPERANDS = frozenset(("and", "comma", "then")), frozenset(("command", "name", "close", "and", "comma"))
+_OPERANDS = frozenset(("command", "name", "close", "and", "comma"))
 BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon", "comma", "then"))
 """Behind these a statement, or an item of a list, begins."""
 
@@ -87,7 +85,7 @@ def without_meaning(
         start = next((token for token in reversed(tokens) if token.kind in BEGINS or token.kind == "but"), before)
         start.value = "first" if start.kind == "but" else start.value
         follows = longest(vocabulary.trie, text, match.last, context)
-        is_behind = len(tokens) > 2 and tokens[-2].kind in _JOINTS and tokens[-3].kind in _OPERANDS
+        is_behind = len(tokens) > 2 and tokens[-2].kind in JOINTS and tokens[-3].kind in _OPERANDS
         is_last = text.words[match.last] in (",", ";", END_OF_TEXT, END_OF_STATEMENT) and not is_behind
         goes_on = follows is not None and follows.meaning.role in ("then", "and")
         return match.last if start.kind == "but" or is_last or goes_on else 0

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.token import JOINTS, Called, Listed, Token, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
 
-_LINE_STARTS = frozenset(("newline", "semi", "dedent"))
-_JOINTS = frozenset(("and", "comma", "then", "stop"))
+_JOINTS = JOINTS | {"stop"}
 _BLOCKED = frozenset(("WallInFront", "SomethingInTheWay", "SomeoneInTheWay"))
 _STATEMENT_ENDS = (END_OF_STATEMENT, END_OF_TEXT)
 _OPERANDS = frozenset(("command", "name", "close", "wait", "nothing", "fail", "node"))
@@ -30,7 +29,7 @@ class Tries(SentenceReader):
         """
         tokens = self._tokens
         last = len(tokens) - (2 if tokens and tokens[-1].kind == "comma" else 1)
-        first = next((i + 1 for i in range(last, -1, -1) if tokens[i].kind in _LINE_STARTS), 0)
+        first = statement_start(tokens, last + 1)
         is_closed = any(token.kind in ("try", "retry", "repeat") for token in tokens[first:])
         if last < 0 or (tokens[last].kind not in _OPERANDS and not is_closed):
             return 0
@@ -63,8 +62,7 @@ class Tries(SentenceReader):
         last = self._behind(form)
         if not form or not last or tokens[last - 1].kind not in _OPERANDS:
             return 0
-        first = next((i + 1 for i in range(last - 1, -1, -1) if tokens[i].kind in _LINE_STARTS), 0)
-        first = _first_of_form(tokens, first, last)
+        first = _first_of_form(tokens, statement_start(tokens, last), last)
         start, stop, number = self._text.starts[at], self._text.ends[match.last - 1], _TWICE
         behind = match.last + (self._text.words[match.last] == ",")
         behind += self._text.words[behind] in self._vocabulary.roles["but"]

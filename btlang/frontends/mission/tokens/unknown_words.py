@@ -8,7 +8,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.definitions import Definitions
 from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.includes import misplaced
-from btlang.frontends.mission.token import BEFORE_CONDITIONS, Token
+from btlang.frontends.mission.token import BEFORE_CONDITIONS, Token, statement_start
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
 from btlang.frontends.mission.tokens.silent_words import MARKS, begins, begins_item
 from btlang.frontends.mission.tokens.word_matches import with_verb
@@ -39,7 +39,8 @@ class UnknownWords:
     ) -> None:
         self._text, self._vocabulary, self._context, self._definitions = text, vocabulary, context, definitions
         self._partial, self._tokens, self._problems, self._verb_forms = partial, tokens, problems, verb_forms
-        self._before_doing = {phrase.split()[0] for phrase in vocabulary.roles["without_entering"]}
+        self.before_doing = {phrase.split()[0] for phrase in vocabulary.roles["without_entering"]}
+        """The words before the forms of verbs that a constraint forbids."""
 
     def is_reported(self, start: int, end: int) -> bool:
         """Whether the latest problem is about these characters already."""
@@ -62,7 +63,7 @@ class UnknownWords:
             return is_asked or find(self._vocabulary.reasons, self._text.words, at) is not None
         if is_asked and self._partial.forbidden(at, match.last) is None:
             return True  # `if you can't lift it`
-        return self._text.words[at] in self._before_doing and self.lack_name(at, match.last)
+        return self._text.words[at] in self.before_doing and self.lack_name(at, match.last)
 
     def why(self, at: int, end: int, match: Match | None) -> Diagnostic:
         """What is wrong with words that are no phrase, or one that stands where it cannot."""
@@ -96,7 +97,7 @@ class UnknownWords:
     def _which_first(self, at: int, end: int) -> Diagnostic:
         """BT151 for `A, B first`."""
         text, tokens, then = self._text, self._tokens, self._vocabulary.word("then")
-        first = next((i + 1 for i in range(len(tokens) - 1, -1, -1) if begins(tokens[: i + 1])), 0)
+        first = statement_start(tokens, len(tokens))
         before = text.source.text[tokens[first].start : tokens[-2].start].strip(" ,")
         behind = text.source.text[tokens[-1].start : tokens[-1].end]
         span = Span(text.source, tokens[-1].start, text.ends[end - 1])

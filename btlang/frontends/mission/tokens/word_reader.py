@@ -12,7 +12,7 @@ from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.names import Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
-from btlang.frontends.mission.token import BEFORE_CONDITIONS, RULES, WAITING, Token, constraint_of, go_on
+from btlang.frontends.mission.token import BEFORE_CONDITIONS, JOINTS, RULES, WAITING, Token, constraint_of, go_on
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
 from btlang.frontends.mission.tokens.order_words import OrderWords
@@ -46,7 +46,6 @@ _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parall
 _NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
 _CONDITIONS = frozenset(("condition", *NEGATED))
 _JOINING = ("and", "or")
-_JOINTS = ("comma", "and", "then")
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -84,7 +83,6 @@ class WordReader:
         )
         behind = ("called", "with", "giving")
         self._details = {phrase.split()[0] for role in behind for phrase in vocabulary.roles[role]}
-        self._before_doing = {phrase.split()[0] for phrase in vocabulary.roles["without_entering"]}
         self._asking = {*vocabulary.asking["asking_be"], *vocabulary.asking["asking_do"]}
         self._joint = vocabulary.word("and")
         self._is_apart = False  # the statement that is read runs at another time than the next one
@@ -102,7 +100,7 @@ class WordReader:
                 self._context.set_known(self._names.known_at(at))
             if at in others:
                 at = self._no_command(at)
-            elif tokens and tokens[-1].kind in _JOINTS and (end := self._order.aside(at)):
+            elif tokens and tokens[-1].kind in JOINTS and (end := self._order.aside(at)):
                 self._is_apart = True
                 at = end
             elif words[at] in MARKS:
@@ -274,9 +272,8 @@ class WordReader:
             return end
         if role in _CONDITIONS:
             self._condition(match, at)
-        else:
-            if end := self._operand(match, role, at):
-                return end
+        elif end := self._operand(match, role, at):
+            return end
         if self._text.words[match.last] in self._details and match.meaning.entry is not None:
             end = self._calls.with_details(tokens[-1], match.last, self._named)
             self._calls.note(match)
@@ -326,7 +323,7 @@ class WordReader:
         end = self._requests.value_in(match, at, said) if match.values and match.meaning.entry else 0
         if end:
             return end
-        if (word in self._before_doing or word in self._verb_forms) and constraint_of(said) is not None:
+        if (word in self._unknown.before_doing or word in self._verb_forms) and constraint_of(said) is not None:
             said.role = "fronted"
         tokens.append(said)
         if len(tokens) > 1 and tokens[-2].kind == "while" and constraint_of(said) is not None:
