@@ -22,10 +22,10 @@ def of_thing(
 def head_of(name: str) -> str:
     """The kind of what has a name of several words: `parcel` of "big parcel", `room` of "room 1"; else ""."""
     words = name.split()
-    if len(words) > 1 and not words[-1].isalpha():
-        words.pop()  # a number
-        return words[-1] if words[-1].isalpha() else ""
-    return words[-1] if len(words) > 1 and words[-1].isalpha() else ""
+    if len(words) < 2:
+        return ""
+    head = words[-1] if words[-1].isalpha() else words[-2]  # before a number
+    return head if head.isalpha() else ""
 
 
 def of_person(wears: tuple[str, ...], gesture: str) -> Parts:

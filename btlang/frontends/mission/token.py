@@ -186,13 +186,18 @@ def statement_start(tokens: Sequence[Token], end: int) -> int:
     return next((at + 1 for at in reversed(range(end)) if tokens[at].kind in LINES), 0)
 
 
+def texts_of(said: Called | Listed) -> tuple[str, ...]:
+    """The values of a phrase, or of all that a list stands for."""
+    each = (said.arguments,) if isinstance(said, Called) else said.arguments
+    return tuple(text for arguments in each for _, text in arguments)
+
+
 def constraint_of(token: Token) -> Constraint | None:
     """What a command asks of the others in its statement, None for any other token."""
     value = token.value
     if token.kind != "command" or not isinstance(value, Called | Listed) or not value.entry.constrains:
         return None
-    ports = [value.arguments] if isinstance(value, Called) else value.arguments
-    return Constraint(value.entry.constrains, tuple(text for arguments in ports for _, text in arguments))
+    return Constraint(value.entry.constrains, texts_of(value))
 
 
 def begins_condition(tokens: Sequence[Token], at: int) -> bool:

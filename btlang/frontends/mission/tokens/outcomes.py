@@ -6,10 +6,8 @@ The command fails where the condition doesn't hold. So its denial means that the
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import FORMS, JOINTS, LINES, Called, Listed, Token, go_on
+from btlang.frontends.mission.token import FORMS, JOINTS, LINES, Called, Listed, Token, go_on, texts_of
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.text.source import Span
 from btlang.vocabulary.match import Match
@@ -173,8 +171,7 @@ def _achieves(command: Token, asked: Token) -> bool:
 
 def _named(value: Called | Listed) -> set[str]:
     """What refers to the values of a command."""
-    given: Iterable[tuple[tuple[str, str], ...]] = [value.arguments] if isinstance(value, Called) else value.arguments
-    return {name for arguments in given for _, text in arguments for name in _names(text)}
+    return {name for text in texts_of(value) for name in _names(text)}
 
 
 def _names(text: str) -> set[str]:

@@ -6,7 +6,7 @@ Each becomes the commands that answer it: what is asked is measured, and said.
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import Called, Listed, Remembered, Token
+from btlang.frontends.mission.token import Called, Listed, Remembered, Token, texts_of
 from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.answers import ASK, Answers
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
@@ -23,13 +23,6 @@ _EXAMPLE = "hello"
 _BEHIND = ("politeness", "then", "and")
 _BETWEEN = frozenset(("semi", "newline", "comma", "then", "and", "stop"))
 _OF_CONDITIONS = frozenset(("condition", "not", "and", "or", "either", "neither", "nor", "both"))
-
-
-def _texts(token: Token) -> set[str]:
-    """The values of a phrase, or of all that a list stands for."""
-    value = token.value
-    given = [value.arguments] if isinstance(value, Called) else value.arguments if isinstance(value, Listed) else []
-    return {text for arguments in given for _, text in arguments}
 
 
 class Requests(Answers):
@@ -287,7 +280,8 @@ class Requests(Answers):
             written = self._text.source.text[tokens[at].start : tokens[at].end].lower()
             following = longest(self._vocabulary.trie, self._text, end, self._context)
             asked = {value.text for value in following.values} if following is not None else set()
-            same = any(asked.intersection(_texts(token)) for token in tokens[at:])
+            said = (token.value for token in tokens[at:] if isinstance(token.value, Called | Listed))
+            same = any(asked.intersection(texts_of(value)) for value in said)
             if " ".join(written.split()) in self._vocabulary.asking["finding_out"] or same:
                 tokens.insert(at, Token("try", tokens[at].start, tokens[at].start))
 
