@@ -235,7 +235,7 @@ def test_a_cable_that_was_pulled_and_plugged_in_again(tmp_path: Path) -> None:
     try:
         r.loop.start()
         r.until(r.is_back)
-        first.close()
+        first.unplug()
         r.until(lambda: not r.is_back())
         r.until(lambda: "can't be opened" in str(r.loop.silent("j1")))
         with FakeBus([FakeServo(1)]) as second:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import time
 from contextlib import ExitStack
 
 import pytest
 
 from btlang.devices.driver import DeviceError
+from btlang.devices.dynamixel.fake_bus import FakeBus
 from btlang.devices.kinds import Wheels, WheelSpeeds
 from btlang.devices.loop import DeviceLoop
 from btlang.devices.serial_board import line as line_module
@@ -47,6 +49,18 @@ def test_cable_pulled_and_replugged_under_another_name(line: SimulatedLine, port
             line.plug()
             assert line.path != path
             user.until_served()
+
+
+def test_no_other_terminal_gets_the_path_of_a_pulled_cable() -> None:
+    """Who still opens it would write into a stranger's terminal."""
+    with SimulatedLine(TestBoard("base")) as board, FakeBus([]) as bus, ExitStack() as opened:
+        board.unplug()
+        bus.unplug()
+        for _ in range(5):
+            ends = os.openpty()
+            assert os.ttyname(ends[1]) not in (board.path, bus.port)
+            for end in ends:
+                opened.callback(os.close, end)
 
 
 def test_the_way_that_was_rolled_while_the_cable_was_out_is_known(simulated: SimulatedLine) -> None:

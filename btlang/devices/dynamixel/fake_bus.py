@@ -66,16 +66,23 @@ class FakeBus:
         self._thread.start()
         return self
 
-    def close(self) -> None:
-        """The port is gone, as if its cable was pulled. May be called twice."""
+    def unplug(self) -> None:
+        """The cable is pulled. No other terminal of this machine gets the path before `close`."""
         if self._file < 0:
             return
         os.write(self._woken, b"x")
         if self._thread.ident is not None:
             self._thread.join()
-        for file in (self._file, self._other, self._wake, self._woken):
+        for file in (self._file, self._wake, self._woken):
             os.close(file)
         self._file = -1
+
+    def close(self) -> None:
+        """The port is gone. May be called twice."""
+        self.unplug()
+        if self._other >= 0:
+            os.close(self._other)
+        self._other = -1
 
     def __enter__(self) -> FakeBus:
         return self.start()

@@ -50,7 +50,7 @@ class SimulatedLine:
         self.noise = b""
         self.still_since: float | None = time.monotonic()
         self.path = ""
-        self._ends: tuple[int, int] | None = None
+        self._master = self._slave = -1
         self._random = Random(seed)
         self._lock = threading.Lock()
         self._over = threading.Event()
@@ -67,31 +67,30 @@ class SimulatedLine:
         self._over.set()
         self._thread.join()
         self.unplug()
+        os.close(self._slave)
 
     def plug(self) -> None:
         """The cable is connected, and gets another path than before."""
-        made = [pty.openpty()]
-        while os.ttyname(made[-1][1]) == self.path:
-            made.append(pty.openpty())
-        for ends in made[:-1]:
-            _close(ends)
-        master, slave = made[-1]
+        master, slave = pty.openpty()
         tty.setraw(slave)
         os.set_blocking(master, False)
         with self._lock:
-            self.path, self._ends = os.ttyname(slave), (master, slave)
+            before, self._slave = self._slave, slave
+            self.path, self._master = os.ttyname(slave), master
+        if before >= 0:
+            os.close(before)
 
     def unplug(self) -> None:
-        """The cable is pulled; the board goes on."""
+        """The cable is pulled; the board goes on. No other terminal of this machine gets its path before `plug`."""
         with self._lock:
-            ends, self._ends = self._ends, None
-        if ends is not None:
-            _close(ends)
+            master, self._master = self._master, -1
+        if master >= 0:
+            os.close(master)
 
     @property
     def plugged(self) -> bool:
         """Whether the cable is connected."""
-        return self._ends is not None
+        return self._master >= 0
 
     def reset(self) -> None:
         """The board is started again."""
@@ -101,18 +100,18 @@ class SimulatedLine:
     def _work(self) -> None:
         while not self._over.is_set():
             with self._lock:
-                ends = self._ends
+                master = self._master
             ready = []
-            if ends is None:
+            if master < 0:
                 self._over.wait(_TURN)
             else:
                 with suppress(OSError, ValueError):  # it was pulled meanwhile
-                    ready = select.select([ends[0]], [], [], _TURN)[0]
+                    ready = select.select([master], [], [], _TURN)[0]
             with self._lock:
                 now = time.monotonic()
                 self.board.turn(now)
-                if self._ends is not None and self._ends is ends:
-                    self._carry(ends[0], bool(ready))
+                if 0 <= self._master == master:
+                    self._carry(master, bool(ready))
                 if any(self.board.speeds):
                     self.still_since = None
                 elif self.still_since is None:
@@ -145,8 +144,3 @@ class SimulatedLine:
         if self.baud and data:
             time.sleep(len(data) * _BITS / self.baud)
         return data
-
-
-def _close(ends: tuple[int, int]) -> None:
-    for end in ends:
-        os.close(end)
