@@ -1,8 +1,8 @@
 """Sets of things: `take every cube from the table and put it in the box` is one round a cube.
 
 A phrase says a set as one argument, a choice of all names that are described. Its round takes in what comes behind it
-in the statement up to the last command that speaks of its thing, and behind a set of places what is joined by `and`
-and neither travels nor names a place.
+in the statement up to the last command that speaks of its thing, and behind a set of places or people what is joined by `and`
+or a comma and neither travels nor names a place.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from btlang.tree import ast
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, Choice, choice_of
-from btlang.vocabulary.value_type import PLACE
+from btlang.vocabulary.value_type import PERSON, PLACE
 
 _TRAVELS = "navigation"
 
@@ -125,13 +125,19 @@ def _index(chain: ast.Chain, path: Sequence[ast.Ast]) -> int:
 
 
 def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice) -> int:
-    """The last part that is in the round of a set of places without a word about them."""
+    """The last part that is in the round of a set of places or people without a word about them."""
     node = chain.items[first]
     goes = isinstance(node, ast.Phrase) and _TRAVELS in node.entry.needs
-    if choice.type == PLACE and goes and chain.operator == "and":
-        while last + 1 < len(chain.items) and not _travels(chain.items[last + 1]):
+    if choice.type in (PLACE, PERSON) and goes:
+        while last + 1 < len(chain.items) and _is_joined(chain, last) and not _travels(chain.items[last + 1]):
             last += 1
     return last
+
+
+def _is_joined(chain: ast.Chain, at: int) -> bool:
+    """Whether `and` or a bare comma stands behind a part: `go to every room, wave, then dock`."""
+    left, right = chain.items[at].span, chain.items[at + 1].span
+    return chain.operator == "and" or left.source.text[left.end : right.start].strip() == ","
 
 
 def _travels(node: ast.Ast) -> bool:

@@ -17,6 +17,7 @@ from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.frontends.mission.whole_rules import whole_rules, with_rules_first
 from btlang.record import Record
 from btlang.text.source import Source, Span
+from btlang.tree.asked import with_answers
 from btlang.tree.ast import Ast, Definition, Nothing, Program
 from btlang.tree.conjunctions import resolve
 from btlang.tree.rounds import with_rounds
@@ -61,8 +62,17 @@ def read_mission(
     included = reader.read(source, (real_path(source.name),))
     if any(problem.is_error for problem in reader.problems):
         raise MissionError(reader.problems)
-    mission, said = resolve(with_rounds(included.mission, vocabulary), vocabulary)
+    mission, said = _whole(included.mission, vocabulary)
     return Reading(mission, (*reader.problems, *said))
+
+
+def _whole(mission: Program, vocabulary: Lexicon) -> tuple[Program, list[Diagnostic]]:
+    """A mission with what takes all of it to know, and what there is to say about it. Raises MissionError (BT144)."""
+    looped = with_rounds(mission, vocabulary)
+    answered, problems = with_answers(looped)
+    if problems:
+        raise MissionError(problems)
+    return resolve(answered, vocabulary)
 
 
 def lexed(source: Source, vocabulary: Lexicon) -> Lexer:
@@ -133,7 +143,7 @@ class _Reader:
         assert self._errors_of is not None
         try:
             read = self._mission(lexer.text.source, lexer, grouped)
-            mission, _ = resolve(with_rounds(read, self._vocabulary), self._vocabulary)
+            mission, _ = _whole(read, self._vocabulary)
             return self._errors_of(mission, self._vocabulary)
         except MissionError as error:
             return error.diagnostics

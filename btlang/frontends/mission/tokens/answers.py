@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from btlang.frontends.mission.token import Called, Token
+from btlang.frontends.mission.token import Called, Listed, Token
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
 from btlang.vocabulary.value_type import PERSON, TEXT
 from btlang.vocabulary.word_tree import find
@@ -65,7 +65,7 @@ class Answers(AddressedTexts):
             first = last
             while first and tokens[first - 1].kind not in _STOPS:
                 first -= 1
-            values = [token.value for token in tokens[first:last] if isinstance(token.value, Called)]
+            values = [token.value for token in tokens[first:last] if isinstance(token.value, Called | Listed)]
             if tokens[last - 1].kind == "command" and values and values[-1].entry.id == ASK:
                 return True
             if right_before or tokens[first].kind != "if" or not values or values[0].entry.id != _ANSWERED:

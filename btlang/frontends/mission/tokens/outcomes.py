@@ -7,7 +7,7 @@ The command fails where the condition doesn't hold. So its denial means that the
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import FORMS, JOINTS, LINES, Called, Listed, Token, go_on, texts_of
+from btlang.frontends.mission.token import FORMS, JOINTS, LINES, RULES, Called, Listed, Token, go_on, texts_of
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.text.source import Span
 from btlang.vocabulary.match import Match
@@ -15,9 +15,10 @@ from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import find
 
+_HEARS = "ears"
 _ENDS = frozenset(("newline", "semi", "stop"))
 _JOINTS = JOINTS | _ENDS
-_FAILS, _WORKS = "if_fails", "if_works"
+_FAILS, _WORKS, _UNANSWERED = "if_fails", "if_works", "if_unanswered"
 _MEASURES = frozenset(("for", "up_to", "within", "count"))
 _ASKING = frozenset(("if", "as_soon_as", "once"))
 _FORMS = FORMS | {"every_day"}
@@ -151,14 +152,45 @@ class Outcomes(SentenceReader):
         return Token(_WORKS, at, at) if is_new else None
 
     def doubt(self, role: str, words: Span) -> None:
-        """BT168 for what goes on with a failure where something stands between: `A. If that fails, B. Otherwise C`."""
+        """BT168 for what goes on with a failure where something stands between: `A. If that fails, B. Otherwise C`.
+
+        BT145 for silence behind what is no question: `ask "Tea?". If she says no, A. If she says nothing, B`.
+        """
+        word = self._vocabulary.word
+        if role == _UNANSWERED and not self._asks():
+            example = f'ask "Tea?". {word(_WORKS).capitalize()}, wave. {word("otherwise").capitalize()} nod'
+            self._calls.problems.append(diagnostic("BT145", words, words=words.text.rstrip(","), example=example))
         if role not in ("otherwise", _FAILS, _WORKS):
             return
         kinds = self._statement(len(self._tokens))[1]
         if _WORKS in kinds if role == _FAILS else _FAILS in kinds and _WORKS not in kinds:
-            word = self._vocabulary.word
-            example = f"dock. {word('if_works')}, wave. {word('otherwise')} nod"
+            example = f"dock. {word(_WORKS)}, wave. {word('otherwise')} nod"
             self._calls.problems.append(diagnostic("BT168", words, words=words.text, example=example))
+
+    def _asks(self) -> bool:
+        """Whether the latest command waits for what somebody says."""
+        said = next((token.value for token in reversed(self._tokens) if token.kind == "command"), None)
+        return isinstance(said, Called | Listed) and _HEARS in said.entry.needs
+
+    def doubt_rule(self, role: str, at: int, last: int) -> None:
+        """BT151 for what may be a part of the rule before it: `whenever bumped, wave. Then dock`."""
+        end = len(self._tokens)
+        while end and self._tokens[end - 1].kind in _ENDS:
+            end -= 1
+        words, text = self._text.span(at, last), self._text
+        if not end or "\n" in text.source.text[self._tokens[end - 1].end : words.start]:
+            return
+        kinds = self._statement(end)[1]
+        if kinds.isdisjoint(RULES) or (role == "otherwise" and "if" in kinds):
+            return
+        last += text.words[last] == ","
+        rest = last
+        while not self._is_end(rest):
+            rest += 1
+        said = text.span(last, rest).text if rest > last else "..."
+        word = self._vocabulary.word(_FAILS if role == "otherwise" else role)
+        one = f"... {word} {said}" if role == "then" else f"{word}, {said}"
+        self._calls.problems.append(diagnostic("BT151", words, words=words.text, one=one, other=said))
 
 
 def _achieves(command: Token, asked: Token) -> bool:

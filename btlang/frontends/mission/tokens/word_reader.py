@@ -263,6 +263,8 @@ class WordReader:
     def _known(self, match: Match, at: int) -> int:
         """A phrase, a connective or a name."""
         tokens, role = self._tokens, match.meaning.role
+        if role in ("then", "otherwise") and begins(tokens):
+            self._outcomes.doubt_rule(role, at, match.last)
         if role == "politeness" or (role in ("following", "then") and self._order.says_nothing(match, at)):
             return after_politeness(tokens, self._text.words, match)
         if at in self._text.going_on:
@@ -346,8 +348,8 @@ class WordReader:
             self._outcomes.found(match, at)
         if role == "if_works":
             self._outcomes.if_works(match.last)
-        if role == "if_fails":
-            tokens[-1].kind, tokens[-1].value = "or", role
+        if role in ("if_fails", "if_unanswered"):
+            tokens[-1].kind, tokens[-1].value = "or", "if_fails"
         if role in _ROLES:
             tokens[-1].kind = _ROLES[role][len(tokens) > 1 and tokens[-2].kind == "stop"]
 

@@ -1,0 +1,128 @@
+"""Whose answer a command depends on: `whenever bumped, ask Bob "Ok?". If so, wave` waves for the answer in the rule.
+
+A command that depends on the answer and follows a form whose commands ask belongs to those commands: elsewhere it
+would be asked where nobody has answered.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.text.source import Span
+from btlang.tree import ast
+from btlang.tree.visit import fold
+from btlang.vocabulary.value_type import TEXT
+
+_ASK, _ANSWERED = "Ask", "AnswerIs"
+_ONCE = (ast.Retry, ast.Try, ast.Within, ast.UpTo, ast.StopWhen, ast.Constrained, ast.Delay, ast.Provided)
+"""Forms whose commands are done before what comes behind the form."""
+_EXAMPLE = 'ask Alice "Tea?". If so, wave'
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:
+    """The mission with what depends on an answer where somebody asks, and what is wrong with it (BT144)."""
+    problems: list[Diagnostic] = []
+
+    def body(root: ast.Ast) -> ast.Ast:
+        if not any(map(_is_answered, ast.parents_first(root))):
+            return root
+        return fold(root, ast.parts, lambda node, done: _gathered(ast.with_parts(node, done), problems))
+
+    def program(part: ast.Program) -> ast.Program:
+        return ast.with_bodies(part, body, program)
+
+    return program(mission), problems
+
+
+def _is_answered(node: ast.Ast) -> bool:
+    return isinstance(node, ast.Phrase) and node.entry.id == _ANSWERED
+
+
+def _depends(node: ast.Ast) -> bool:
+    """Whether a command is done if the answer is this or that."""
+    return isinstance(node, ast.If) and any(map(_is_answered, ast.parents_first(node.condition)))
+
+
+def _gathered(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
+    """A sequence in which commands that depend on an answer stand where it is given."""
+    if not isinstance(node, ast.Chain) or node.operator != "sequence" or not any(map(_depends, node.items)):
+        return node
+    made: list[ast.Ast] = []
+    asking: int | None = None
+    for item in node.items:
+        form = _form_that_asks(made[asking]) if asking is not None and _depends(item) else []
+        problem = _problem(made, asking, form, item) if asking is not None and _depends(item) else ""
+        if problem:
+            words = item.span.text.split(",")[0]
+            problems.append(diagnostic("BT144", item.span, words=words, problem=problem, example=_EXAMPLE))
+        elif asking is not None and form:
+            made[asking] = _with_last(form, item)
+            continue
+        made.append(item)
+        if _questions(item):
+            asking = len(made) - 1
+    return made[0] if len(made) == 1 else node.replace(items=tuple(made))
+
+
+def _questions(node: ast.Ast) -> list[ast.Phrase]:
+    return [each for each in ast.parents_first(node) if isinstance(each, ast.Phrase) and each.entry.id == _ASK]
+
+
+def _question(node: ast.Phrase) -> str:
+    """What it asks."""
+    types = {slot.name: slot.type for slot in node.entry.slots}
+    return next((text for name, text in node.arguments if types.get(name) == TEXT), "")
+
+
+def _form_that_asks(node: ast.Ast) -> list[Any]:
+    """The forms around the last question of a command, the outermost first; none where it is asked in any case."""
+    path: list[Any] = []
+    last = _questions(node)[-1]
+    while node is not last:
+        part = next(part for part in reversed(ast.parts(node)) if any(each is last for each in ast.parents_first(part)))
+        path.append((node, part))
+        node = part
+    while path and (isinstance(path[-1][0], _ONCE) or isinstance(path[-1][0], ast.Chain)):
+        path.pop()
+    return path
+
+
+def _with_last(form: Sequence[Any], item: ast.Ast) -> ast.Ast:
+    """The outermost of some forms, whose innermost has one more command at its end."""
+    inner, body = form[-1]
+    items = body.items if isinstance(body, ast.Chain) and body.operator == "sequence" else (body,)
+    span = Span(body.span.source, body.span.start, item.span.end)
+    changed: ast.Ast = ast.Chain("sequence", (*items, item), True, span)
+    for node, part in reversed(form):
+        parts = [changed if each is part else each for each in ast.parts(node)]
+        changed = ast.with_parts(node, parts)
+    return changed
+
+
+def _problem(made: Sequence[ast.Ast], at: int, form: Sequence[Any], item: ast.Ast) -> str:
+    """Why it isn't clear whose answer is meant, "" if it is."""
+    asked = _questions(made[at])
+    before = _questions(made[at - 1]) if at and not form else []
+    same = [each for each in (*before, *asked) if _question(each) == _question(asked[-1])]
+    if len({each.arguments for each in same}) > 1 or any(isinstance(node, ast.ForEach) for node, _ in form):
+        return "could be about one answer or about all"
+    if not form:
+        return ""
+    inner, body = form[-1]
+    text = item.span.source.text[made[at].span.end : item.span.start]
+    if getattr(inner, "otherwise", None) is not None or len(form) > 1:
+        return "could be about several questions"
+    if _depends(inner):
+        return "" if _same(inner, item) else "could be about the first question or about the second"
+    return "stands on another line than what asks only sometimes" if "\n" in text else ""
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Whether two commands depend on the same answer, which then is that of the second question."""
+    plain = isinstance(one.condition, ast.Phrase) and isinstance(other.condition, ast.Phrase)
+    return plain and not (one.negated or other.negated) and one.condition.arguments == other.condition.arguments
