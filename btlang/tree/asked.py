@@ -15,7 +15,7 @@ from btlang.tree.visit import fold
 from btlang.vocabulary.value_type import TEXT
 
 _ASK, _ANSWERED = "Ask", "AnswerIs"
-_ONCE = (ast.Retry, ast.Try, ast.Within, ast.UpTo, ast.StopWhen, ast.Constrained, ast.Delay, ast.Provided)
+_ONCE = (ast.Retry, ast.Try, ast.Within, ast.UpTo, ast.StopWhen, ast.Constrained, ast.Delay, ast.Provided, ast.Chain)
 """Forms whose commands are done before what comes behind the form."""
 _EXAMPLE = 'ask Alice "Tea?". If so, wave'
 
@@ -87,14 +87,14 @@ def _form_that_asks(node: ast.Ast) -> list[Any]:
         part = next(part for part in reversed(ast.parts(node)) if any(each is last for each in ast.parents_first(part)))
         path.append((node, part))
         node = part
-    while path and (isinstance(path[-1][0], _ONCE) or isinstance(path[-1][0], ast.Chain)):
+    while path and isinstance(path[-1][0], _ONCE):
         path.pop()
     return path
 
 
 def _with_last(form: Sequence[Any], item: ast.Ast) -> ast.Ast:
     """The outermost of some forms, whose innermost has one more command at its end."""
-    inner, body = form[-1]
+    body = form[-1][1]
     items = body.items if isinstance(body, ast.Chain) and body.operator == "sequence" else (body,)
     span = Span(body.span.source, body.span.start, item.span.end)
     changed: ast.Ast = ast.Chain("sequence", (*items, item), True, span)
@@ -113,7 +113,7 @@ def _problem(made: Sequence[ast.Ast], at: int, form: Sequence[Any], item: ast.As
         return "could be about one answer or about all"
     if not form:
         return ""
-    inner, body = form[-1]
+    inner = form[-1][0]
     text = item.span.source.text[made[at].span.end : item.span.start]
     if getattr(inner, "otherwise", None) is not None or len(form) > 1:
         return "could be about several questions"

@@ -1,8 +1,8 @@
 """Sets of things: `take every cube from the table and put it in the box` is one round a cube.
 
 A phrase says a set as one argument, a choice of all names that are described. Its round takes in what comes behind it
-in the statement up to the last command that speaks of its thing, and behind a set of places or people what is joined by `and`
-or a comma and neither travels nor names a place.
+in the statement up to the last command that speaks of its thing, and behind a set of places or people what is joined
+by `and` or a comma and neither travels nor names a place.
 """
 
 from __future__ import annotations

@@ -19,8 +19,8 @@ CONNECTIVES = {
 """The roles that join commands, each with the operator of the chain that it makes; see `conjunctions.py` for "and"."""
 
 GOES_ON = frozenset((
-    "otherwise", "or", "if_fails", "if_unanswered", "meanwhile", "in_parallel", "if_works", "if_it_works", "in_any_case",
-    "do_that", "repeat_that", "again",
+    "otherwise", "or", "if_fails", "if_unanswered", "meanwhile", "in_parallel", "if_works", "if_it_works",
+    "in_any_case", "do_that", "repeat_that", "again",
 ))  # fmt: skip
 """The roles that don't begin a new statement: what they begin continues the statement before it."""
 
