@@ -15,6 +15,7 @@ from btlang.passes.lint.gaps import Gaps, balanced
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree import ast
+from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
@@ -22,7 +23,9 @@ if TYPE_CHECKING:
     from typing import Any
 
 MIXED, POSTFIX, LIST, OTHERWISE, NEGATED = "mixed", "postfix", "list", "otherwise", "negated"
-AFTER, PACED, FORMS = "after", "paced", "forms"
+AFTER, PACED, FORMS, SENTENCES, SEARCHES = "after", "paced", "forms", "sentences", "searches"
+_SENTENCE_END = re.compile(r"[.;!?]")
+_SEES = "perception"
 _WORD = re.compile(r"\w+")
 
 
@@ -78,6 +81,71 @@ def in_chain(chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabula
             yield Attachment(LIST, start, partial(place.list_right, right))
 
 
+def in_sentences(chain: ast.Chain, vocabulary: Lexicon) -> Iterator[Attachment]:
+    """`if C, A. If D, B. Otherwise E`, and `if the lamp is on, switch it off. If it is off, switch it on`."""
+    if chain.operator != "sequence":
+        return
+    then = vocabulary.word("then").capitalize()
+    for first, second in pairwise(chain.items):
+        if not isinstance(first, ast.If) or not isinstance(second, ast.If) or first.otherwise is not None:
+            continue
+        if second.negated or not (_is_before(first) and _is_before(second)):
+            continue
+        if "\n" in _between(first, second) or _WORD.search(_between(first, second)):
+            continue
+        if second.otherwise is None:
+            if _brings_about(first.body, second.condition):
+                gap = Span(first.span.source, first.span.end, second.span.start)
+                yield Attachment(SENTENCES, first.span.start, partial(_as_otherwise, first, second, gap, f". {then} "))
+        elif _SENTENCE_END.search(_between(second.body, second.otherwise)):
+            gap = Span(first.span.source, second.body.span.end, second.otherwise.span.start)
+            words = f", {_WORD.findall(gap.text)[0].lower()} " if _WORD.search(gap.text) else gap.text
+            yield Attachment(SENTENCES, first.span.start, partial(_as_otherwise, first, second, gap, words))
+
+
+def _is_before(node: ast.If) -> bool:
+    """Whether its condition stands before its command."""
+    return node.condition.span.start < node.body.span.start
+
+
+def _between(left: ast.Ast, right: ast.Ast) -> str:
+    return left.span.source.text[left.span.end : right.span.start]
+
+
+def _brings_about(body: ast.Ast, condition: ast.Ast) -> bool:
+    """Whether a command makes a condition true."""
+    if not isinstance(condition, ast.Phrase):
+        return False
+    values = {text for _, text in condition.arguments}
+    done = (each for each in ast.parents_first(body) if isinstance(each, ast.Phrase))
+    return any(
+        condition.entry.id in each.entry.achieves and values == {text for _, text in each.arguments} for each in done
+    )
+
+
+def _as_otherwise(first: ast.If, second: ast.If, gap: Span, words: str) -> Readings:
+    """`if C, A. If D, B`: if C, A, otherwise if D, B."""
+    span = Span(first.span.source, first.span.start, second.span.end)
+    taken = ast.Chain("sequence", (first, second), True, span)
+    return Readings(taken, first.replace(otherwise=second, span=span), span, (gap, words))
+
+
+def in_time(node: ast.For, vocabulary: Lexicon) -> Iterator[Attachment]:
+    """`wait for Alice for 10 min`: once, and at most so long."""
+    body = node.body
+    if not isinstance(body, ast.Phrase) or body.span.start != node.span.start or _in_brackets(body.span):
+        return
+    entry = body.entry
+    if entry.achieves and _SEES in entry.needs and (entry.first or MOVES not in entry.resources):
+        yield Attachment(SEARCHES, node.span.start, partial(_once_at_most, node, vocabulary.word("repeat")))
+
+
+def _once_at_most(node: ast.For, repeat: str) -> Readings:
+    fix = node.body.span, f"{repeat} ({node.body.span.text})"
+    again = node.replace(body=ast.Repeat("-1", node.body, node.span))
+    return Readings(again, ast.Within(node.seconds, node.body, node.span), node.span, fix)
+
+
 def _behind_after(
     chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabulary: Lexicon
 ) -> Iterator[Attachment]:
@@ -115,7 +183,8 @@ def in_form(node: ast.If | ast.Try, vocabulary: Lexicon) -> Iterator[Attachment]
     if node.otherwise is not None or node.body.span.start <= node.span.start:
         return
     body = node.body
-    if isinstance(node, ast.If) and isinstance(body, ast.Chain) and body.operator == "sequence" and not body.bracketed:
+    joins = isinstance(body, ast.Chain) and body.operator in ("sequence", "parallel") and not body.bracketed
+    if isinstance(node, ast.If) and isinstance(body, ast.Chain) and joins and len(body.items) > 1:
         before, last = body.items[-2:]
         gap = Span(last.span.source, before.span.end, last.span.start)
         is_open = gap.text.strip() in (",", *vocabulary.roles["and"]) or gap.text.strip(" ,") in vocabulary.roles["and"]
@@ -159,9 +228,13 @@ def _side_by_side(node: ast.If, gap: Span, then: str) -> Readings:
     body: Any = node.body
     *before, last = body.items
     first = before[0] if len(before) == 1 else body.replace(items=tuple(before))
+    fix = (gap, f" {then} ")
+    if body.operator == "parallel":
+        head = Span(body.span.source, node.condition.span.end, body.span.end)
+        fix = head, f", ({body.span.text})"
     taken = node.replace(body=body.replace(bracketed=True))
-    other = ast.Chain("sequence", (node.replace(body=first), last), False, node.span)
-    return Readings(taken, other, node.span, (gap, f" {then} "))
+    other = ast.Chain(body.operator, (node.replace(body=first), last), False, node.span)
+    return Readings(taken, other, node.span, fix)
 
 
 def _moved(node: Any, path: Sequence[ast.Ast], part: Any) -> Readings:

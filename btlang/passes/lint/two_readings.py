@@ -7,7 +7,9 @@
 - `not` before one of two conditions: `not C or D`;
 - a list beside `and`: `go to the lobby and the lab and wave`;
 - `after` behind two commands: `A then B after C`;
-- a number before a pace: `A 3 times every 10 s`.
+- a number before a pace: `A 3 times every 10 s`;
+- two sentences that could exclude one another: `if C, A. If D, B. Otherwise E`;
+- a search for a time: `look for Alice for 5 min`.
 """
 
 from __future__ import annotations
@@ -19,7 +21,17 @@ from collections.abc import Iterator, Sequence
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.gaps import Gaps
-from btlang.passes.lint.other_reading import Attachment, Readings, in_chain, in_form, in_order, in_pace, is_list
+from btlang.passes.lint.other_reading import (
+    Attachment,
+    Readings,
+    in_chain,
+    in_form,
+    in_order,
+    in_pace,
+    in_sentences,
+    in_time,
+    is_list,
+)
 from btlang.text.source import Source, Span
 from btlang.tree import ast
 
@@ -60,12 +72,15 @@ def _attachments(root: ast.Ast, compilation: Compilation) -> Iterator[Attachment
             items = in_order(node.items)
             if (items is not node.items or any(item.parts for item in items)) and not is_list(node):
                 yield from in_chain(node, items, is_part, compilation.vocabulary)
+                yield from in_sentences(node, compilation.vocabulary)
                 stack += reversed(_parts(items, compilation))
             continue
         if isinstance(node, ast.If | ast.Try):
             yield from in_form(node, compilation.vocabulary)
         elif isinstance(node, ast.Every):
             yield from in_pace(node, compilation.vocabulary)
+        elif isinstance(node, ast.For):
+            yield from in_time(node, compilation.vocabulary)
         stack += [(part, False) for part in reversed(ast.parts(node)) if part.parts]
 
 
