@@ -166,6 +166,30 @@ def test_two_goals_in_a_row_show_both_readings(sentence: str, readings: list[str
     assert trees == [] or (trees[0] == plain(mission.tree) != trees[1])
 
 
+@pytest.mark.parametrize(
+    ("sentence", "kept"),
+    [
+        (
+            "if bumped, wave. If someone is near, nod. Otherwise dock",
+            "if bumped, wave. If someone is near, nod, otherwise dock",
+        ),
+        (
+            "if the lamp is on, switch it off. If it's off, switch it on",
+            "if the lamp is on, switch it off. Then if it's off, switch it on",
+        ),
+        ("look for Alice for 5 minutes", "repeat (look for Alice) for 5 minutes"),
+        ("if Alice is near wave, and if Bob is near nod", "if Alice is near, (wave, and if Bob is near nod)"),
+    ],
+)
+def test_sentences_that_exclude_one_another_and_searches_show_both_readings(sentence: str, kept: str) -> None:
+    mission = btlang.parse_tree(sentence, world=WORLD)
+    (warning,) = (warning for warning in mission.warnings if warning.code == "BT050")
+    taken, other = (btlang.parse_tree(dict(warning.arguments)[key], world=WORLD) for key in ("taken", "other"))
+    assert plain(taken.tree) == plain(mission.tree) != plain(other.tree)
+    mended = btlang.parse_tree(kept, world=WORLD)
+    assert (plain(mended.tree), list(mended.warnings)) == (plain(mission.tree), [])
+
+
 def run(sentence: str) -> btlang.Outcome:
     """The outcome of a mission on the simulated robot."""
     return btlang.parse_tree(sentence, world=WORLD).run(speed="max")

@@ -142,8 +142,7 @@ def in_time(node: ast.For, vocabulary: Lexicon) -> Iterator[Attachment]:
 
 def _once_at_most(node: ast.For, repeat: str) -> Readings:
     fix = node.body.span, f"{repeat} ({node.body.span.text})"
-    again = node.replace(body=ast.Repeat("-1", node.body, node.span))
-    return Readings(again, ast.Within(node.seconds, node.body, node.span), node.span, fix)
+    return Readings(node, ast.Within(node.seconds, node.body, node.span), node.span, fix)
 
 
 def _behind_after(
