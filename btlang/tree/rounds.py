@@ -167,7 +167,9 @@ def _loop(choice: Choice, body: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     names = vocabulary.values.likenesses.members(choice)
     if names and isinstance(body, ast.Phrase | ast.Name):
         each = tuple(_with(body, f"{{{choice.key}}}", name) for name in names)
-        return each[0] if len(each) == 1 else ast.Chain("sequence", each, True, body.span)
+        is_search = isinstance(body, ast.Phrase) and body.entry.first and choice.type == PLACE
+        operator = "fallback" if is_search else "sequence"
+        return each[0] if len(each) == 1 else ast.Chain(operator, each, True, body.span)
     return ast.ForEach(choice.key, choice.type, names or (choice.text,), body, body.span)
 
 

@@ -48,7 +48,7 @@ class Texts:
         self.of_persons = frozenset(language["of_persons"])
         """Words for persons that are others for whoever hears them."""
         self._joining = set().union(*map(words_of, _JOINING))
-        self._doubtful = {*_MARKS, *self.of_persons, *self._joining}
+        self._doubtful = {*_MARKS, *self.of_persons, *self._joining, *language.get("counts", ())}
 
     def read(self, text: Words, at: int) -> tuple[str, int] | None:
         """The text that begins at a word and where it ends."""
@@ -105,7 +105,8 @@ class Texts:
         asks = opener in self._question_words
         for at in range(first, last) if asks else (first,):  # `what tea he wants`
             front = find(self._direct, text.words, at)
-            if front is not None and (front[1] < last or asks):
+            is_open = self._doubtful.isdisjoint(text.words[first:at])  # not `when she comes if she wants tea`
+            if front is not None and (front[1] < last or asks) and is_open:
                 parts = [*([opener] if asks else []), *self._said(text, first, at), front[0]]
                 return self._question(parts, self._said(text, front[1], last))
         verb = next((at for at in range(first, last) if text.words[at] in self._inverting), first)
