@@ -14,7 +14,8 @@ from btlang.tree import ast
 from btlang.tree.visit import fold
 from btlang.vocabulary.value_type import TEXT
 
-_ASK, _ANSWERED = "Ask", "AnswerIs"
+ASK, ANSWERED = "Ask", "AnswerIs"
+"""The ids of the question, and of the condition about its answer."""
 _ONCE = (ast.Retry, ast.Try, ast.Within, ast.UpTo, ast.StopWhen, ast.Constrained, ast.Delay, ast.Provided, ast.Chain)
 """Forms whose commands are done before what comes behind the form."""
 _EXAMPLE = 'ask Alice "Tea?". If so, wave'
@@ -40,7 +41,7 @@ def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:
 
 
 def _is_answered(node: ast.Ast) -> bool:
-    return isinstance(node, ast.Phrase) and node.entry.id == _ANSWERED
+    return isinstance(node, ast.Phrase) and node.entry.id == ANSWERED
 
 
 def _depends(node: ast.Ast) -> bool:
@@ -55,14 +56,15 @@ def _gathered(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
     made: list[ast.Ast] = []
     asking: int | None = None
     for item in node.items:
-        form = _form_that_asks(made[asking]) if asking is not None and _depends(item) else []
-        problem = _problem(made, asking, form, item) if asking is not None and _depends(item) else ""
-        if problem:
-            words = item.span.text.split(",")[0]
-            problems.append(diagnostic("BT144", item.span, words=words, problem=problem, example=_EXAMPLE))
-        elif asking is not None and form:
-            made[asking] = _with_last(form, item)
-            continue
+        if asking is not None and _depends(item):
+            form = _form_that_asks(made[asking])
+            problem = _problem(made, asking, form, item)
+            if problem:
+                words = item.span.text.split(",")[0]
+                problems.append(diagnostic("BT144", item.span, words=words, problem=problem, example=_EXAMPLE))
+            elif form:
+                made[asking] = _with_last(form, item)
+                continue
         made.append(item)
         if _questions(item):
             asking = len(made) - 1
@@ -70,7 +72,7 @@ def _gathered(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
 
 
 def _questions(node: ast.Ast) -> list[ast.Phrase]:
-    return [each for each in ast.parents_first(node) if isinstance(each, ast.Phrase) and each.entry.id == _ASK]
+    return [each for each in ast.parents_first(node) if isinstance(each, ast.Phrase) and each.entry.id == ASK]
 
 
 def _question(node: ast.Phrase) -> str:

@@ -105,8 +105,9 @@ class Texts:
         asks = opener in self._question_words
         for at in range(first, last) if asks else (first,):  # `what tea he wants`
             front = find(self._direct, text.words, at)
-            is_open = self._doubtful.isdisjoint(text.words[first:at])  # not `when she comes if she wants tea`
-            if front is not None and (front[1] < last or asks) and is_open:
+            if front is not None and (front[1] < last or asks):
+                if not self._doubtful.isdisjoint(text.words[first:at]):
+                    break  # `when she comes if she wants tea`
                 parts = [*([opener] if asks else []), *self._said(text, first, at), front[0]]
                 return self._question(parts, self._said(text, front[1], last))
         verb = next((at for at in range(first, last) if text.words[at] in self._inverting), first)

@@ -13,13 +13,13 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.text.source import Span
 from btlang.tree import ast
+from btlang.tree.asked import ANSWERED
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import OBJECT, PERSON
 
-_ANSWERS = "AnswerIs"
 _SENTENCE_END = re.compile(r"[.;!?\n]")
 _ON_THE_WAY = ("SomeoneInTheWay", "SomethingInTheWay")
 
@@ -86,7 +86,7 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
 def _is_event(condition: ast.Ast, vocabulary: Lexicon) -> bool:
     """Whether a condition says that something happens: `somebody comes`. An answer has been given by then."""
     events = vocabulary.asking["events"]
-    is_phrase = isinstance(condition, ast.Phrase) and condition.entry.id != _ANSWERS
+    is_phrase = isinstance(condition, ast.Phrase) and condition.entry.id != ANSWERED
     return is_phrase and not set(events).isdisjoint(condition.span.text.lower().split())
 
 

@@ -6,11 +6,11 @@ from functools import cached_property
 
 from btlang.frontends.mission.token import Called, Listed, Token
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
+from btlang.tree.asked import ANSWERED, ASK
 from btlang.vocabulary.value_type import PERSON, TEXT
 from btlang.vocabulary.word_tree import find
 
-ASK = "Ask"
-_ANSWERED, _PERSON_SAYS, _SOMEBODY_SAYS = "AnswerIs", "PersonSays", "SomebodySays"
+_PERSON_SAYS, _SOMEBODY_SAYS = "PersonSays", "SomebodySays"
 _STOPS = frozenset(("semi", "newline"))
 
 
@@ -28,7 +28,7 @@ class Answers(AddressedTexts):
     def reply(self, at: int, role: str) -> int:
         """`ask Alice "Tea?". If so, A`: a command that depends on the answer, not on whether there was one."""
         found = find(self._vocabulary.replies, self._text.words, at)
-        entry = self._vocabulary.entry(_ANSWERED) if found is not None and self._may_ask else None
+        entry = self._vocabulary.entry(ANSWERED) if found is not None and self._may_ask else None
         if found is None or entry is None or not self._is_asked(right_before=role == "otherwise"):
             return 0
         start, end = self._text.starts[at], self._text.ends[found[1] - 1]
@@ -39,7 +39,7 @@ class Answers(AddressedTexts):
     def said(self, token: Token, at: int) -> None:
         """`wait until she says stop` where nobody is asked: what is heard, not an answer."""
         value = token.value
-        if not isinstance(value, Called) or value.entry.id != _ANSWERED or self._may_ask:
+        if not isinstance(value, Called) or value.entry.id != ANSWERED or self._may_ask:
             return
         if find(self._vocabulary.values.pronoun_words, self._text.words, at) is None:
             return
@@ -68,7 +68,7 @@ class Answers(AddressedTexts):
             values = [token.value for token in tokens[first:last] if isinstance(token.value, Called | Listed)]
             if tokens[last - 1].kind == "command" and values and values[-1].entry.id == ASK:
                 return True
-            if right_before or tokens[first].kind != "if" or not values or values[0].entry.id != _ANSWERED:
+            if right_before or tokens[first].kind != "if" or not values or values[0].entry.id != ANSWERED:
                 return False
             last = first
         return False

@@ -82,9 +82,7 @@ class Outcomes(SentenceReader):
         once = {*self._vocabulary.asked_once, *self._vocabulary.roles["once"], *as_soon_as}
         if words[at] not in once and words[at + 1] not in once:
             return
-        end = at
-        while not self._is_end(end):
-            end += 1
+        end = self._end_of_statement(at)
         commas = (i + 1 for i in range(match.last + 1, end) if words[i] == ",")
         replies = (find(self._vocabulary.replies, words, i) for i in commas)
         if any(reply is not None and not reply[0] for reply in replies):
@@ -184,9 +182,7 @@ class Outcomes(SentenceReader):
         if kinds.isdisjoint(RULES) or (role == "otherwise" and "if" in kinds):
             return
         last += text.words[last] == ","
-        rest = last
-        while not self._is_end(rest):
-            rest += 1
+        rest = self._end_of_statement(last)
         said = text.span(last, rest).text if rest > last else "..."
         word = self._vocabulary.word(_FAILS if role == "otherwise" else role)
         one = f"... {word} {said}" if role == "then" else f"{word}, {said}"

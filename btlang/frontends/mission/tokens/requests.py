@@ -8,8 +8,9 @@ from __future__ import annotations
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Listed, Remembered, Token, texts_of
 from btlang.frontends.mission.tokens.addressed_texts import TELL
-from btlang.frontends.mission.tokens.answers import ASK, Answers
+from btlang.frontends.mission.tokens.answers import Answers
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
+from btlang.tree.asked import ASK
 from btlang.vocabulary.entry import COUNT, SAY, Entry
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import free_key

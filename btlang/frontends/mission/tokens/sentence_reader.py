@@ -35,6 +35,12 @@ class SentenceReader:
         """Whether a statement or bracket ends before a word."""
         return self._text.words[at] in _ENDS
 
+    def _end_of_statement(self, at: int) -> int:
+        """Where the statement or bracket ends that goes on at a word."""
+        while not self._is_end(at):
+            at += 1
+        return at
+
     def _with_front(self, at: int, end: int, front: str) -> Match | None:
         """The phrase that words of the table `asking` make of those from `end` on."""
         return self._partial.with_front(at, end, self._vocabulary.asking[front])
