@@ -91,16 +91,18 @@ def answers(texts: Iterable[str], body: Body) -> Expected:
     Without any, whatever is said.
     """
     language = body.ears.settings.language.partition("-")[0] if body.ears is not None else ""
+    forms = _answers().get(language, _answers()["en"])
     phrases: dict[str, None] = {}
+    others: dict[str, None] = {}
     for text in texts:
         meaning = meaning_of(text)
         if meaning in MEANINGS:  # both: who says no to ears that only know forms of yes would be heard to say one
-            forms = _answers().get(language, _answers()["en"])
             phrases.update(dict.fromkeys(spoken(form) for each in MEANINGS for form in forms[each]))
+            others.update(dict.fromkeys(spoken(form) for each in MEANINGS for form in forms.get(f"written_{each}", ())))
         elif words := spoken(text):
             phrases[f"[i would like/want] [a/an/the/some] {words} [please]"] = None
             phrases[f"i'd like [a/an/the/some] {words} [please]"] = None
-    return Expected(tuple(phrases), anything=not phrases)
+    return Expected(tuple(phrases), anything=not phrases, others=tuple(others))
 
 
 def holds(heard: str, text: str) -> bool:

@@ -25,8 +25,10 @@ class Attention:
             return wanted
         if answering or now < self._until:
             return wanted.replace(mode="addressed")  # type: ignore[no-any-return]
-        phrases = tuple(f"{self._wake} {phrase}" for phrase in wanted.phrases)
-        return Expected((self._wake, *phrases), wanted.names, mode="wake")
+        phrases, others = (
+            tuple(f"{self._wake} {phrase}" for phrase in each) for each in (wanted.phrases, wanted.others)
+        )
+        return Expected((self._wake, *phrases), wanted.names, mode="wake", others=others)
 
     def meant(self, understood: Understood, now: float) -> Understood | None:
         """What was said to the robot, without the wake word; None where that is all. It is awake from then on."""

@@ -40,8 +40,10 @@ class Grammar:
         self._names = {kind: {spoken(name): name for name in names} for kind, names in expected.names.items()}
         for names in self._names.values():
             names.pop("", None)
-        self._phrases = [tokens for tokens in map(self._tokens, expected.phrases) if tokens]
-        self._pattern = re.compile("|".join(self._regex(tokens) for tokens in self._phrases) or "(?!)")
+        phrases = [tokens for tokens in map(self._tokens, expected.phrases) if tokens]
+        self._pattern = re.compile("|".join(self._regex(tokens) for tokens in phrases) or "(?!)")
+        others = [self._tokens(other) for other in expected.others if phrases and not self.holds(other)]
+        self._phrases = phrases + [tokens for tokens in others if tokens]
         by_name = {said: name for names in self._names.values() for said, name in names.items() if said != name}
         longest = sorted(by_name, key=len, reverse=True)
         self._written, self._by_name = re.compile(rf"\b({'|'.join(longest)})\b" if longest else "(?!)"), by_name
@@ -60,7 +62,7 @@ class Grammar:
         return "\n".join(("#JSGF V1.0;", "grammar expected;", *rules, f"public <sentence> = {sentences};", ""))
 
     def holds(self, text: str) -> bool:
-        """Whether a text, as it is spoken, is one whole sentence of it."""
+        """Whether a text, as it is spoken, is one whole sentence of it, and none of the others."""
         return self._pattern.fullmatch(f"{spoken(text)} ") is not None
 
     def written(self, text: str) -> str:

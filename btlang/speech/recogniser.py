@@ -49,6 +49,9 @@ class RecogniserSettings(Record):
 class Expected(Record):
     """What is listened for: `phrases` and their `names` as in btlang.speech.grammar, and with `anything` all else too.
 
+    Recognisers that always find the nearest phrase know `others` too, which aren't heard: what could be taken for the
+    contrary of a phrase.
+
     In the `mode` "open" anybody may say anything, in "wake" all phrases begin with the wake word, and in "addressed"
     whoever speaks has woken the robot or was asked, and in "pushed" holds its button.
     """
@@ -57,6 +60,7 @@ class Expected(Record):
     names: Mapping[str, tuple[str, ...]] = {}
     anything: bool = False
     mode: Mode = "open"
+    others: tuple[str, ...] = ()
 
     def __bool__(self) -> bool:
         return bool(self.phrases) or self.anything
@@ -64,7 +68,8 @@ class Expected(Record):
     def __or__(self, other: Expected) -> Expected:
         """Both."""
         phrases, names = tuple(dict.fromkeys(self.phrases + other.phrases)), {**self.names, **other.names}
-        return Expected(phrases, names, self.anything or other.anything, self.mode)
+        others = tuple(dict.fromkeys(self.others + other.others))
+        return Expected(phrases, names, self.anything or other.anything, self.mode, others)
 
 
 class Understood(Record):
