@@ -7,6 +7,7 @@ from math import dist, inf, radians
 from btlang.actions.points import where
 from btlang.engine.leaves.leaf import Failed
 from btlang.robots.capabilities import Base, Docking, Hands, Navigation, Power, Sensors
+from btlang.robots.geometry import Point
 from btlang.robots.robot import RobotError, SensorSilent
 
 TYPE_CHECKING = False
@@ -161,8 +162,16 @@ def place_of_object(robot: Navigation, object: str) -> str:
     return _place_of(robot, object)
 
 
+def place_of_robot(robot: Navigation) -> str:
+    """The name of the place nearest to the robot."""
+    return _nearest_place(robot, (robot.pose.x, robot.pose.y))
+
+
 def _place_of(robot: Navigation, name: str) -> str:
-    point = robot.locate(name)
+    return _nearest_place(robot, robot.locate(name))
+
+
+def _nearest_place(robot: Navigation, point: Point) -> str:
     return min(robot.place_names(), key=lambda place: dist(robot.locate(place), point))
 
 

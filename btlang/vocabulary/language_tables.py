@@ -37,7 +37,7 @@ CHANGING = ("increase", "decrease")
 """Roles whose words change the value that is named behind them, wherever they are found."""
 
 ASKING = (
-    "journey", "search", "whereabouts", "counting", "asking_be", "asking_do", "answers", "feeling", "there",
+    "journey", "search", "whereabouts", "whether", "counting", "asking_be", "asking_do", "answers", "feeling", "there",
     "very", "states", "subject", "been", "towards", "going", "finding_out",
     "inspecting", "telling", "whole", "located", "wishing", "wished", "fetching", "begging", "home",
     "pleading", "saying_that", "plea", "reminding", "reminder", "addressed", "informing", "informed", "staying",

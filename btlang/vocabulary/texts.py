@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 _ENDS = frozenset((END_OF_STATEMENT, END_OF_TEXT))
+_BEFORE_QUOTES = frozenset((":", ","))  # `say: "hello"`
 _MARKS = frozenset((",", ":", "(", ")", "{", "}"))
 _JOINING = (
     "and", "or", "nor", "but", "if", "unless", "while", "until", "whenever", "before", "after", "otherwise",
@@ -38,7 +39,7 @@ class Texts:
         self._clause_words = frozenset(language["clause_words"])
         self._question_words = frozenset(language["question_words"])
         self._openers = frozenset((*language["clause_openers"], *self._question_words))
-        self._inverting = frozenset(language["inverting"])
+        self.inverting = frozenset(language["inverting"])
         self._relatives = frozenset(phrase.split()[0] for phrase in language["relatives"])
         self._owners = frozenset(language["possessives"].get("others", ()))
         self._addressed = "".join(language["asking"].get("addressed", ())[:1])
@@ -55,6 +56,8 @@ class Texts:
         word = text.words[at]
         if word[0] == '"':
             return word[1:], at + 1
+        if word in _BEFORE_QUOTES and text.words[at + 1][0] == '"':
+            return text.words[at + 1][1:], at + 2
         end = self._end_of_several(text, at)
         if end:
             return text.source.text[text.begin(at) : text.ends[end - 1]], end
@@ -110,7 +113,7 @@ class Texts:
                     break  # `when she comes if she wants tea`
                 parts = [*([opener] if asks else []), *self._said(text, first, at), front[0]]
                 return self._question(parts, self._said(text, front[1], last))
-        verb = next((at for at in range(first, last) if text.words[at] in self._inverting), first)
+        verb = next((at for at in range(first, last) if text.words[at] in self.inverting), first)
         if verb == first or not self._relatives.isdisjoint(text.words[first:verb]):
             return None
         parts = [*([opener] if asks else []), text.words[verb], *self._said(text, first, verb)]

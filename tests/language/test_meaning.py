@@ -112,6 +112,12 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("there are two books near the lab", "BT164"),
         ("I am not hungry, wave", "BT010"),
         ("whenever you see someone, wave at them. Follow them", "BT038"),
+        ("tell me if the kitchen door is open", "BT159"),
+        ("tell Bob if Alice is in the lab", "BT159"),
+        ("go to the lab, wave and say hello on the way", "BT179"),
+        ("wave. Say hello on the way", "BT179"),
+        ("go to the lab. If bumped, wave and start over", "BT067"),
+        ("repeat 3 times: wave and start over", "BT067"),
     ],
 )
 def test_what_is_refused(sentence: str, code: str) -> None:

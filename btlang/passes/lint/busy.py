@@ -53,6 +53,8 @@ def busy_loops(compilation: Compilation) -> list[Diagnostic]:
 
 
 def _leaf(entry: Entry) -> int:
+    if entry.outputs and not entry.phrases:
+        return ASKS  # it chooses what a condition is about
     if entry.instant:
         return INSTANT
     return TAKES_TIME if entry.sort == "action" else ASKS

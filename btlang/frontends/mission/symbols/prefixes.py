@@ -69,6 +69,8 @@ def _prefix(text: Words, role: str, at: int, vocabulary: Lexicon) -> Prefix | No
         words = _name(text, separator[1], last, vocabulary)
         return Prefix(role, key_of(words), words, at, last, separator[0]) if words else None
     if role == "each":
+        if separator is not None and separator[0] == at:
+            return _each_of(text, separator[1], vocabulary)
         noun = vocabulary.values.noun(text, at)
         wider = [way for way in vocabulary.values.groups(text, at, is_bare=True) if text.words[way[1]] in BEFORE_BODY]
         if separator is None or (noun is not None and wider and _is_described(wider[-1], text, vocabulary)):
@@ -85,6 +87,17 @@ def _prefix(text: Words, role: str, at: int, vocabulary: Lexicon) -> Prefix | No
         return Prefix(role, key_of(words), words, -1, last) if words else None
     words = _name(text, at, separator[0], vocabulary)
     return Prefix(role, key_of(words), words, separator[1], separator[1]) if words else None
+
+
+def _each_of(text: Words, at: int, vocabulary: Lexicon) -> Prefix | None:
+    """`for each of the lab, the hall:`, `for each of the rooms:`: a value that is called as its type is."""
+    for meant, end in vocabulary.values.groups(text, at, is_bare=True):
+        if text.words[end] in BEFORE_BODY:
+            return Prefix("each", meant.type, (meant.type,), at, end, noun=meant)
+    for kind in WORLD:
+        if kind in vocabulary.types and vocabulary.context.read(kind, text, at) is not None:
+            return Prefix("each", kind, (kind,), at, at)
+    return None
 
 
 def _is_described(way: tuple[Description, int], text: Words, vocabulary: Lexicon) -> bool:

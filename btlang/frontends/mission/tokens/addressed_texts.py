@@ -71,13 +71,17 @@ class AddressedTexts(SentenceReader):
         if person is None or entry is None or not person[0] or person[0][:1] == "{":
             return 0
         end = person[1] + (text.words[person[1]] in asking["informed"])
-        said = self._asked_of() if ends(end) else ""
-        if not said:
-            return 0
         slots = {slot.type: slot.name for slot in entry.slots}
+        said = self._asked_of() if ends(end) else ""
         told = Called(entry, ((slots[PERSON], person[0]), (slots[TEXT], said)))
+        if not said:
+            return self._indirect(at, end, told)
         self._tokens.append(Token("command", text.starts[at], text.ends[end - 1], told))
         return end
+
+    def _indirect(self, at: int, first: int, said: Called) -> int:
+        """Reads the indirect question that begins at `first`, whose answer a command says. See Questions."""
+        raise NotImplementedError
 
     def _asked_of(self) -> str:
         """The words of the one condition that the command being read depends on, with names for pronouns; else ""."""

@@ -11,16 +11,17 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import (
     FORMS,
     JOINTS,
+    LINES,
     RULES,
     WAITING,
     Called,
     Listed,
-    OnDays,
     Token,
     constraint_of,
     statement_start,
 )
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
+from btlang.frontends.mission.tokens.clock_words import ClockWords
+from btlang.frontends.mission.tokens.sentence_reader import leads_to
 from btlang.frontends.mission.tokens.silent_words import BEGINS, begins_item
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.match import Match, SlotValue
@@ -28,11 +29,10 @@ from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PERSON
 from btlang.vocabulary.word_tree import find
 
-_TIME = "time_of_day"
-_TODAY, _COMES, _DAYTIME = "TodayIs", "WaitForPerson", "TimeOfDay"
+_COMES = "WaitForPerson"
 
 
-class OrderWords(SentenceReader):
+class OrderWords(ClockWords):
     """Those of one text."""
 
     def read(self, match: Match, at: int) -> int:
@@ -141,7 +141,15 @@ class OrderWords(SentenceReader):
         self._partial.append(waiting, journey.last)
         return waiting.last
 
-    def waits(self, role: str) -> None:
+    def connect(self, role: str) -> None:
+        """What the words that were read last, of a role, are where they stand."""
+        if role == "start_over":
+            self._start_over()
+        elif role in WAITING:
+            self._waits(role)
+            self._until()
+
+    def _waits(self, role: str) -> None:
         """`stand at the door until noon`: goes there, then waits until then."""
         tokens, text = self._tokens, self._text
         if len(tokens) > 1 and tokens[-2].kind == "command":
@@ -161,6 +169,16 @@ class OrderWords(SentenceReader):
         self._partial.append(Match(Meaning("command", entry), found[1], (value,)), at)
         tokens[-1].start = start
         return found[1]
+
+    def _start_over(self) -> None:
+        """`A, B and start over`: as a sentence of its own, unless the commands before may be left out."""
+        tokens, last = self._tokens, len(self._tokens) - 1
+        first = last
+        while first and tokens[first - 1].kind in JOINTS:
+            first -= 1
+        kinds = {token.kind for token in tokens[statement_start(tokens, first) : first]}
+        if first < last and kinds and FORMS.isdisjoint(kinds) and kinds.isdisjoint(("repeat", "colon")):
+            tokens[first:last] = [Token("semi", tokens[first].start, tokens[first].start)]
 
     def aside(self, at: int) -> int:
         """`whenever A, interrupt, B, then continue`: what a standing rule does by itself.
@@ -227,8 +245,8 @@ class OrderWords(SentenceReader):
         if found is None:
             return 0
         behind = longest(self._vocabulary.trie, self._text, found.last, self._context)
-        joint = behind is not None and behind.meaning.role in ("then", "and", "following")
-        if not (joint or self._is_end(found.last) or self._text.words[found.last] == ","):
+        joins = behind is not None and behind.meaning.entry is None  # `is closed` is a part of a condition
+        if not (joins or self._is_end(found.last) or self._text.words[found.last] == ","):
             return 0
         self._partial.append(found, at)
         return found.last
@@ -243,18 +261,6 @@ class OrderWords(SentenceReader):
                 return end
         return 0
 
-    def _between(self, match: Match, at: int) -> int:
-        """`every 15 minutes between 10 pm and 6 am, A`: each time, if it is then."""
-        tokens, words, entry = self._tokens, self._text.words, self._vocabulary.entry(_DAYTIME)
-        joins = words[match.last] in self._vocabulary.asking["between_joint"]
-        last = self._context.read(_TIME, self._text, match.last + 1) if joins else None
-        if last is None or entry is None or not tokens or tokens[-1].kind != "every" or words[last[1]] != ",":
-            return 0
-        start, end = self._text.starts[at], self._text.ends[last[1] - 1]
-        asked = Called(entry, (("at_least", match.values[0].text), ("at_most", last[0])))
-        tokens += [Token("comma", start, start), Token("if", start, start), Token("condition", start, end, asked)]
-        return last[1]
-
     def _instead(self, match: Match, at: int) -> int:
         """`otherwise wave instead`; elsewhere it is open what isn't done."""
         before = self._tokens[statement_start(self._tokens, len(self._tokens)) :]
@@ -262,19 +268,6 @@ class OrderWords(SentenceReader):
             return match.last
         span, otherwise = self._text.span(at, match.last), self._vocabulary.word("otherwise")
         self._calls.problems.append(diagnostic("BT166", span, words=span.text, otherwise=otherwise))
-        return match.last
-
-    def _weekly(self, match: Match, at: int) -> int:
-        """`on weekdays at 9, A`: as every day at that time, but on such days alone."""
-        entry = self._vocabulary.entry(_TODAY)
-        said = {value.name: value for value in match.values}
-        if entry is None or len(said) != 2:
-            return 0
-        days, time = said["days"], said["time_of_day"]
-        start, end = self._text.starts[at], self._text.ends[match.last - 1]
-        named = ";".join((days.text, *days.more))
-        asked = Called(entry, ((entry.slots[0].name, named),))
-        self._tokens.append(Token("every_day", start, end, OnDays(time.text, asked)))
         return match.last
 
     def journey_of_constraint(self, at: int) -> int:
@@ -300,14 +293,17 @@ class OrderWords(SentenceReader):
         return journey.last
 
     def _on_way(self, at: int, end: int) -> int:
-        """`A, and on the way B`: with the journey, before it if it is a task; at the end of a statement nothing."""
+        """`A, and on the way B`, `A and B on the way`: with the journey, before it if it is a task."""
         tokens, text = self._tokens, self._text
         if tokens[-1:] and tokens[-1].kind == "condition":
             return self._any_time(end)  # `if the battery gets low on the way, A`
-        if self._journey() is None:
-            return 0
         if self._is_end(end):
-            return end
+            return end if self._goes_along() else 0
+        journey = self._journey()
+        while journey is not None and tokens[-1].kind in LINES:
+            tokens.pop()
+        if journey is None or (tokens[-1].kind not in JOINTS and tokens[-1] is not journey):
+            return 0
         behind = end + (text.words[end] == ",")
         match = longest(self._vocabulary.trie, text, behind, self._context)
         if match is None or match.meaning.entry is None:
@@ -317,6 +313,21 @@ class OrderWords(SentenceReader):
         joint = self._joint(self._calls.token(match, behind))
         tokens.append(Token("after" if joint == "then" else joint, text.starts[at], text.ends[end - 1]))
         return behind
+
+    def _goes_along(self) -> bool:
+        """Joins the last command to the journey just before it. A journey alone stays as it is."""
+        tokens = self._tokens
+        journey = self._journey(tokens[:-1])
+        if journey is None:
+            return bool(tokens) and tokens[-1] is self._journey()
+        first = len(tokens) - 1
+        while tokens[first - 1].kind in JOINTS or tokens[first - 1].kind in LINES:
+            first -= 1
+        if tokens[-1].kind != "command" or tokens[first - 1] is not journey:
+            return False
+        joint = self._joint(tokens[-1])
+        tokens[first:-1] = [Token("after" if joint == "then" else joint, tokens[-1].start, tokens[-1].start)]
+        return True
 
     def _on_way_to(self, at: int, end: int) -> int:
         """What is done on the way to a place: a journey with it, behind it for a task, constrained by it."""

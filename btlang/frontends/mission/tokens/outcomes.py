@@ -30,9 +30,11 @@ class Outcomes(SentenceReader):
     _looked: tuple[int, Token | None, int, frozenset[str]] = 0, None, 0, frozenset()
     """How many tokens have been looked at, the last of them, where its statement begins, and the kinds in that."""
 
-    def settle(self) -> None:
-        """What the latest condition asks is left out where the command before it has settled it."""
-        tokens = self._tokens
+    def settle(self, end: int) -> None:
+        """What the condition asks that ends at a word is left out where the command before it has settled it."""
+        tokens, roles = self._tokens, self._vocabulary.roles
+        if self._text.words[end] in (*roles["or"], *roles["and"]):
+            return  # `go to Bob. If he isn't there or bumped, A` asks more
         denied = tokens[-2].kind == "not"
         form = len(tokens) - (3 if denied else 2)
         if form < 1 or tokens[form].kind not in _ASKING:

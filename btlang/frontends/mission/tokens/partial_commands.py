@@ -242,7 +242,7 @@ def said_before(tokens: Sequence[Token]) -> Token | None:
 
 def may_be_doing(tokens: Sequence[Token]) -> bool:
     """Whether a command that comes may have the form of its verb: behind such a word or another such command."""
-    if not tokens or tokens[-1].kind in ("if", *BEFORE_DOING) or tokens[-1].role == "doing":
+    if not tokens or tokens[-1].kind in ("if", "try", *BEFORE_DOING) or tokens[-1].role == "doing":
         return bool(tokens)
     if tokens[-1].kind not in JOINTS:
         return False

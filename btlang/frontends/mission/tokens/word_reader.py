@@ -12,7 +12,7 @@ from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.names import Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
-from btlang.frontends.mission.token import BEFORE_CONDITIONS, JOINTS, RULES, WAITING, Token, constraint_of, go_on
+from btlang.frontends.mission.token import BEFORE_CONDITIONS, JOINTS, RULES, Token, constraint_of, go_on
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
 from btlang.frontends.mission.tokens.order_words import OrderWords
@@ -314,7 +314,7 @@ class WordReader:
             shared = self._origin if self._shares else None
             self._origin = (token, *shared[1:]) if shared is not None else (token, at, match, self._root)
         if len(tokens) > 2:
-            self._outcomes.settle()
+            self._outcomes.settle(match.last)
 
     def _operand(self, match: Match, role: str, at: int) -> int:
         """The token of a command or connective; where a value in it is asked for, the commands that say it."""
@@ -342,8 +342,7 @@ class WordReader:
             self._is_apart = True
         if role in ("if", "unless"):
             self._requests.finding_out(match.last)
-        if role in WAITING:
-            self._order.waits(role)
+        self._order.connect(role)
         if role == "then" and len(tokens) > 1:
             self._outcomes.found(match, at)
         if role == "if_works":
