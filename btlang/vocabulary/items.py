@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 
 from btlang.record import Record
-from btlang.vocabulary.entry import COMPARISONS, POINT, Entry
+from btlang.vocabulary.entry import COMPARISONS, POINT, Entry, Role
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.value_type import PLACE, ValueType, with_unit
@@ -21,7 +21,7 @@ class Item(Record):
     """One thing to list. `sort` is "command", "condition", "word" (a connective or form) or "value".
 
     `ways` are all patterns that stand for it; `names` are further words that ask for it; `details` are lines about
-    its slots, its resources and its node.
+    its slots, its resources and its node. A command that is a `verb` with `roles` is listed with the others of its verb.
     """
 
     topic: str
@@ -31,6 +31,8 @@ class Item(Record):
     example: str = ""
     names: tuple[str, ...] = ()
     details: tuple[str, ...] = ()
+    verb: str = ""
+    roles: tuple[Role, ...] = ()
 
     def words(self) -> frozenset[str]:
         """All words of its patterns and names, in lower case, choices apart."""
@@ -71,9 +73,10 @@ def _command(entry: Entry, vocabulary: Lexicon) -> Item:
     if entry.resources:
         details.append("needs: " + ", ".join(entry.resources))
     details.append(f"node: {entry.id}")
+    verbs, roles = entry.verbs[0] if entry.verbs else (("",), ())
     return Item(
         entry.topic or "other", sort, ways, " ".join(entry.help.split()), entry.example, (entry.id,),
-        tuple(details),
+        tuple(details), verbs[0], roles,
     )  # fmt: skip
 
 

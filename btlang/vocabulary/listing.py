@@ -5,9 +5,11 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable, Sequence
 
+from btlang.text.enumeration import joined
 from btlang.text.source import Source
 from btlang.text.spelling import nearest
 from btlang.text.words import split
+from btlang.vocabulary.entry import UNMARKED
 from btlang.vocabulary.items import Item, items
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Form, forms
@@ -127,15 +129,53 @@ def _spoken(item: Item, articles: frozenset[str]) -> set[Form]:
 def _by_topic(chosen: Iterable[Item], width: int, whole: bool = False) -> list[str]:
     lines: list[str] = []
     topic = ""
-    for item in chosen:
-        if item.topic != topic:
-            topic = item.topic
+    for first, *others in _by_verb(chosen):
+        if first.topic != topic:
+            topic = first.topic
             lines += ["", f"{topic}:"] if lines else [f"{topic}:"]
-        if whole and item.sort != "value":
-            lines += ["  " + line for line in _whole(item, width - 2)]
+        if whole and first.sort != "value":
+            lines += ["  " + line for item in (first, *others) for line in _whole(item, width - 2)]
+        elif others:
+            lines += _verb(first, others, width)
         else:
-            lines += _brief(item, width)
+            lines += _brief(first, width)
     return lines
+
+
+def _by_verb(chosen: Iterable[Item]) -> list[list[Item]]:
+    """The items, those of one verb in a topic together."""
+    groups: dict[tuple[str, str], list[Item]] = {}
+    for number, item in enumerate(chosen):
+        groups.setdefault((item.topic, item.verb or str(number)), []).append(item)
+    return list(groups.values())
+
+
+def _verb(first: Item, others: Sequence[Item], width: int) -> list[str]:
+    """A verb once, with its roles: `go to {place}, {person} or {door} [through {via}]`; then what it does with each."""
+    items = (first, *others)
+    lines = _wrapped(f"{first.verb} {_roles(items)}", "  ", "    ", width)
+    for item in items:
+        said = item.ways[0].removeprefix(f"{item.verb} ")
+        lines += _wrapped(f"{said}: {item.help}", "      ", "        ", width)
+        lines += _wrapped(f"For example: {item.example}", "        ", "        ", width)
+    return lines
+
+
+def _roles(items: Sequence[Item]) -> str:
+    """The roles of all the items in their order, each once."""
+    said: dict[str, list[str]] = {}
+    for item in items:
+        for role in item.roles:
+            word = "" if role.name in UNMARKED or not role.words else f"{' '.join(role.words[0])} "
+            said.setdefault(role.name, []).append(f"{word}{{{role.slot}}}")
+    needed = {
+        name for name in said if all(any(role.name == name and role.is_needed for role in item.roles) for item in items)
+    }
+    return " ".join(
+        either if name in needed else f"[{either}]"
+        for name, ways in said.items()
+        for either in [joined([*dict.fromkeys(ways)], "or")]
+    )
 
 
 def _brief(item: Item, width: int) -> list[str]:

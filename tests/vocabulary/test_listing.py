@@ -106,8 +106,7 @@ def test_lines_fit_a_terminal() -> None:
 
 def test_entries_of_the_list() -> None:
     assert (
-        "  go to {place} [through {via}] [{manner}]\n      Drives to a place. Fails if there is no free way.\n"
-        "      For example: go to the kitchen\n"
+        "  patrol {place} [{manner}]\n      Drives to a place and turns once around. For example: patrol the lobby\n"
     ) in WHOLE
     assert "  battery is low  (condition)\n" in WHOLE
     assert "  retry, retry to, keep trying to, keep trying\n" in WHOLE
@@ -271,3 +270,14 @@ def test_packs_and_functions_are_listed(tmp_path: Path) -> None:
     assert listing(vocabulary, "danach")[1:] == ["  und", "      Danach.", "      for example: wave und nod"]
     assert vocabulary.about["and"].help == VOCABULARY.about["and"].help
     assert vocabulary.about["and"].example == ""
+
+
+def test_a_verb_is_listed_once_with_its_roles() -> None:
+    lines = listing(VOCABULARY, "navigation")
+    assert "  go to {place}, to {person}, to {door} or into {zone} [through {via}]" in lines
+    assert "  find {person} or {object} [in {place}]" in lines
+    said = heads(listing(VOCABULARY))
+    verbs = [(item.topic, item.verb) for item in ITEMS if item.verb]
+    of_several = [item for item in ITEMS if verbs.count((item.topic, item.verb)) > 1]
+    assert len(of_several) > 5
+    assert {item.ways[0] for item in of_several}.isdisjoint(said)
