@@ -8,9 +8,12 @@ from btlang.text.source import Span
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from typing import Any
+    from typing import Any, TypeAlias
 
     from btlang.vocabulary.ros_binding import RosBinding
+
+    Verbs: TypeAlias = "tuple[tuple[tuple[str, ...], tuple[Role, ...]], ...]"
+    """Verbs that mean the same, with their roles; then others."""
 
 
 class SlotSpec(Record):
@@ -116,7 +119,7 @@ class Entry(Record, uncompared=("span",)):
     achieves: tuple[str, ...] = ()
     denied: tuple[str, ...] = ()
     yields: bool = False
-    verbs: tuple[tuple[tuple[str, ...], tuple[Role, ...]], ...] = ()
+    verbs: Verbs = ()
     span: Span | None = None
 
     def slot(self, name: str) -> SlotSpec:

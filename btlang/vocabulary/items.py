@@ -21,7 +21,7 @@ class Item(Record):
     """One thing to list. `sort` is "command", "condition", "word" (a connective or form) or "value".
 
     `ways` are all patterns that stand for it; `names` are further words that ask for it; `details` are lines about
-    its slots, its resources and its node. A command that is a `verb` with `roles` is listed with the others of its verb.
+    its slots, its resources and its node. A command that is a `verb` with `roles` is listed with others of its verb.
     """
 
     topic: str

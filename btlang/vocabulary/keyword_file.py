@@ -26,10 +26,11 @@ from btlang.vocabulary.value_type import PLACE, Unit, ValueType
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from typing import Any, TypeAlias
+    from typing import Any
 
-    _Verbs: TypeAlias = tuple[tuple[tuple[str, ...], tuple[Role, ...]], ...]
+    from btlang.vocabulary.entry import Verbs
 
+_SAID = frozenset(("phrase", "verb", "roles", "frames"))  # of an id in [phrases]
 _OWN = ("shipped", "yields", "replaces", "action", "condition", "quantity", "noun", "type", "phrases")
 _TOP = {"language", *_OWN, *WORD_LISTS, *SWITCHES, *TABLES}
 _ENTRY = {
@@ -211,18 +212,21 @@ class _Reader:
         return more, known
 
     def phrases(self, table: object) -> list[Entry]:
-        """The entries that give known ids further phrases: `GoTo = ["ve a {place}"]`."""
+        """The entries that give known ids phrases or verbs: `GoTo = "ve a {place}"`, `{ verb = "ve", roles = ... }`."""
         if not isinstance(table, dict):
             self.wrong("phrases is a table: [phrases]", "phrases")
             return []
         found = []
         for name, value in table.items():
-            phrases = [value] if isinstance(value, str) else value
-            if not _strings(phrases) or not phrases:
-                self.wrong(f"{name} in [phrases] is a phrase, or a list of them", name)
-                continue
             self.start = max(self.source.text.find(f"\n{name}"), 0)
-            found.append(Entry("", name, tuple(phrases), span=self.span(phrases[0])))
+            given = value if isinstance(value, dict) else {"phrase": value}
+            verbs, phrases = self.verbs(given, "action"), given.get("phrase", [])
+            phrases = [phrases] if isinstance(phrases, str) else phrases
+            if not _strings(phrases) or not (phrases or verbs) or not given.keys() <= _SAID:
+                self.wrong(f"{name} in [phrases] is a phrase, a list of them, or a table with verb and roles", name)
+                continue
+            near = phrases[0] if phrases else verbs[0][0][0]
+            found.append(Entry("", name, tuple(phrases), span=self.span(near), verbs=verbs))
         return found
 
     def replacing(self, ids: object, entries: list[Entry]) -> list[Entry]:
@@ -266,7 +270,7 @@ class _Reader:
         )
         return made
 
-    def verbs(self, table: dict[str, Any], sort: str) -> _Verbs:
+    def verbs(self, table: dict[str, Any], sort: str) -> Verbs:
         """The verbs of an entry with their roles: of the entry itself, and of each of its frames."""
         frames = table.get("frames", [])
         if not isinstance(frames, list) or not all(isinstance(frame, dict) for frame in frames):

@@ -36,6 +36,7 @@ from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS, WordTree, tree_o
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from btlang.vocabulary.entry import Verbs
     from btlang.vocabulary.keyword_file import KeywordFile
 
 DEFINING = ("define_strong", "define")
@@ -321,16 +322,20 @@ class Lexicon:
             self._wrong(entry, f"no entry has the id '{entry.id}'" + (f"; similar: {', '.join(near)}" if near else ""))
             return None
         slots = {slot.name for slot in known[0].slots}
+        verbs, said_so = self._with_roles(entry)
+        phrases = (*entry.phrases, *(phrase for phrase in said_so if phrase not in entry.phrases))
         try:
-            parts = {part for text in entry.phrases for form in forms(text) for part in form}
+            parts = {part for text in phrases for form in forms(text) for part in form}
         except PatternError as error:
             self._wrong(entry, str(error))
             return None
         used = {part.name for part in parts if isinstance(part, Slot)}
         for name in sorted(used - slots):
             self._wrong(entry, f"{entry.id} has no slot {{{name}}}")
-        said = {"quantity" if known[0].measures else "phrases": entry.phrases}
-        made: Entry = known[0].replace(**{"phrases": (), **said}, call="", ros=None, replaces=False, span=entry.span)
+        said = {"quantity" if known[0].measures else "phrases": phrases}
+        made: Entry = known[0].replace(
+            **{"phrases": (), **said}, call="", ros=None, replaces=False, span=entry.span, verbs=verbs
+        )
         made = self._with_comparisons(made) if made.measures else made
         return made if used <= slots else None
 
@@ -346,14 +351,19 @@ class Lexicon:
             self._wrong(entry, f"the slot {{{slot.name}}} has no type '{slot.type}'; known are {known}")
         if unknown:
             return None
-        verbs = tuple((verbs, tuple(map(self._introduced, roles))) for verbs, roles in entry.verbs)
-        said = [phrase for own, roles in verbs for phrase in phrases_of(own, roles, self.values.role_words.particles)]
+        verbs, said = self._with_roles(entry)
         made: Entry = entry.replace(
             slots=tuple(self._with_port_default(entry, slot) for slot in entry.slots),
             verbs=verbs,
             phrases=(*said, *(phrase for phrase in entry.phrases if phrase not in said)),
         )
         return made
+
+    def _with_roles(self, entry: Entry) -> tuple[Verbs, list[str]]:
+        """The verbs of an entry with the words that introduce their roles, and the patterns that say them."""
+        verbs = tuple((verbs, tuple(map(self._introduced, roles))) for verbs, roles in entry.verbs)
+        particles = self.values.role_words.particles
+        return verbs, [phrase for own, roles in verbs for phrase in phrases_of(own, roles, particles)]
 
     def _introduced(self, role: Role) -> Role:
         """The role with the words of the language that introduce it, unless its entry narrows them."""

@@ -222,8 +222,8 @@ class Values(Measures):
 
     def choices(self, kind: str) -> list[list[str]]:
         """The words that stand for all names of a type, and for those that are chosen, in the first way to say them."""
-        if kind in (MANNER, SIDE) or not self._listed.get(kind):
-            return []
+        if kind in (MANNER, SIDE) or "_" in kind or not self._listed.get(kind):
+            return []  # nobody says `every spoken_language`
         likes = [parts for _, parts in self.likenesses.features.get(kind, ())]
         return [words.split() for words in self.phrases.said(kind, likes, self._spoken)]
 

@@ -58,6 +58,14 @@ TWINS = {
         "while the distance ahead is at least 50 cm or the distance to the kitchen is not below 2 m, "
         "move forward 30 cm",
     ),
+    "verbs with roles in any order": (
+        "lleva a Alice la taza\ntrae la taza a la cocina despacio\nve por el vestíbulo a la cocina\n"
+        "regresa despacio al laboratorio por el vestíbulo\nbusca en la cocina la taza\n"
+        "acompaña a Bob hasta el laboratorio\nconduce al laboratorio a Alice\ncolocar en la cocina la taza",
+        "bring the cup to Alice\ntake the cup to the kitchen slowly\ngo to the kitchen through the lobby\n"
+        "go to the lab through the lobby slowly\nlook for the cup in the kitchen\nfollow Bob to the lab\n"
+        "guide Alice to the lab\nput the cup in the kitchen",
+    ),
     "repeating": (
         "repite avanza 30 cm hasta que haya una pared delante\n"
         "asiente dos veces\nsaluda cada 2 s durante un minuto y medio\n"
@@ -277,8 +285,11 @@ def test_a_folder_of_a_user(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         ('[phrases]\nWavee = "abanea"', "no entry has the id 'Wavee'; similar: Wave"),
         ('[phrases]\nWave = "abanea {place}"', r"Wave has no slot \{place\}"),
         ('[phrases]\nWave = "abanea ["', r"'\[' without '\]'"),
-        ("[phrases]\nWave = 3", "Wave in .phrases. is a phrase, or a list of them"),
-        ("[phrases]\nWave = []", "Wave in .phrases. is a phrase, or a list of them"),
+        ("[phrases]\nWave = 3", "Wave in .phrases. is a phrase, a list of them, or a table with verb and roles"),
+        ("[phrases]\nWave = []", "Wave in .phrases. is a phrase, a list of them, or a table with verb and roles"),
+        ('[phrases]\nTake = { verb = "porta", role = {} }', "a table with verb and roles"),
+        ('[phrases]\nTake = { verb = "porta", roles = { theme = "person" } }', r"Take has no slot \{person\}"),
+        ('[phrases]\nTake = { verb = "porta", roles = { what = "object" } }', "has no role 'what'"),
         ("phrases = 3", "phrases is a table"),
         ("decimal_comma = 1", "decimal_comma is true or false"),
         ("[contractions]\nal = 3", "al in .contractions. must be a word"),
@@ -297,5 +308,11 @@ def test_further_phrases_in_english(tmp_path: Path) -> None:
     path.write_text('[phrases]\nGoTo = "head over to {place}"\nBattery = "juice"\n', encoding="utf-8")
     said = btlang.parse_tree("head over to the lab if the juice is above 50%", keywords=[str(path)])
     assert said.tree == btlang.parse_tree("go to the lab if the battery is above 50%").tree
+    path.write_text(
+        '[phrases.Take]\nverb = "ferry"\nroles = { theme = "object", goal = { type = "place", words = ["to"] } }\n',
+        encoding="utf-8",
+    )
+    for text in ("ferry the cup to the lab", "ferry to the lab the cup"):
+        assert btlang.parse_tree(text, keywords=[str(path)]).tree == btlang.parse_tree("take the cup to the lab").tree
     assert ENGLISH == "en"
     said.run(speed="max")

@@ -24,6 +24,7 @@ from btlang.frontends.mission.tokens.clock_words import ClockWords
 from btlang.frontends.mission.tokens.sentence_reader import leads_to
 from btlang.frontends.mission.tokens.silent_words import BEGINS, begins_item
 from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PERSON
@@ -245,7 +246,7 @@ class OrderWords(ClockWords):
         if found is None:
             return 0
         behind = longest(self._vocabulary.trie, self._text, found.last, self._context)
-        joins = behind is not None and behind.meaning.entry is None  # `is closed` is a part of a condition
+        joins = behind is not None and behind.meaning.entry is None and behind.meaning.role not in NOT_ALONE
         if not (joins or self._is_end(found.last) or self._text.words[found.last] == ","):
             return 0
         self._partial.append(found, at)
