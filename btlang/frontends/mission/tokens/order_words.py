@@ -319,8 +319,8 @@ class OrderWords(ClockWords):
         """Joins the last command to the journey just before it. A journey alone stays as it is."""
         tokens = self._tokens
         journey = self._journey(tokens[:-1])
-        if journey is None:
-            return bool(tokens) and tokens[-1] is self._journey()
+        if journey is None or constraint_of(tokens[-1]) is not None:
+            return bool(tokens) and self._journey() is not None
         first = len(tokens) - 1
         while tokens[first - 1].kind in JOINTS or tokens[first - 1].kind in LINES:
             first -= 1
