@@ -11,11 +11,19 @@ SPEAKER = "me"
 
 
 def of_thing(
-    kind: str, color: str, size: str, states: tuple[str, ...], owner: str, uses: tuple[str, ...] = ()
+    kind: str,
+    color: str,
+    size: str,
+    states: tuple[str, ...],
+    owner: str,
+    uses: tuple[str, ...] = (),
+    content: str = "",
+    having: tuple[str, ...] = (),
 ) -> Parts:
     """The parts by which an object or a place can be described, in lower case but for its owner."""
     several = (*(("state", state) for state in states), *(("use", use) for use in uses))
-    named = [("color", _spelt(color)), ("kind", kind), ("size", size), *several]
+    pieces = (("part", text) for text in chain.from_iterable(map(_with_shorter, having)))
+    named = [("color", _spelt(color)), ("kind", kind), ("size", size), ("content", content), *several, *pieces]
     return (*((name, text.lower()) for name, text in named if text), *([("owner", owner)] if owner else []))
 
 
@@ -30,7 +38,7 @@ def head_of(name: str) -> str:
 
 def of_person(wears: tuple[str, ...], gesture: str) -> Parts:
     """The same of a person: a red coat is a coat too."""
-    clothes = (("clothing", text) for text in chain.from_iterable(map(_clothes, wears)))
+    clothes = (("clothing", text) for text in chain.from_iterable(map(_with_shorter, wears)))
     return tuple((name, text.lower()) for name, text in (*clothes, ("gesture", gesture)) if text)
 
 
@@ -48,6 +56,8 @@ def unseen(kind: str, parts: Mapping[str, str], behind: str = "") -> str:
     if "owner" in parts:
         behind = f" that belongs to {'you' if parts['owner'] == SPEAKER else parts['owner']}{behind}"
     use = f" to {parts['use']}" if "use" in parts else ""
+    behind = f"{f' of {content}' if (content := parts.get('content')) else ''}{behind}"
+    behind = f"{f' with {_article(part)}{part}' if (part := parts.get('part')) else ''}{behind}"
     if "named" in parts:
         return f"I know no {' '.join(words)}{use}{behind}"
     if "kind" not in parts:
@@ -66,7 +76,8 @@ def _article(word: str) -> str:
     return "an " if word[0] in "aeiou" else "a "
 
 
-def _clothes(text: str) -> Iterator[str]:
+def _with_shorter(text: str) -> Iterator[str]:
+    """What is a red lid is a lid, too."""
     yield text
     if " " in text:
         yield text.split(" ", 1)[1]

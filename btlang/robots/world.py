@@ -22,7 +22,7 @@ OBJECT_RADIUS = 0.05
 NEVER = float("inf")
 _UNDRAWN = (
     "comes", "leaves", "says", "answers", "answers_after", "follows", "again", "uses", "walks", "visits", "asks",
-    "sized", "state", "owner",
+    "sized", "state", "owner", "content", "having",
 )  # fmt: skip
 
 
@@ -73,7 +73,8 @@ class Thing(Record):
 class WorldObject(Thing):
     """An object. `size` is the metres of its longest side, `uses` are what it is good for: "drink".
 
-    It may be `sized` in a word ("small"), have a `state` ("dirty"), and belong to its `owner`.
+    It may be `sized` in a word ("small"), have a `state` ("dirty"), belong to its `owner`, hold its `content` ("water")
+    and be one `having` parts ("red lid").
     `switch` is "on" or "off" where it can be switched; what is `fixed` can't be picked up.
     """
 
@@ -86,11 +87,14 @@ class WorldObject(Thing):
     sized: str = ""
     state: tuple[str, ...] = ()
     owner: str = ""
+    content: str = ""
+    having: tuple[str, ...] = ()
 
     @property
     def parts(self) -> Parts:
         """What it can be described by."""
-        return of_thing(self.kind or head_of(self.name), self.color, self.sized, self.state, self.owner, self.uses)
+        kind = self.kind or head_of(self.name)
+        return of_thing(kind, self.color, self.sized, self.state, self.owner, self.uses, self.content, self.having)
 
 
 class Stop(Record):

@@ -48,8 +48,11 @@ def read_object(table: Table, known: bool) -> WorldObject:
     size, uses = 2 * radius if sized else table.number("size", 2 * radius, low=0.0), table.texts("uses")
     switch = table.choice("switch", ("on", "off"), "")
     fixed = table.flag("fixed", bool(switch))
+    content, having = _optional(table, "content"), table.texts("has")
     return table.finish(
-        WorldObject(name, x, y, radius, known, kind, color, size, uses, switch, fixed, sized, state, owner)
+        WorldObject(
+            name, x, y, radius, known, kind, color, size, uses, switch, fixed, sized, state, owner, content, having
+        )
     )
 
 

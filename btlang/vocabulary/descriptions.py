@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping
 from btlang.text.words import Words
 from btlang.vocabulary.adjectives import Adjectives
 from btlang.vocabulary.pattern import ways
-from btlang.vocabulary.references import ADJECTIVES, ALL, DENIED, LATEST, RELATIONS, SECOND, SELF, Parts
+from btlang.vocabulary.references import ADJECTIVES, ALL, DENIED, LATEST, QUALITIES, RELATIONS, SECOND, SELF, Parts
 from btlang.vocabulary.word_tree import WordTree, find, tree_of
 
 TYPE_CHECKING = False
@@ -38,6 +38,9 @@ class Modifiers:
     def __init__(self, language: Mapping[str, Any]) -> None:
         self._words: Mapping[str, list[str]] = language["relations"]
         self._relations = tree_of((phrase, name) for name, phrases in self._words.items() for phrase in phrases)
+        self._qualities: Mapping[str, list[str]] = language["qualities"]
+        of = ((phrase, name) for name, phrases in self._qualities.items() for phrase in phrases)
+        self._quality_words = [(name, phrase.split()) for phrase, name in of]
         articles = frozenset(language["articles"])
         self._to_self = {
             name: sorted(ways(phrases, articles), key=len) for name, phrases in language["relations_to_self"].items()
@@ -51,7 +54,8 @@ class Modifiers:
         self._either = frozenset(language["roles"].get("or", ()))
         self._nearest = frozenset(language["roles"].get("nearest", ()))
         self._both: list[str] = language["roles"].get("and", [])
-        self.starts = frozenset((*self._relations, *self._clauses, *self._self_relations))
+        firsts = (words[0] for _, words in self._quality_words)
+        self.starts = frozenset((*self._relations, *self._clauses, *self._self_relations, *firsts))
         """The words with which something behind a head may begin."""
 
     @property
@@ -69,7 +73,8 @@ class Modifiers:
 
     def words(self) -> Iterator[str]:
         """Every word of it."""
-        for phrases in (*self._words.values(), *self._to_self.values(), self._relatives, self._denials):
+        said = (*self._words.values(), *self._qualities.values(), *self._to_self.values())
+        for phrases in (*said, self._relatives, self._denials):
             for phrase in phrases:
                 yield from phrase.split()
 
@@ -82,12 +87,14 @@ class Modifiers:
         """The filters that may stand behind a head of a type, and where each ends; the shortest first."""
         clause = find(self._clauses, text.words, at)
         if clause is None:
+            yield from self._qualified(kind, text, at, names)
             yield from self._related(kind, text, at, names, 1)
         elif clause[0]:
             for part in ADJECTIVES:
                 said = find(names(part), text.words, clause[1])
                 if said is not None:
                     yield ((part, said[0]),), said[1]
+            yield from self._qualified(kind, text, clause[1], names)
             yield from self._related(kind, text, clause[1], names, 1)
         else:
             yield from self._denied(kind, text, clause[1], names)
@@ -116,6 +123,8 @@ class Modifiers:
             elif name in RELATIONS:
                 things = (self._said_thing(each, spoken) for each in value.split(SECOND))
                 words.append(f"{self._words[name][0]} {f' {self._both[0]} '.join(things)}")
+            elif name in QUALITIES:
+                words.append(f"{self._qualities[name][0]} {spoken(name, value)}")
             elif name in DENIED:
                 kind = DENIED[name]
                 word = f" {self._first_or} ".join(spoken(kind, each) for each in value.split("; "))
@@ -143,6 +152,16 @@ class Modifiers:
             else:
                 likes.append((name, of))
         return " ".join((*before, self.said_before(tuple(likes), spoken), said)).strip()
+
+    def _qualified(self, kind: str, text: Words, at: int, names: Names) -> Iterator[tuple[Parts, int]]:
+        """`of water`, `with a red lid`, and one relation behind it."""
+        for name, words in self._quality_words:
+            start = at + len(words)
+            said = find(names(name), text.words, start) if text.words[at:start] == words else None
+            if said is not None:
+                yield ((name, said[0]),), said[1]
+                for more, end in self._related(kind, text, said[1], names, 1):
+                    yield ((name, said[0]), *more), end
 
     def _related(self, kind: str, text: Words, at: int, names: Names, depth: int) -> Iterator[tuple[Parts, int]]:
         to_self = find(self._self_relations, text.words, at)

@@ -25,8 +25,10 @@ NAMES = "names"
 Parts = tuple[tuple[str, str], ...]
 """What something is like, sorted: ("color", "red")."""
 _PIECE = r"(?P<mark>\{\{|\}\})|\{(?P<name>[^{}]+)\}|(?P<text>[^{}]+|[{}])"  # compiled when a text needs it
-PARTS = ("clothing", "color", "gesture", "kind", "owner", "size", "state", "use")
+PARTS = ("clothing", "color", "content", "gesture", "kind", "owner", "part", "size", "state", "use")
 """What a name can be described by."""
+QUALITIES = ("content", "part")
+"""The parts that stand behind a head, and lead to no other thing: the glass of water, the cup with a red lid."""
 ADJECTIVES = ("size", "state", "color")
 """The parts that adjectives say, in the order in which they are said."""
 _EVERYTHING = ("object", "person", "place")

@@ -19,7 +19,7 @@ from btlang.vocabulary.likenesses import Likenesses
 from btlang.vocabulary.measures import Measures, too_small
 from btlang.vocabulary.noun_reader import NounReader
 from btlang.vocabulary.nouns import Description, Features, Noun, noun_phrases, plural
-from btlang.vocabulary.references import ALL, COUNT, DENIED, RELATIONS, Choice, Parts, choice_of
+from btlang.vocabulary.references import ALL, COUNT, DENIED, QUALITIES, RELATIONS, Choice, Parts, choice_of
 from btlang.vocabulary.role_words import role_words
 from btlang.vocabulary.shared_heads import SharedHeads
 from btlang.vocabulary.texts import Texts
@@ -237,7 +237,7 @@ class Values(Measures):
 
     def choice_words(self, choice: Choice) -> str:
         """The words that stand for a choice: `nearest person`."""
-        behind = tuple(part for part in choice.parts if part[0] in RELATIONS or part[0] in DENIED)
+        behind = tuple(part for part in choice.parts if part[0] in (*RELATIONS, *DENIED, *QUALITIES))
         parts = dict(part for part in choice.parts if part not in behind)
         count, name = parts.pop(COUNT, ""), parts.pop(NAME, "")
         if name:
