@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
 from btlang.text.words import Words
-from btlang.vocabulary.entry import MANNER, Meaning
+from btlang.vocabulary.entry import MANNER, VIA, Meaning
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.pattern import Form, Slot
@@ -278,6 +278,8 @@ def _listed(
             break
         more.append(value[0])
         last, joiner = value[1], role
+    if first.name == VIA and joiner == "and":  # one way through all of them
+        return first.replace(text="; ".join((first.text, *more)), last=last)
     return first.replace(more=tuple(more), joiner=joiner, last=last) if more else None
 
 

@@ -209,10 +209,5 @@ class _Filling:
             self._go_on(one.last, {**filled, role.name: one}, has_particle)
             if text.words[one.last] in context.joiners:
                 listed = self._list_of(one)
-                if listed is not None and role.name == PATH:
-                    if listed.joiner == "and":  # one way through all of them
-                        through = "; ".join((listed.text, *listed.more))
-                        one = listed.replace(text=through, more=(), joiner="")
-                        self._go_on(one.last, {**filled, role.name: one}, has_particle)
-                elif listed is not None and not self._is_container(role):
+                if listed is not None and not self._is_container(role) and not (role.name == PATH and listed.more):
                     self._go_on(listed.last, {**filled, role.name: listed}, has_particle)

@@ -18,7 +18,7 @@ def negated_twice(text: Words, first: int, last: int, vocabulary: Lexicon, _befo
     return _unclear(text, first, last, " ".join(once), " ".join(never))
 
 
-def negated_list(text: Words, first: int, last: int, vocabulary: Lexicon, before: Token | None) -> Diagnostic:
+def negated_subjects(text: Words, first: int, last: int, vocabulary: Lexicon, before: Token | None) -> Diagnostic:
     """`Alice and Bob are not near`, and `neither Alice nor Bob is not near`."""
     positive = " ".join(_positive(_written(text, first, last), vocabulary.negations))
     if before is not None and before.kind in ("neither", "none_of"):
@@ -26,6 +26,15 @@ def negated_list(text: Words, first: int, last: int, vocabulary: Lexicon, before
     else:
         none = f"{vocabulary.word('none_of')} {positive}"
     return _unclear(text, first, last, none, f"{vocabulary.word('not')} ({positive})")
+
+
+def negated_list(text: Words, first: int, last: int, vocabulary: Lexicon, _before: Token | None) -> Diagnostic:
+    """`nobody is in the lab and the kitchen`."""
+    words, ands = _written(text, first, last), vocabulary.roles["and"]
+    joint = max(at for at in range(first, last) if text.words[at] in ands) - first
+    either = [*words[:joint], vocabulary.word("or"), *words[joint + 1 :]]
+    positive = _positive(_positive(words, vocabulary.negations), vocabulary.negative_subjects)
+    return _unclear(text, first, last, " ".join(either), f"{vocabulary.word('not')} ({' '.join(positive)})")
 
 
 def _unclear(text: Words, first: int, last: int, one: str, other: str) -> Diagnostic:

@@ -46,11 +46,14 @@ def with_words_before(
 def check_negation(
     text: Words, match: Match, at: int, vocabulary: Lexicon, tokens: Sequence[Token]
 ) -> Iterator[Diagnostic]:
-    """BT151 for a second negation, and for the negation of a list that is the subject."""
-    subject = match.values[0] if match.values else None
-    is_list = subject is not None and subject.first == at and subject.more
-    if is_list or match.meaning.role == "negated_twice":
+    """BT151 for a second negation, and for the negation of a list."""
+    listed = next((value for value in match.values if value.more and not value.group), None)
+    is_subject = listed is not None and listed.first == at
+    has_list = listed is not None and (is_subject or listed.joiner == "and")
+    if has_list or match.meaning.role == "negated_twice":
         from btlang.frontends.mission.explanations import negations  # most missions have none
 
-        explain = negations.negated_list if is_list else negations.negated_twice
+        explain = negations.negated_twice
+        if has_list:
+            explain = negations.negated_subjects if is_subject else negations.negated_list
         yield explain(text, at, match.last, vocabulary, tokens[-2] if len(tokens) > 1 else None)
