@@ -37,8 +37,8 @@ CHANGING = ("increase", "decrease")
 """Roles whose words change the value that is named behind them, wherever they are found."""
 
 ASKING = (
-    "journey", "search", "whereabouts", "whether", "counting", "asking_be", "asking_do", "answers", "feeling", "there",
-    "very", "states", "subject", "been", "towards", "going", "finding_out",
+    "journey", "search", "whereabouts", "whether", "any_place", "making_sure", "counting", "asking_be", "asking_do",
+    "answers", "feeling", "there", "very", "states", "subject", "been", "towards", "going", "finding_out",
     "inspecting", "telling", "whole", "located", "wishing", "wished", "fetching", "begging", "home",
     "pleading", "saying_that", "plea", "reminding", "reminder", "addressed", "informing", "informed", "staying",
     "resuming", "interrupting",

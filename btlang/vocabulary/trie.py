@@ -278,9 +278,12 @@ def _listed(
             break
         more.append(value[0])
         last, joiner = value[1], role
+    if not more:
+        return None
+    made: SlotValue = first.replace(more=tuple(more), joiner=joiner, last=last)
     if first.name == VIA and joiner == "and":  # one way through all of them
-        return first.replace(text="; ".join((first.text, *more)), last=last)
-    return first.replace(more=tuple(more), joiner=joiner, last=last) if more else None
+        made = made.replace(text="; ".join((first.text, *more)), more=(), joiner="")
+    return made
 
 
 def _joiner(root: TrieNode, names: TrieNode | None, text: Words, at: int, context: ReadingContext) -> Match | None:

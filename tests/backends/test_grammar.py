@@ -34,6 +34,7 @@ UNKNOWABLE = {
     "BT162": "a place that is avoided and gone to",
     "BT052": "what comes before goes on for ever",
     "BT068": "a condition behind `when` is checked once",
+    "BT151": "`make sure the door is closed` could close it",
     "BT156": "`when you've reached the dock` needs a journey that leads there",
     "BT160": "16:45 is in no morning",
     "BT163": "half turns are counted",

@@ -18,7 +18,7 @@ from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
-from btlang.vocabulary.value_type import OBJECT, PERSON
+from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 
 _SENTENCE_END = re.compile(r"[.;!?\n]")
 _ON_THE_WAY = ("SomeoneInTheWay", "SomethingInTheWay")
@@ -32,6 +32,8 @@ def asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
         for node in compilation.syntax(body):
             if type(node) is ast.Chain and node.operator == "sequence":
                 before.update((id(item), (node.items, at)) for at, item in enumerate(node.items))
+            if type(node) is ast.If:
+                yield from _too_early(node, vocabulary)
             if type(node) is ast.If and not node.negated and node.otherwise is None:
                 sentence = _sentence_before(*before.get(id(node), ((), 0)))
                 if _is_statement(node, vocabulary):
@@ -81,6 +83,23 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     elif isinstance(node.condition, ast.Not) and any(_named(journey) & _named(asked) for journey in journeys):
         advice = f"'{last}' comes first, and fails if it can't be done. What decides about it stands before it."
         yield diagnostic("BT068", node.span, words=words, advice=advice)
+
+
+def _too_early(node: ast.If, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+    """`go to the lab if Alice is there`: a condition behind a journey that is about its end, or what it chooses."""
+    asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
+    if not isinstance(asked, ast.Phrase) or asked.span.start < node.body.span.start:
+        return
+    phrases = [each for each in ast.parents_first(node.body) if isinstance(each, ast.Phrase)]
+    chosen = {text for each in phrases for text in _named(each) if text[:1] == "{"}
+    there = [word for word, types in vocabulary.values.pronouns.items() if PLACE in types]
+    is_there = asked.span.text.lower().endswith(tuple(f" {word}" for word in there))
+    if (is_there and any(MOVES in each.entry.resources for each in phrases)) or chosen & _named(asked):
+        body, condition = node.body.span.text, asked.span.text
+        advice = (
+            f"It is asked before '{body}', where the robot is then. Name what and where, as in: Alice is in the lab"
+        )
+        yield diagnostic("BT068", asked.span, words=condition, advice=advice)
 
 
 def _is_event(condition: ast.Ast, vocabulary: Lexicon) -> bool:

@@ -10,7 +10,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 
 
-def negated_twice(text: Words, first: int, last: int, vocabulary: Lexicon, _before: Token | None) -> Diagnostic:
+def negated_twice(text: Words, first: int, last: int, vocabulary: Lexicon) -> Diagnostic:
     """`nobody is not near`."""
     words = _written(text, first, last)
     once = _positive(words, vocabulary.negations)
@@ -28,7 +28,7 @@ def negated_subjects(text: Words, first: int, last: int, vocabulary: Lexicon, be
     return _unclear(text, first, last, none, f"{vocabulary.word('not')} ({positive})")
 
 
-def negated_list(text: Words, first: int, last: int, vocabulary: Lexicon, _before: Token | None) -> Diagnostic:
+def negated_list(text: Words, first: int, last: int, vocabulary: Lexicon) -> Diagnostic:
     """`nobody is in the lab and the kitchen`."""
     words, ands = _written(text, first, last), vocabulary.roles["and"]
     joint = max(at for at in range(first, last) if text.words[at] in ands) - first

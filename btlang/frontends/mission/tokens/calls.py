@@ -151,19 +151,21 @@ class Calls:
         """What pronouns stand for from here on: of alternatives only the run knows which one it was."""
         before = dict(self._context.latest) if is_alternative else {}
         if self.speaks_of_people and match.meaning.entry is not None and match.meaning.role != "negated":
-            self._note_somebody(match.meaning.entry)
+            self._note_somebody(match.meaning.entry, match)
         self._note_values(match)
         for kind, value in before.items():
             if self._context.latest.get(kind, value) != value:
                 del self._context.latest[kind]
 
-    def _note_somebody(self, entry: Entry) -> None:
-        """`wait until someone comes, then greet them`: the nearest person."""
+    def _note_somebody(self, entry: Entry, match: Match) -> None:
+        """`wait until someone comes, then greet them`, `if someone is in the lab, greet them`: the nearest one."""
         somebody = self._vocabulary.negative_subjects.keys()
         names_none = all(slot.type != PERSON for slot in entry.slots)
         if names_none and entry.phrases and not somebody.isdisjoint(entry.phrases[0].split()):
             key = self._context.keys.get(PERSON, PERSON)
-            self._context.latest[PERSON] = Choice("nearest", PERSON, key).text
+            places = [value for value in match.values if value.type == PLACE and not value.more]
+            there = tuple(("at", value.text) for value in places if value.text[:1] not in _ODD)
+            self._context.latest[PERSON] = Choice("nearest", PERSON, key, there).text
             self._context.listed.pop(PERSON, None)
 
     def _note_values(self, match: Match) -> None:
@@ -216,6 +218,8 @@ class Calls:
             if all(value.name != MANNER for value in match.values):
                 given = SlotValue(MANNER, MANNER, self.manner, match.last, match.last)
                 match = match.replace(values=(*match.values, given))
+        if entry.first:
+            match = match.replace(values=tuple(map(self._anywhere, match.values)))
         sets = [value for value in match.values if value.group and not _leaves_none(value)]
         if sets and entry.sort in ("action", "name"):
             values = [value.replace(text=value.group, more=()) if value in sets else value for value in match.values]
@@ -240,6 +244,14 @@ class Calls:
         before, behind = match.values[: lists[0]], match.values[lists[0] + 1 :]
         joiner = "or" if entry.first and value.type == PLACE else value.joiner
         return Listed(entry, tuple(self.arguments(entry, (*before, one, *behind)) for one in each), joiner)
+
+    def _anywhere(self, value: SlotValue) -> SlotValue:
+        """`look for the book in any room`: in all of them, until it is found."""
+        choice = choice_of(value.text) if value.type == PLACE and not value.more else None
+        if choice is None or self._text.words[value.first] not in self._vocabulary.asking["any_place"]:
+            return value
+        made: SlotValue = value.replace(group=choice.replace(how=ALL).text)
+        return made
 
     def _check_choices(self, entry: Entry, match: Match, at: int) -> None:
         """BT152 where what is chosen would replace another value of the phrase, or is to be compared with."""

@@ -53,7 +53,9 @@ def check_negation(
     if has_list or match.meaning.role == "negated_twice":
         from btlang.frontends.mission.explanations import negations  # most missions have none
 
-        explain = negations.negated_twice
-        if has_list:
-            explain = negations.negated_subjects if is_subject else negations.negated_list
-        yield explain(text, at, match.last, vocabulary, tokens[-2] if len(tokens) > 1 else None)
+        if is_subject:
+            yield negations.negated_subjects(text, at, match.last, vocabulary, tokens[-2] if len(tokens) > 1 else None)
+        elif has_list:
+            yield negations.negated_list(text, at, match.last, vocabulary)
+        else:
+            yield negations.negated_twice(text, at, match.last, vocabulary)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Container, Sequence
 
-from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of, theme_of
+from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.text.words import Words
-from btlang.vocabulary.entry import MANNER, RECIPIENT, VIA
+from btlang.vocabulary.entry import MANNER, RECIPIENT, THEME, VIA
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode
@@ -78,8 +78,10 @@ def _with_recipient(
 
 def _may_be_theme(match: Match, goal: SlotValue) -> bool:
     """Whether a bare thing that a command is left with as its goal could be one more theme as well."""
-    theme = theme_of(match)
-    return theme is not None and theme.name != goal.name and theme.type == goal.type
+    entry = match.meaning.entry
+    slots = {role.slot for _, roles in entry.verbs for role in roles if role.name == THEME} if entry else set()
+    themes = [value for value in match.values if value.name in slots]
+    return any(theme.name != goal.name and theme.type == goal.type for theme in themes)
 
 
 def _is_own(value: SlotValue) -> bool:

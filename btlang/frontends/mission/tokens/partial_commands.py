@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.mission.token import LINES, Listed, Token, constraint_of
+from btlang.frontends.mission.token import LINES, Called, Listed, Token, constraint_of
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.left_out import left_out
 from btlang.frontends.mission.tokens.word_matches import (
@@ -20,6 +20,7 @@ from btlang.frontends.mission.tokens.word_matches import (
     words_of,
 )
 from btlang.text.words import Words
+from btlang.vocabulary.entry import RECIPIENT
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
@@ -164,8 +165,29 @@ class PartialCommands:
             return 0
         token = self._token_of(read[0], at)
         self._said[token.start] = read[1]
+        self._share_recipient(token)
         enlist(self._tokens, token)
         return read[0].last
+
+    def _share_recipient(self, last: Token) -> None:
+        """`bring the cup from the kitchen and the book from the lab to Alice`: she gets both."""
+        said, speaker = last.value, self._vocabulary.values.role_words.speaker
+        if not isinstance(said, Called | Listed) or self._tokens[-1].kind not in ("and", "comma"):
+            return
+        slots = {role.slot for _, roles in said.entry.verbs for role in roles if role.name == RECIPIENT}
+        arguments = said.arguments if isinstance(said, Called) else said.arguments[-1]
+        given = tuple((name, value) for name, value in arguments if name in slots)
+        for token in reversed(self._tokens):
+            value = token.value
+            if token.kind == "command" and isinstance(value, Called | Listed) and value.entry is said.entry:
+                words = (self._text.words[at] for at in words_of(self._text, token))
+                own = (value.arguments,) if isinstance(value, Called) else value.arguments
+                if any(name in slots for each in own for name, _ in each) or not speaker.isdisjoint(words):
+                    return
+                both = tuple((*each, *given) for each in own)
+                token.value = value.replace(arguments=both[0] if isinstance(value, Called) else both)
+            elif token.kind not in ("and", "comma") and token.role != "list":
+                return
 
     def add_without_theme(self, at: int) -> int:
         """A command about the thing of the one before, which it leaves out: `pick up the cup and put in the box`."""

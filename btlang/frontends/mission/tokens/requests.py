@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
+
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Listed, Token, texts_of
 from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.questions import Questions
+from btlang.text.source import Span
 from btlang.tree.asked import ASK
-from btlang.vocabulary.entry import SAY
+from btlang.vocabulary.entry import SAY, Entry
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import TEXT
 from btlang.vocabulary.word_tree import find
 
 _EXAMPLE = "hello"
+_SEES = "perception"
+_OPTIONAL = re.compile(r"\[.*?\]")
 _BETWEEN = frozenset(("semi", "newline", "comma", "then", "and", "stop"))
 _OF_CONDITIONS = frozenset(("condition", "not", "and", "or", "either", "neither", "nor", "both"))
 
@@ -144,6 +150,30 @@ class Requests(Questions):
         self._tokens.append(Token("command", text.starts[at], text.ends[end - 1], self._saying_of(said)))
         return end
 
+    def said(self, token: Token, at: int) -> None:
+        """See Answers; BT151 for `make sure the door is closed`, which could also mean to close it."""
+        super().said(token, at)
+        asked, check = token.value, self._tokens[-1] if self._tokens else None
+        if check is None or check.kind != "check" or not isinstance(asked, Called) or self._goes_on_if(at):
+            return
+        source = self._text.source
+        if " ".join(source.text[check.start : check.end].lower().split()) not in self._vocabulary.asking["making_sure"]:
+            return
+        bringing = (
+            entries[0] for entries in self._vocabulary.entries.values() if asked.entry.id in entries[0].achieves
+        )
+        does = next((said for entry in bringing if (said := _said_with(entry, dict(asked.arguments)))), "")
+        if does:
+            words, span = source.text[token.start : token.end], Span(source, check.start, token.end)
+            one, unless = (self._vocabulary.word(role) for role in ("check", "unless"))
+            other = f"{unless} {words}, {does}"
+            self._calls.problems.append(diagnostic("BT151", span, words=span.text, one=f"{one} {words}", other=other))
+
+    def _goes_on_if(self, at: int) -> bool:
+        """Whether more is said about a condition in its statement: `make sure that A, if not do B`."""
+        words = self._text.words[at : at + self._length(at) + 1]
+        return not {self._vocabulary.word("if"), self._vocabulary.word("otherwise")}.isdisjoint(words)
+
     def finding_out(self, end: int) -> None:
         """`check whether A. If B, C`: what is checked decides nothing by itself, behind the `if` that ends at a word.
 
@@ -168,3 +198,12 @@ class Requests(Questions):
         tokens = self._tokens
         if len(tokens) > 2 and tokens[-2].kind == "if" and tokens[-3].kind in ("comma", "condition", "command"):
             tokens[-2:] = [Token("otherwise", tokens[-2].start, tokens[-1].end)]
+
+
+def _said_with(entry: Entry, values: Mapping[str, str]) -> str:
+    """How an entry is said with these values alone; "" where it needs others."""
+    said = next(iter(entry.phrases), "") if _SEES not in entry.needs else ""  # to look for somebody brings nobody
+    for name, value in values.items():
+        said = said.replace(f"[{{{name}}}]", value).replace(f"{{{name}}}", value)
+    said = " ".join(_OPTIONAL.sub("", said).split())
+    return "" if "{" in said else said
