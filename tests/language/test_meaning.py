@@ -118,6 +118,7 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("wave. Say hello on the way", "BT179"),
         ("go to the lab. If bumped, wave and start over", "BT067"),
         ("repeat 3 times: wave and start over", "BT067"),
+        ("every 5 s, wave, 3 times every minute", "BT057"),
         ("make sure the kitchen door is closed", "BT151"),
         ("make sure that you are holding the book, then wave", "BT151"),
         ("if nobody is in the lab and the kitchen, wave", "BT151"),

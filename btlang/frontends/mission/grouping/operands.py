@@ -111,6 +111,8 @@ def loop(scan: Scan, token: Token) -> None:
     scan.next(token, True)
     if token.kind == "if_possible":
         body.else_owner = body
+    elif token.kind == "every":
+        body.pace_owner = body
     elif token.kind in ("repeat", "try", "retry"):
         if following.kind == "count" or (following.kind in ("for", "until_time") and token.kind == "repeat"):
             set_amount(scan, opener, following)

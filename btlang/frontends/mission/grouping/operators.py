@@ -86,6 +86,9 @@ def comma(scan: Scan, token: Token) -> None:
     owner = entry.count_owner if following.kind == "count" else entry.stop_owner if is_end else None
     if following.kind == "otherwise" or owner is not None:
         scan.at += 1
+    elif following.kind == "count" and entry.pace_owner is not None:
+        scan.at += 1
+        _rounds(scan, entry.pace_owner, following)
     elif following.kind in CONNECTIVES or following.kind == "while_doing":
         scan.at += 1
         _widening(scan, following)
@@ -215,6 +218,17 @@ def amount_of_form(scan: Scan, token: Token) -> None:
         return
     set_amount(scan, owner.opener, token)
     close_loop(scan, owner, token)
+
+
+def _rounds(scan: Scan, owner: StackEntry, count: Token) -> None:
+    """`every 5 s, A, 3 times`: the rounds in all. Without the comma it is A that is done three times in each."""
+    pace = scan.raw[scan.at + 1]
+    if pace.kind in ("every", "apart"):  # `every 5 s, A, 3 times every minute`
+        scan.fail("BT057", scan.span(pace), words=scan.words(pace))
+        return
+    if owner.opener is not None:
+        owner.opener.value = paced(count, owner.opener)
+    close_loop(scan, owner, count)
 
 
 def close_loop(scan: Scan, owner: StackEntry, token: Token) -> None:

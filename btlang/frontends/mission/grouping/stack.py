@@ -9,8 +9,8 @@ class StackEntry:
     """One open thing. `kind` is "top", "block", "bracket", "head", "body", "choice", "condition",
     "condition bracket" or "condition list".
 
-    The owners are the nearest open forms of the same bracket that a count, an `until` (or `while`, `for`) or an
-    `otherwise` would belong to; `after` says what follows the end of a condition, of a head how its verbs are written.
+    The owners are the nearest open forms of the same bracket that a count, a count behind a comma (`pace_owner`), an
+    `until` (or `while`, `for`) or an `otherwise` would belong to; `after` says what follows the end of a condition, of a head how its verbs are written.
     The next connective decides what the `commas` mean; `last` is the latest connective. `statement` of a group is "",
     "open" or "ended": its newest statement begins in the output at the index `begins`, the newest one that has ended
     at `latest`; `separator` is the token between them. The latest operand begins at `operand`. `joints` are the words
@@ -39,6 +39,7 @@ class StackEntry:
         "mixed",
         "opener",
         "operand",
+        "pace_owner",
         "separator",
         "statement",
         "stop_owner",
@@ -53,6 +54,7 @@ class StackEntry:
         self.opener = opener
         self.after = after
         self.count_owner: StackEntry | None = outer.count_owner if outer else None
+        self.pace_owner: StackEntry | None = outer.pace_owner if outer else None
         self.stop_owner: StackEntry | None = outer.stop_owner if outer else None
         self.else_owner: StackEntry | None = outer.else_owner if outer else None
         self.commas: list[Token] = []
