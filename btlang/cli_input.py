@@ -79,9 +79,18 @@ def _advice_on_robot(path: str, options: argparse.Namespace) -> str:
 
 
 def _read_file(options: argparse.Namespace) -> Source:
-    """The text of the file. If it isn't there, the error may say how to give a mission as text."""
+    """The text of the file, or of the example of this name. The error may say how to give a mission as text."""
     with hinting(options.file, options.verb):
-        return read_source(options.file, options.include_root)
+        return read_source(_example(options.file) or options.file, options.include_root)
+
+
+def _example(name: str) -> str:
+    """The file of a shipped mission, unless there is a file of its name here."""
+    if os.path.lexists(name) or not name.isidentifier():
+        return ""
+    from btlang.examples import path_of
+
+    return path_of(name)
 
 
 @contextmanager

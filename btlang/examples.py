@@ -16,7 +16,7 @@ from btlang.vocabulary.shipped import shipped
 
 _README, _CACHE = "README.md", "__pycache__"
 _COMMAND = re.compile(r"^#   btc .*$", re.MULTILINE)
-_WORLD = re.compile(r"--world (\S+)")
+_WORLD = re.compile(r'^world "(.+)"$', re.MULTILINE)
 _INCLUDE = re.compile(r'^include "(.+)"$', re.MULTILINE)
 
 
@@ -60,18 +60,27 @@ def found(names: Iterable[str]) -> list[Example]:
     return [known[name] for name in dict.fromkeys(wanted)]
 
 
+def path_of(name: str) -> str:
+    """The file of a shipped mission, "" where none has this name."""
+    path = shipped("examples", f"{name}.txt")
+    return path if os.path.isfile(path) else ""
+
+
 def listing(width: int = 80) -> list[str]:
-    """Each mission with what it does and its world, as lines to read."""
+    """Each mission with what it does, in a line; then the folders."""
+    listed = all_examples()
+    column = max(len(example.name) for example in listed) + 4
     lines = []
-    for example in all_examples():
-        texts = [example.about.removesuffix(":"), *([f"World: {example.world}"] if example.world else [])]
-        texts += (
-            [f"A folder, with its robot and {len(example.parts)} more files"] if example.file.endswith(_README) else []
-        )
-        lines.append(example.name)
-        for text in texts:
-            lines += textwrap.wrap(text, width, initial_indent="    ", subsequent_indent="    ")
-    return [*lines, "", "To read one:    btc examples NAME", "To copy them:   btc examples --copy FOLDER [NAME ...]"]
+    for example in listed:
+        about = example.about.removesuffix(":")
+        if example.file.endswith(_README):
+            about = f"a folder with its robot: {about}"
+        lines.append(f"  {example.name:{column - 2}}{textwrap.shorten(about, width - column, placeholder=' ...')}")
+    return [
+        "Missions that ship:", *lines, "",
+        "To run one:     btc run NAME", "To read one:    btc examples NAME",
+        "To copy them:   btc examples --copy FOLDER [NAME ...]",
+    ]  # fmt: skip
 
 
 def beginnings(folder: str, chosen: Sequence[Example]) -> list[str]:
@@ -116,7 +125,7 @@ def _example(name: str) -> Example:
     text = _COMMAND.sub(lambda line: line[0].replace(" examples/", " "), _data(f"{name}.txt").decode("utf-8"), count=1)
     command = _COMMAND.search(text)
     assert command is not None, name
-    world = _WORLD.search(command[0])
+    world = _WORLD.search(text)
     about = " ".join(line.removeprefix("#").strip() for line in text[: command.start()].splitlines())
     test = f"tests/{name}.test.txt"
     tested = os.path.exists(shipped("examples", *test.split("/")))

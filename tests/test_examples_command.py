@@ -32,17 +32,31 @@ def test_every_part_is_included_by_a_mission() -> None:
 def test_every_mission_is_listed(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["examples"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert [line for line in lines if line and not line.startswith((" ", "To "))] == [*sorted(CASES), *FOLDERS]
-    at = lines.index("locked_lab")
-    assert lines[at + 1].startswith("    The lab is locked for a while, so")
-    assert lines[at + 4] == "    World: worlds/locked_lab.toml"
+    assert [line.split()[0] for line in lines if line.startswith("  ")] == [*sorted(CASES), *FOLDERS]
+    [locked] = [line for line in lines if line.startswith("  locked_lab ")]
+    assert locked.endswith("The lab is locked for a while, so the robot knocks ...")
     assert max(map(len, lines)) <= 80
-    assert not any(line.endswith(":") for line in lines)
+    assert not any(line.endswith(":") for line in lines[1:])
 
 
 def test_worlds_are_those_that_the_missions_run_in() -> None:
     worlds = {example.name: Path(example.world).stem for example in examples.examples()}
     assert worlds == {name: case.world or "" for name, case in CASES.items()}
+
+
+def test_an_example_runs_by_its_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "greeter", "--speed", "max", "--lines"]) == 0
+    assert 'says   "Here we are."' in capsys.readouterr().out
+    assert main(["tree", "hello", "--plain"]) == 0
+    (tmp_path / "hello").write_text("nod", encoding="utf-8")
+    capsys.readouterr()
+    assert main(["tree", "hello", "--plain"]) == 0  # a file of that name comes first
+    assert capsys.readouterr().out == "Nod\n"
+    assert main(["tree", "helloo", "--plain"]) == 2
+    assert "BT001" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", ["hello", "hello.txt"])

@@ -10,7 +10,8 @@ class StackEntry:
     "condition bracket" or "condition list".
 
     The owners are the nearest open forms of the same bracket that a count, a count behind a comma (`pace_owner`), an
-    `until` (or `while`, `for`) or an `otherwise` would belong to; `after` says what follows the end of a condition, of a head how its verbs are written.
+    `until` (or `while`, `for`) or an `otherwise` would belong to; `after` says what follows the end of a condition, of
+    a head how its verbs are written.
     The next connective decides what the `commas` mean; `last` is the latest connective. `statement` of a group is "",
     "open" or "ended": its newest statement begins in the output at the index `begins`, the newest one that has ended
     at `latest`; `separator` is the token between them. The latest operand begins at `operand`. `joints` are the words
