@@ -74,10 +74,12 @@ def verb_parsers() -> dict[str, tuple[str, argparse.ArgumentParser]]:
 
 def _main_parser() -> OptionParser:
     usage = 'btc [VERB] [OPTION ...]\n       btc FILE|"MISSION" [OPTION ...]   as with the verb run'
-    parser = OptionParser("btc", usage=usage, description="Compiles and runs robot missions in plain English.")
-    verbs = parser.add_subparsers(metavar="VERB", title="verbs", description="btc help VERB lists its options.")
-    for verb, (about, _) in _OPTIONS.items():
-        verbs.add_parser(verb, help=about)
+    about = "Compiles and runs robot missions in plain English. 'btc help VERB' lists the options of a verb."
+    parser = OptionParser("btc", usage=usage, description=about, add_help=False)
+    for title, verbs in GROUPS.items():
+        group = parser.add_argument_group(title)
+        for verb in verbs:
+            group.add_argument(verb, help=_OPTIONS[verb][0])
     return parser
 
 
@@ -279,5 +281,16 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "version": ("print the version", lambda _: None),
 }
 
+
+GROUPS = {
+    "run and see": ("repl", "run", "examples", "replay", "why"),
+    "write and check": ("check", "tree", "explain", "words", "format", "test", "diff", "edit"),
+    "keep a robot up": ("robot", "task", "components", "serve", "user"),
+    "build": ("world", "gesture", "new"),
+    "share": ("compile", "grammar", "mcp"),
+    "ROS 2": ("sim-ros", "ros-node", "ros-devices", "serve-actions"),
+    "this command": ("help", "completion", "version"),
+}
+"""The verbs by what people do with them."""
 
 _ALIASES = {"-h": "help", "--help": "help", "--version": "version"}

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import argparse
 import sys
+import textwrap
 
 from btlang.text.output import WIDEST, columns, show
 from btlang.text.spelling import nearest
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from typing import Any, NoReturn
+
+
+_ACTS = "acts:\n"
+"""Begins an epilog that lists acts, each with a line about it."""
 
 
 class _Help(argparse.HelpFormatter):
@@ -22,6 +28,17 @@ class _Help(argparse.HelpFormatter):
     def format_help(self) -> str:
         self._width = columns(80) - 2
         return super().format_help()
+
+    def _format_text(self, text: str) -> str:
+        if not text.startswith(_ACTS):
+            return super()._format_text(text)
+        rows = text.removeprefix(_ACTS).split("\n")
+        column = max(map(len, rows[::2])) + 4
+        lines = [
+            textwrap.fill(about, self._width, initial_indent=f"  {act:{column - 2}}", subsequent_indent=" " * column)
+            for act, about in zip(rows[::2], rows[1::2], strict=True)
+        ]
+        return "\n".join(("what it can do:", *lines, ""))
 
 
 class OptionParser(argparse.ArgumentParser):
@@ -48,3 +65,10 @@ class OptionParser(argparse.ArgumentParser):
 
     def _print_message(self, message: str, file: Any = None) -> None:
         show(message, sys.stderr if file is None else file, end="")
+
+
+def add_acts(parser: argparse.ArgumentParser, acts: Mapping[str, str], **options: Any) -> None:
+    """Adds the argument that says what a verb does, and a list of what each of these acts is."""
+    parser.add_argument("act", choices=acts, metavar="ACT", help="what to do: see below", **options)
+    lines = "\n".join(f"{act}\n{about}" for act, about in acts.items())
+    parser.epilog = f"{_ACTS}{lines}"

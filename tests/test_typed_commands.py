@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import re
+import shlex
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
 from btlang import __version__
 from btlang.cli import _VERBS, main
-from btlang.cli_options import _OPTIONS
+from btlang.cli_options import _OPTIONS, GROUPS, parsed
+from btlang.gestures.options import ACTS as GESTURE_ACTS
+from btlang.server.options import USER_ACTS
+from btlang.task.applicable import COMPONENT_ACTS, ROBOT_ACTS, TASK_ACTS
 
 RUN = ["--speed", "max", "--lines"]
 
@@ -89,8 +95,9 @@ def test_a_missing_file_that_is_no_mission(capsys: pytest.CaptureFixture[str]) -
 def test_help_lists_the_verbs(line: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert not typed(*line)
     out = capsys.readouterr().out
-    assert [verb for verb in _VERBS if f"\n    {verb}" not in out] == []
+    assert [verb for verb in _VERBS if f"\n  {verb}" not in out] == []
     assert _VERBS.keys() == _OPTIONS.keys()
+    assert sorted(verb for verbs in GROUPS.values() for verb in verbs) == sorted(_VERBS)
 
 
 def test_help_on_a_verb_is_that_of_the_verb(capsys: pytest.CaptureFixture[str]) -> None:
@@ -160,3 +167,20 @@ def test_pictures_are_reported(capsys: pytest.CaptureFixture[str]) -> None:
 def test_a_failed_not_says_what_was_true(capsys: pytest.CaptureFixture[str]) -> None:
     assert typed("check that the battery is not full", *RUN) == 1
     assert capsys.readouterr().err.endswith("\n  BatteryFull: 'battery is full' was true\n")
+
+
+@pytest.mark.parametrize(
+    ("verb", "acts"),
+    [
+        ("robot", ROBOT_ACTS), ("task", TASK_ACTS), ("components", COMPONENT_ACTS), ("user", USER_ACTS),
+        ("gesture", GESTURE_ACTS),
+    ],
+)  # fmt: skip
+def test_help_says_what_each_act_does(verb: str, acts: Mapping[str, str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert not typed("help", verb)
+    out = capsys.readouterr().out
+    for act, about in acts.items():
+        assert f"\n  {act} " in out
+        for example in re.findall(r"(?<=btc )[^,]+", about):
+            options = parsed(shlex.split(example))
+            assert (options.verb, options.act) == (verb, act)

@@ -5,9 +5,15 @@ from __future__ import annotations
 import argparse
 
 from btlang.arguments import speed
+from btlang.option_parser import add_acts
 from btlang.robots.platforms import ROBOTS
 
-ACTS = ("play", "check", "picture", "record")
+ACTS = {
+    "play": "plays a gesture of a robot: btc gesture play wave --robot museum.toml",
+    "check": "checks files of gestures",
+    "picture": "draws a gesture: btc gesture picture wave -o wave.gif --robot museum.toml",
+    "record": "makes a gesture of poses, moved by hand or typed",
+}
 
 
 def add_gesture_options(parser: argparse.ArgumentParser) -> None:
@@ -18,7 +24,7 @@ def add_gesture_options(parser: argparse.ArgumentParser) -> None:
         "       btc gesture picture NAME -o OUT --robot FILE\n"
         "       btc gesture record NAME -o OUT --robot FILE"
     )
-    parser.add_argument("act", choices=ACTS, metavar="ACT", help=", ".join(ACTS))
+    add_acts(parser, ACTS)
     parser.add_argument("items", nargs="+", metavar="NAME", help="a gesture of the robot; for check, files")
     parser.add_argument("--robot", default="", metavar="FILE", help="robot file, or the name of a robot")
     parser.add_argument("--at", metavar="TARGET", help="what it is aimed at: a place, an object or a person")

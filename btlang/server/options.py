@@ -5,11 +5,23 @@ from __future__ import annotations
 import argparse
 
 from btlang.arguments import ros_name
+from btlang.option_parser import add_acts
 from btlang.task.options import add_address_options
 
-USER_ACTS = (
-    "list", "add", "passwd", "role", "remove", "token", "tokens", "revoke", "logout", "trail", "backup", "restore",
-)  # fmt: skip
+USER_ACTS = {
+    "list": "lists the users",
+    "add": "adds a user, and asks for the password: btc user add ana --role operator",
+    "passwd": "changes a password",
+    "role": "changes what somebody may do: btc user role ana editor",
+    "remove": "removes a user",
+    "token": "makes a token for a program: btc user token ana dashboard",
+    "tokens": "lists the tokens of a user",
+    "revoke": "ends a token: btc user revoke ana dashboard",
+    "logout": "ends all sessions of a user",
+    "trail": "lists the latest log-ins, and what was refused",
+    "backup": "copies the accounts into a file",
+    "restore": "fills an empty server from such a file",
+}
 """What `btc user` does."""
 
 
@@ -46,7 +58,7 @@ def add_edit_options(parser: argparse.ArgumentParser) -> None:
 def add_user_options(parser: argparse.ArgumentParser) -> None:
     """Those of `btc user`."""
     parser.add_argument("--role", default="viewer", metavar="ROLE", help="viewer, operator, editor or administrator")
-    parser.add_argument("act", choices=USER_ACTS, metavar="ACT", help=", ".join(USER_ACTS))
+    add_acts(parser, USER_ACTS)
     parser.add_argument(
         "name", nargs="?", default="", metavar="NAME", help="the name of a user; a file for backup and restore"
     )

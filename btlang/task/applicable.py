@@ -29,9 +29,57 @@ _TASK: Mapping[str, Sequence[str]] = {
     "delete": ("kind", "json"), "library": ("kind", "json"), "trail": ("limit", "json"), "answer": ("json",),
 }  # fmt: skip
 """By the acts, the options that mean something there; `--name` always does."""
-ROBOT_ACTS, TASK_ACTS = tuple(_ROBOT), tuple(_TASK)
-"""What `btc robot` and `btc task` do."""
-COMPONENT_ACTS = ("list", "restart", "load", "unload")
+ROBOT_ACTS: Mapping[str, str] = {
+    "up": "brings a robot up: btc robot up --robot museum.toml",
+    "down": "ends its process",
+    "status": "says what it does, or what keeps it from doing more",
+    "report": 'says what was done, and why something was not: btc robot report --since "2 hours ago"',
+    "stop": "stops it at once, an emergency stop",
+    "release": "lets it move again after a stop",
+    "pause": "brings it to rest in the middle of a task",
+    "resume": "lets it go on after a pause",
+    "step": "goes on by one tick of a pause",
+    "say": "says a text, whatever else it does: btc robot say we close in ten minutes",
+    "visitor": "a visitor comes, where the world is simulated",
+    "unit": "prints a unit for systemd",
+    "check": "checks a robot file: btc robot check museum.toml",
+    "show": "shows the body of a robot: btc robot show museum.toml",
+    "urdf": "prints its body as URDF",
+    "import": "makes a robot file of a URDF",
+    "backup": "copies its store into a file: btc robot backup monday.db",
+    "restore": "fills an empty store from such a file",
+    "invite": "lets a robot elsewhere join a server here: btc robot invite lobby",
+    "revoke": "ends what an invitation allowed",
+    "invited": "lists the invitations",
+}
+"""What `btc robot` does."""
+TASK_ACTS: Mapping[str, str] = {
+    "add": 'gives the robot a task: btc task add patrol.txt, btc task add -c "go to the lab"',
+    "list": "lists the tasks that aren't over, the next one first",
+    "show": "shows everything about a task: btc task show 3",
+    "cancel": "ends a task as a mission is halted: btc task cancel 3",
+    "kill": "ends a task at once",
+    "interrupt": "halts a task, so that it can go on later: btc task interrupt 3 --reason lunch",
+    "resume": "ends an interruption: btc task resume 3 --token 1f2e",
+    "skip": "leaves out a task that hasn't begun",
+    "move": "gives a task another place in the queue: btc task move 3 --before 1",
+    "again": "adds a task like an earlier one: btc task again 3",
+    "schedule": 'adds a schedule: btc task schedule patrol.txt --every "every day at 9:00"',
+    "schedules": "lists the schedules",
+    "unschedule": "removes a schedule, but not the tasks that it made: btc task unschedule 2",
+    "put": "keeps a mission under a name: btc task put tour tour.txt",
+    "delete": "removes a mission that is kept",
+    "library": "lists what is kept, or the revisions of one: btc task library tour",
+    "trail": "lists the latest commands, and who gave them",
+    "answer": "answers what the robot asks: btc task answer yes",
+}
+"""What `btc task` does."""
+COMPONENT_ACTS: Mapping[str, str] = {
+    "list": "lists them with their states",
+    "restart": "begins one anew: btc components restart camera",
+    "load": "begins one that isn't loaded",
+    "unload": "ends one",
+}
 """What `btc components` does."""
 FLEET_ACTS = ("invite", "revoke", "invited")
 """Those of `btc robot` that are about a server's robots elsewhere."""

@@ -7,6 +7,7 @@ import re
 
 from btlang.arguments import at_least, between, duration, kept_robot, port, speed
 from btlang.diagnostics.errors import MissionError
+from btlang.option_parser import add_acts
 from btlang.robots.options import add_simulate
 from btlang.robots.platforms import ROBOTS
 from btlang.task.applicable import COMPONENT_ACTS, ROBOT_ACTS, TASK_ACTS, note_given
@@ -30,7 +31,7 @@ def add_robot_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--reason", default="", metavar="TEXT", help="why, for others to read")
     parser.add_argument("--since", metavar="TIME", help="where a report begins (default: seven days ago)")
     _add_json(parser)
-    parser.add_argument("act", choices=ROBOT_ACTS, metavar="ACT", help=", ".join(ROBOT_ACTS))
+    add_acts(parser, ROBOT_ACTS)
     parser.add_argument(
         "item", nargs="*", default=[], metavar="FILE", help="what to back up to, to restore, or to say; another robot"
     )
@@ -80,9 +81,7 @@ def add_component_options(parser: argparse.ArgumentParser) -> None:
     """Those of `btc components`."""
     _add_name(parser)
     _add_json(parser)
-    parser.add_argument(
-        "act", nargs="?", default="list", choices=COMPONENT_ACTS, metavar="ACT", help=", ".join(COMPONENT_ACTS)
-    )
+    add_acts(parser, COMPONENT_ACTS, nargs="?", default="list")
     parser.add_argument("item", nargs="?", default="", metavar="NAME", help="a component")
 
 
@@ -114,7 +113,7 @@ def add_task_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--limit", type=at_least(1), metavar="N", help="list at most so many (default: 100)")
     parser.add_argument("--live", action="store_true", help="go on showing the list")
     _add_json(parser)
-    parser.add_argument("act", choices=TASK_ACTS, metavar="ACT", help=", ".join(TASK_ACTS))
+    add_acts(parser, TASK_ACTS)
     parser.add_argument(
         "item", nargs="*", default=[], metavar="FILE", help="a mission file, a name of the library, or a task"
     )
