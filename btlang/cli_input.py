@@ -15,6 +15,7 @@ from btlang.diagnostics.reading import read_source
 from btlang.robots.platforms import ROBOTS
 from btlang.testing.names import is_test_file
 from btlang.text.source import Source, Span
+from btlang.vocabulary.shipped import shipped
 
 _OWN_ROBOT = ("robot", "gesture")  # these verbs read the robot themselves
 
@@ -60,8 +61,9 @@ def parsed_mission(source: Source, options: argparse.Namespace) -> Mission:
             source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main,
             language=options.language,
         )  # fmt: skip
-    except MissionError:
-        options.report.advice = options.report.advice or _advice_on_robot(source.name, options)
+    except MissionError as error:
+        advice = options.report.advice or _advice_on_robot(source.name, options)
+        options.report.advice = advice or _advice_on_world(error, source, options)
         raise
 
 
@@ -75,6 +77,26 @@ def _advice_on_robot(path: str, options: argparse.Namespace) -> str:
             from shlex import quote
 
             return f"If the mission is for the robot in {file}, add: --robot {quote(file)}"
+    return ""
+
+
+def _advice_on_world(error: MissionError, source: Source, options: argparse.Namespace) -> str:
+    """For a mission with names that the world lacks, and one that ships has."""
+    lacking = [dict(problem.arguments).get("words", "") for problem in error.diagnostics if problem.code == "BT013"]
+    if options.world or options.main or not lacking:
+        return ""
+    from glob import glob
+    from shlex import quote
+
+    for path in sorted(glob(shipped("examples", "worlds", "*.toml"))):
+        with open(path, encoding="utf-8") as file:
+            text = file.read().lower()
+        if all(f'"{words.lower()}"' in text for words in lacking):
+            try:
+                parse_tree(source, keywords=options.keywords, world=path, language=options.language)
+            except MissionError:
+                continue
+            return f"A world that ships has these names. To use it, add: --world {quote(path)}"
     return ""
 
 

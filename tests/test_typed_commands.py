@@ -184,3 +184,15 @@ def test_help_says_what_each_act_does(verb: str, acts: Mapping[str, str], capsys
         for example in re.findall(r"(?<=btc )[^,]+", about):
             options = parsed(shlex.split(example))
             assert (options.verb, options.act) == (verb, act)
+
+
+def test_names_of_another_world_that_ships(capsys: pytest.CaptureFixture[str]) -> None:
+    assert typed("check", "-c", "go to the reception, then go to room 1") == 2
+    [advice] = [line for line in capsys.readouterr().err.splitlines() if line.startswith("A world that ships")]
+    world = shlex.split(advice.partition("--world ")[2])[0]
+    assert typed("check", "-c", "go to the reception, then go to room 1", "--world", world) == 0
+    capsys.readouterr()
+    assert typed("check", "-c", "go to the reception, then fly") == 2
+    assert "A world that ships" not in capsys.readouterr().err
+    assert typed("check", "-c", "go to the reception", "--world", str(Path(world).with_name("museum.toml"))) == 2
+    assert "A world that ships" not in capsys.readouterr().err
