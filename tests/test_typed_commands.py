@@ -196,3 +196,15 @@ def test_names_of_another_world_that_ships(capsys: pytest.CaptureFixture[str]) -
     assert "A world that ships" not in capsys.readouterr().err
     assert typed("check", "-c", "go to the reception", "--world", str(Path(world).with_name("museum.toml"))) == 2
     assert "A world that ships" not in capsys.readouterr().err
+
+
+def test_the_world_that_ships_is_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert not typed("world")
+    assert "places: lobby, hall, kitchen" in capsys.readouterr().out
+    Path("w.toml").write_text(
+        "start = { x = 0, y = 0 }\n"
+        'objects = [{ name = "glass 1", kind = "glass", content = "water", has = ["red lid"], x = 1, y = 1 }]\n',
+        encoding="utf-8",
+    )
+    assert not typed("world", "w.toml")
+    assert "objects: glass 1 (glass, of water, with red lid)" in capsys.readouterr().out

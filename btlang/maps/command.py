@@ -16,6 +16,7 @@ from btlang.robots.world_writing import to_toml
 from btlang.text.escaping import one_line
 from btlang.text.output import show
 from btlang.text.source import Source
+from btlang.vocabulary.shipped import DEFAULT_WORLD
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -33,7 +34,8 @@ _TAKES = {"": {"picture"}, "check": set[str](), "import": {"out", "start"}, "exp
 
 def serve(options: argparse.Namespace) -> int:
     """Does the verb `world`; returns the exit code. Raises MissionError."""
-    act, files = ("", options.words) if options.words[0] not in ACTS else (options.words[0], options.words[1:])
+    words = options.words or [DEFAULT_WORLD]
+    act, files = ("", words) if words[0] not in ACTS else (words[0], words[1:])
     _check_words(options, act, files)
     body = body_of(options.robot)
     if act == "check":

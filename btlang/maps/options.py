@@ -19,11 +19,12 @@ USUAL_RESOLUTION = 0.05
 def add_world_options(parser: argparse.ArgumentParser) -> None:
     """Those of `btc world`."""
     parser.usage = (
-        "btc world FILE [--picture OUT]\n       btc world check FILE ...\n"
+        "btc world [FILE] [--picture OUT]\n       btc world check FILE ...\n"
         "       btc world import FILE ... -o OUT [--start X,Y[,FACING]]\n"
         "       btc world export FILE --to nav2|json|yaml -o OUT"
     )
-    parser.add_argument("words", nargs="+", metavar="FILE", help="world file, perhaps after check, import or export")
+    about = "world file, perhaps after check, import or export (default: the world that ships)"
+    parser.add_argument("words", nargs="*", default=[], metavar="FILE", help=about)
     parser.add_argument("--picture", type=picture(".svg", ".png"), metavar="OUT", help="draw the world: .svg or .png")
     parser.add_argument("-o", dest="out", metavar="OUT", help="what to write: a file, or a folder for nav2")
     parser.add_argument("--to", choices=TARGETS, help="what to export to")

@@ -37,7 +37,8 @@ def _with(name: str, *more: str) -> str:
 def _object(thing: WorldObject) -> str:
     switch, owner = thing.switch and f"is {thing.switch}", thing.owner and f"owner {thing.owner}"
     like = (thing.sized, *thing.state, thing.color, thing.kind)
-    return _with(thing.name, *like, owner, switch, _unknown(thing.known))
+    holds, has = thing.content and f"of {thing.content}", (f"with {each}" for each in thing.having)
+    return _with(thing.name, *like, holds, *has, owner, switch, _unknown(thing.known))
 
 
 def _person(person: Person) -> str:

@@ -15,7 +15,11 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_KEYS: dict[type, dict[str, str]] = {Fault: {"start": "from", "end": "until"}, Door: {"start": "from", "end": "to"}}
+_KEYS: dict[type, dict[str, str]] = {
+    Fault: {"start": "from", "end": "until"},
+    Door: {"start": "from", "end": "to"},
+    WorldObject: {"having": "has"},
+}
 """Of fields that have another key in the file."""
 _MONDAY = 5  # of January 2026
 _LISTS = ("boxes", "docks", "places", "objects", "people", "zones", "doors", "faults")

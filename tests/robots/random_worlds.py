@@ -82,7 +82,8 @@ def _object(draw: st.DrawFn, name: str) -> WorldObject:
     return WorldObject(
         name, *draw(_points), radius, draw(st.booleans()), draw(optional), draw(optional),
         2 * radius if sized else draw(st.floats(0.0, 3.0)), tuple(draw(st.lists(_texts, max_size=2))), switch,
-        draw(st.booleans()), sized, tuple(draw(st.lists(_texts, max_size=2))), draw(optional),
+        draw(st.booleans()), sized, tuple(draw(st.lists(_texts, max_size=2))), draw(optional), draw(optional),
+        tuple(draw(st.lists(_texts, max_size=2))),
     )  # fmt: skip
 
 
