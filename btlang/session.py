@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from typing import Any, Protocol, overload
 
     from btlang.engine.instance import Hooks
+    from btlang.pictures.terminal_map import TerminalMap
     from btlang.robots.body import Body
     from btlang.robots.registry import Connect
     from btlang.run.connection import Connection
@@ -86,8 +87,17 @@ class Session:
         connect = connector(robot, over) if isinstance(robot, str) else robot
         self.world = read_world(world, getattr(connect, "body", None))
         self.connection: Connection = connect(self.world)
+        self._is_simulated = getattr(connect, "over", "") == "simulated"
         self.current: Run | None = None
         """The latest run."""
+
+    def map(self, unicode: bool) -> TerminalMap | None:
+        """The world for a terminal, if the robot moves in it, and not in a room of which it may be no map."""
+        if not self._is_simulated:
+            return None
+        from btlang.pictures.terminal_map import TerminalMap
+
+        return TerminalMap(self.world, unicode)
 
     @property
     def robot(self) -> Any:

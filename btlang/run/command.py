@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     from btlang.run.bus import Bus
     from btlang.run.events import Sink
+    from btlang.run.live.board import Map
     from btlang.run.live.view import LiveView, ViewKey
 
     class Run(Protocol):
@@ -46,6 +47,8 @@ if TYPE_CHECKING:
 
     class Session(Protocol):
         """See btlang.session.Session."""
+
+        def map(self, unicode: bool) -> Map | None: ...
 
         @property
         def prepare(self) -> Callable[..., Run]: ...
@@ -125,6 +128,8 @@ def run_mission(
                 sinks.append(JsonLog(file, mission.label))
             if monitor is not None:
                 options["hooks"] = monitor.hooks
+            if view is not None:
+                view.show_map(session.map(view.unicode))
             run = session.prepare(mission, sinks=sinks, **options)
             if monitor is not None:
                 monitor.watch_run(run, mission)

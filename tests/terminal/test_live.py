@@ -93,9 +93,27 @@ def test_it_shows_the_tree_the_robot_and_the_keys(terminal: Open) -> None:
     seen = run(terminal, "-c", f'say "On my way." then (drive then wave); drive is {DRIVE}')
     seen.wait_for("▶ move forward")
     seen.wait_until(lambda screen: "1." in clock(screen))
+    seen.press("m")
     seen.press("Space")
-    screen = seen.wait_for("‖ move forward")
+    seen.wait_for("‖ move forward")
+    screen = seen.wait_until(lambda screen: "kitchen" not in screen)
     matches_golden(same_each_time(screen), GOLDEN / "paused.txt")
+
+
+@pytest.mark.parametrize("width", [80, 110])
+def test_it_shows_the_map_below_the_tree_or_beside_it(terminal: Open, width: int) -> None:
+    seen = run(terminal, "-c", "go to the hall then wait 20 s", width=width)
+    screen = seen.wait_until(lambda screen: re.search("[→↗↑↖←↙↓↘]", screen) is not None, "the robot on the map")
+    lines = screen.splitlines()
+    at = next(index for index, line in enumerate(lines) if "▶ go to hall" in line)
+    dock = next(index for index, line in enumerate(lines) if "dock" in line)
+    assert dock > at + 5
+    assert any("kitchen" in line and "living room" not in line for line in lines)
+    assert ("⡤" in lines[at - 1] or "⡇" in lines[at]) == (width > 90)
+    seen.press("m")
+    seen.wait_until(lambda screen: "⠤" not in screen)
+    seen.press("m")
+    seen.wait_until(lambda screen: "⠤" in screen)
 
 
 def test_space_pauses_and_resumes(terminal: Open) -> None:
@@ -204,6 +222,7 @@ def test_a_stopped_process_gives_the_terminal_back(terminal: Open) -> None:
 def test_500_nodes_fit(terminal: Open, big: str) -> None:
     seen = run(terminal, big, "--speed", "20")
     seen.wait_for("▶ task ae", 60)
+    seen.press("m")
     seen.press("Space")
     screen = seen.wait_for("‖")
     lines = screen.splitlines()
@@ -212,7 +231,7 @@ def test_500_nodes_fit(terminal: Open, big: str) -> None:
     assert re.search(r"✓ task \w\w  [\d.]+ s  \(6 nodes\)", screen)
     assert re.search(r"‖ (nod|wave|look left|look right|look ahead)  ", screen)
     assert re.search(r"└── … \d\d to come", screen)
-    assert lines[-1] == "space resume · s step · q stop · e emergency stop · ? legend"
+    assert lines[-1] == "space resume · s step · q stop · e emergency stop · m map · ? legend"
 
 
 def test_a_narrow_terminal_and_another_size(terminal: Open, big: str) -> None:

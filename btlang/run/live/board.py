@@ -20,7 +20,18 @@ if TYPE_CHECKING:
     from typing import Protocol
 
     from btlang.run.events import Event
+    from btlang.run.live.frame import Line
+    from btlang.run.robot_state import RobotState
     from btlang.tree.node import Node, Tree
+
+    class Map(Protocol):
+        """See btlang.pictures.terminal_map.TerminalMap."""
+
+        def note(self, robot: RobotState | None) -> None: ...
+
+        def size(self, width: int, height: int) -> tuple[int, int]: ...
+
+        def lines(self, robot: RobotState | None, width: int, height: int) -> list[frame.Line]: ...
 
     class Viewed(Protocol):
         """What the live view asks of a mission."""
@@ -33,6 +44,8 @@ if TYPE_CHECKING:
         def is_action(self, node: Node) -> bool: ...
 
 
+_BESIDE = 90  # columns from which on the map stands beside the tree, not below it
+_MAP_PART, _APART = 45, 2  # percent of the columns for it there, and columns between both
 _MOST_WAITING = 50_000  # events; a terminal may be slower than the run, or be held by its user
 
 
@@ -56,6 +69,8 @@ class Board:
         self._noted = self._taken = self._lost = 0  # events
         self._period: PeriodPassed | None = None
         self._begun = False
+        self.map: Map | None = None
+        self.hides_map = False
 
     def note(self, event: Event | str) -> None:
         """Keeps an event, or a line that was printed."""
@@ -83,6 +98,8 @@ class Board:
         self._taken += count
         if self._period is not None:
             self.state.take(self._period)
+        if self.map is not None:
+            self.map.note(self.state.robot)
         if lost > 0:
             self._lost += lost
             self._above.append(f"         ({lost} events came too fast for this terminal)")
@@ -107,8 +124,32 @@ class Board:
         below.append(frame.keys_line(doing == "paused", keys, signs))
         if explained:
             below = [*frame.legend_lines(width, signs)[: height - LEAST_HEIGHT - 4], *below]
-        tree = frame.tree_lines(state, self._words, height - 1 - len(below), width, over, signs)
-        return [frame.header(self._title, state, doing, signs), *tree, *below]
+        rows = height - 1 - len(below)
+        shown = self._beside(width, rows, over) if width >= _BESIDE else self._above_each_other(width, rows, over)
+        return [frame.header(self._title, state, doing, signs), *shown, *below]
+
+    def _beside(self, width: int, rows: int, over: bool) -> list[Line]:
+        """The tree, and the map to the right of it."""
+        columns, lines = self._map_size(width * _MAP_PART // 100, rows)
+        left = width - columns - _APART if columns else width
+        return frame.side_by_side(self._tree(left, rows, over), self._map(columns, lines), left + _APART)
+
+    def _above_each_other(self, width: int, rows: int, over: bool) -> list[Line]:
+        """The tree, and the map in the rows that it leaves, or in half of them."""
+        tree = self._tree(width, rows, over)
+        columns, lines = self._map_size(width, max(rows // 2, rows - len(tree)))
+        if len(tree) > rows - lines:
+            tree = self._tree(width, rows - lines, over)
+        return [*tree, *self._map(columns, lines)]
+
+    def _tree(self, width: int, rows: int, over: bool) -> list[Line]:
+        return frame.tree_lines(self.state, self._words, rows, width, over, self.signs)
+
+    def _map(self, columns: int, lines: int) -> list[Line]:
+        return self.map.lines(self.state.robot, columns, lines) if self.map is not None and columns else []
+
+    def _map_size(self, width: int, height: int) -> tuple[int, int]:
+        return self.map.size(width, height) if self.map is not None and not self.hides_map else (0, 0)
 
     def _take(self, event: Event | str | State) -> None:
         if isinstance(event, str):

@@ -116,6 +116,17 @@ def tree_lines(state: State, words: Words, height: int, width: int, over: bool, 
     return lines
 
 
+def side_by_side(left: Sequence[Line], right: Sequence[Line], column: int) -> list[Line]:
+    """The lines of one beside those of another one, which begin at a column."""
+    lines: list[Line] = []
+    for at in range(max(len(left), len(right))):
+        line = left[at] if at < len(left) else ()
+        if at < len(right):
+            line = (*line, (" " * (column - sum(cell_len(text) for text, _ in line)), ""), *right[at])
+        lines.append(line)
+    return lines
+
+
 def robot_line(state: State, signs: Signs) -> Line:
     """Pose, battery, what it holds, its last words."""
     robot = state.robot or RobotState()

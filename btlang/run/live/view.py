@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from btlang.run.controls import Controls
     from btlang.run.events import Event
-    from btlang.run.live.board import Viewed
+    from btlang.run.live.board import Map, Viewed
     from btlang.run.snapshot import State
     from btlang.run.world_input import WorldInput
 
@@ -37,6 +37,7 @@ _TICK = 0.01  # seconds: a tick follows a period at once, and is over by then as
 _SHARE = 40  # a frame that took long to make is followed by a rest of so many times as long
 _LONGEST_REST = 1.0
 _LONGEST_ANSWER = 200
+_MAP = "map"  # what a key is for
 _GRACE = 2.0  # seconds after a question in which keys still belong to its answer
 _SWITCH = 0.0005  # seconds after which the drawing thread lets a run that is waiting go on
 _OTHER_LINES = 6  # one row in so many shows what happened, above the frame
@@ -92,7 +93,8 @@ class LiveView:
         self._controls = controls
         self._output = output
         self._screen = Screen(output, lambda: os.get_terminal_size(output.fileno()))
-        used = [*(usual_keys(controls) if keys is None else keys), ViewKey("?", "legend", {"?": self._explain})]
+        own = [ViewKey("m", _MAP, {"m": self._hide_map}), ViewKey("?", "legend", {"?": self._explain})]
+        used = [*(usual_keys(controls) if keys is None else keys), *own]
         self._shown_keys = [(key.shown, key.does) for key in used]
         self._calls = {GONE: controls.stop}
         for key in used:
@@ -111,6 +113,15 @@ class LiveView:
         self._ended = False
         self._thread = threading.Thread(target=self._draw_on, name="btlang live view", daemon=True)
         self._exits = ExitStack()
+
+    @property
+    def unicode(self) -> bool:
+        """Whether the terminal has more than the signs of ASCII."""
+        return self._board.signs is frame.UNICODE
+
+    def show_map(self, world: Map | None) -> None:
+        """Shows the world beside the tree, or below it, while the mission runs; m hides and shows it."""
+        self._board.map = world
 
     def __call__(self, event: Event) -> None:
         """Notes an event."""
@@ -170,7 +181,7 @@ class LiveView:
         width, height = self._screen.size()
         doing = self._doing()
         question = self._question
-        seen = self._board.changes, width, height, doing, self._explained, question, self._typed
+        seen = self._board.changes, width, height, doing, self._explained, question, self._typed, self._board.hides_map
         if seen == self._drawn:
             return
         self._drawn = seen
@@ -187,7 +198,8 @@ class LiveView:
         if self._keys is None:
             return frame.SIGNALS
         typing = self._type_ahead is not None and doing != "paused"
-        return (self._shown_keys[0], *frame.SIGNALS) if typing else self._shown_keys
+        shown = [key for key in self._shown_keys if key[1] != _MAP or self._board.map is not None]
+        return (shown[0], *frame.SIGNALS) if typing else shown
 
     def _doing(self) -> str:
         if self._ended:
@@ -259,6 +271,9 @@ class LiveView:
 
     def _explain(self) -> None:
         self._explained = not self._explained
+
+    def _hide_map(self) -> None:
+        self._board.hides_map = not self._board.hides_map
 
     def _leave(self) -> None:
         """Gives the terminal back for as long as the process is stopped."""

@@ -1,0 +1,91 @@
+"""The map in a terminal: a picture of cells, and what it leaves out where there is no room."""
+
+from __future__ import annotations
+
+import pytest
+
+from btlang.pictures.terminal_map import TerminalMap
+from btlang.robots.geometry import Pose
+from btlang.robots.world import World
+from btlang.robots.world_problem import read_world
+from btlang.run.robot_state import RobotState
+from btlang.text.source import Source
+
+WORLD = """
+start = { x = 1, y = 1 }
+walls = [[[0, 0], [10, 0], [10, 5], [0, 5], [0, 0]], [[6, 0], [6, 3]]]
+places = [{ name = "kitchen", x = 3, y = 4 }, { name = "lab", x = 8, y = 1 }]
+objects = [{ name = "cup", x = 3, y = 3.9 }]
+people = [{ name = "Zoë", x = 8, y = 4 }]
+"""
+
+
+@pytest.fixture
+def world() -> World:
+    return read_world(Source(WORLD, "world.toml"))
+
+
+def drawn(shown: TerminalMap, state: RobotState | None, width: int = 40, height: int = 12) -> list[str]:
+    columns, rows = shown.size(width, height)
+    return ["".join(text for text, _ in line) for line in shown.lines(state, columns, rows)]
+
+
+def test_with_the_signs_of_ascii(world: World) -> None:
+    shown = TerminalMap(world, unicode=False)
+    for step in range(30):
+        shown.note(RobotState(pose=Pose(1 + step / 10, 1.0, 0.0)))
+    lines = drawn(shown, RobotState(pose=Pose(4.0, 1.0, 0.0)))
+    assert "\n".join(line.rstrip() for line in lines).rstrip() + "\n" == MAP
+
+
+def test_a_wall_has_dots_and_the_robot_an_arrow(world: World) -> None:
+    shown = TerminalMap(world, unicode=True)
+    lines = drawn(shown, RobotState(pose=Pose(4.0, 1.0, 90.0)))
+    assert sum(line.count("↑") for line in lines) == 1
+    assert all(any(0x2800 < ord(sign) < 0x2900 for sign in line) for line in lines[1:-1])
+    lines = drawn(shown, RobotState(pose=Pose(4.0, 1.0, -135.0)))
+    assert sum(line.count("↙") for line in lines) == 1
+
+
+def test_who_is_elsewhere_is_shown_there_and_who_is_gone_is_not(world: World) -> None:
+    shown = TerminalMap(world, unicode=True)
+    before = drawn(shown, None)
+    [row] = [at for at, line in enumerate(before) if "Zoë" in line]
+    after = drawn(shown, RobotState(things=(("Zoë", 8.0, 1.9, True),)))
+    assert next(at for at, line in enumerate(after) if "Zoë" in line) > row
+    assert not any("Zoë" in line for line in drawn(shown, RobotState(things=(("Zoë", None, None, False),))))
+
+
+def test_a_name_that_would_touch_another_one_is_a_letter(world: World) -> None:
+    text = "\n".join(drawn(TerminalMap(world, unicode=True), None))
+    assert "kitchen" in text  # the letter of the cup is its c
+    assert "cup" not in text
+
+
+@pytest.mark.parametrize(("width", "height"), [(15, 30), (80, 4), (0, 0)])
+def test_where_there_is_no_room(width: int, height: int, world: World) -> None:
+    assert TerminalMap(world, unicode=True).size(width, height) == (0, 0)
+
+
+def test_it_keeps_to_its_room_in_any_size(world: World) -> None:
+    shown = TerminalMap(world, unicode=True)
+    shown.note(RobotState(pose=Pose(50.0, -70.0, 0.0)))  # off the map
+    for width in range(16, 120, 7):
+        for height in range(5, 60, 5):
+            lines = drawn(shown, RobotState(pose=Pose(50.0, -70.0, 0.0)), width, height)
+            assert len(lines) <= height
+            assert max(map(len, lines)) <= width
+
+
+MAP = """\
+ ######################################
+ #                                    #
+ #       kitchen              Zoë     #
+ #                                    #
+ #                     #              #
+ #                     #              #
+ #                     #              #
+ #                     #              #
+ #  ............>      #      lab     #
+ ######################################
+"""
