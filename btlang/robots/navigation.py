@@ -112,6 +112,14 @@ class Navigator:
         """These are the named places from now on."""
         self._places = {place.name: place for place in places}
 
+    def prepare(self) -> Planner:
+        """Loads what plans ways, which takes longer than a tick has."""
+        with interrupts_later():  # numpy, which takes longer to import than many missions
+            from btlang.robots.planning import Planner
+
+        self._planner = self._planner or Planner(self._world, self._obstacles, self._body.radius, self._zones)
+        return self._planner
+
     def start(self, name: str, pose: Pose | None = None) -> NavigationGoal:
         """Sets out at once; a goal under way is given up. Without a pose the name is one of the world's."""
         self.cancel(f"the robot set out for {said(name)} instead")
@@ -196,15 +204,11 @@ class Navigator:
         """Whether there is a way, `around` also those who walk nearby; without one the goal ends, but not then."""
         target = self._target(goal)
         assert target is not None
-        if self._planner is None:
-            with interrupts_later():  # numpy, which takes longer to import than many missions
-                from btlang.robots.planning import Planner
-
-            self._planner = Planner(self._world, self._obstacles, self._body.radius, self._zones)
+        planner = self._planner or self.prepare()
         start = self._base.pose.x, self._base.pose.y
         others = [disc for name, disc in self._obstacles.walking.items() if name != goal.name] if around else []
         near = [disc for disc in others if dist(start, disc[:2]) < _NEARBY]
-        path = self._planner.path(start, target, goal.reach, near)
+        path = planner.path(start, target, goal.reach, near)
         goal.planned, goal.planned_at, goal.target = (self._obstacles.layout, self._zones.version), self._now, target
         if path is not None:
             goal.path, goal.at, goal.driven = path, 0, False

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from btlang.robots.body import Body
+from btlang.robots.needs import needs_of_tree
 from btlang.robots.preflight import check_mission
 from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.world import World
@@ -51,6 +52,8 @@ class Simulation:
     def check(self, tree: Tree, vocabulary: Lexicon) -> None:
         """Raises MissionError where its body lacks what a leaf needs (BT072), or a goal is in a closed zone (BT074)."""
         check_mission(self.robot.world, self.robot.body, tree, vocabulary)
+        if "navigation" in needs_of_tree(tree, vocabulary):
+            self.robot.prepare_journeys()
 
     def pace(self, speed: float, controls: Controls) -> Pace:
         """Any speed will do: the world moves on as fast as it is asked to."""
