@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
         def offers(self) -> bool: ...
 
-        def refuse(self) -> None: ...
+        def refuse(self, is_whole: bool) -> None: ...
 
         def readings(self) -> list[tuple[int, int, str]]: ...
 
@@ -61,8 +61,12 @@ def key_bindings(screen: Editor) -> KeyBindings:
                 return
             errors = preview(screen.draft, text).errors
             if errors:
-                buffer.cursor_position = min(errors[0].span.end, len(text))
-                screen.refuse()
+                span = errors[0].span
+                buffer.cursor_position = min(span.end, len(text))
+                is_whole = not (text[: span.start] + text[span.end :]).strip()
+                if is_whole:
+                    _select(buffer)
+                screen.refuse(is_whole)
                 return
             if screen.ask_which():
                 return
@@ -123,6 +127,16 @@ def key_bindings(screen: Editor) -> KeyBindings:
             screen.note = "Press Ctrl-D again to leave."
 
     return keys
+
+
+def _select(buffer: Buffer) -> None:
+    """Selects the whole entry, so that what is typed next takes its place; an arrow key keeps it."""
+    buffer.append_to_history()
+    buffer.cursor_position = 0
+    buffer.start_selection()
+    if buffer.selection_state is not None:
+        buffer.selection_state.enter_shift_mode()
+    buffer.cursor_position = len(buffer.text)
 
 
 def _new_line(event: KeyPressEvent) -> None:

@@ -110,12 +110,17 @@ class Screen:
             self._seen = text, Preview() if is_own else seen
         return self._seen[1]
 
-    def refuse(self) -> None:
-        """Shows what is wrong with the entry although more might come: the user wants to run it."""
+    def refuse(self, is_whole: bool) -> None:
+        """Shows what is wrong with the entry although more might come: the user wants to run it.
+
+        If `is_whole`, nothing of it was understood, and it is selected.
+        """
         self._refused = self.buffer.text
         self._seen = "", Preview()
         near, fix = near_command(self.buffer.text), self.fix()
         self.note = "Not run: correct the mistake, or clear the line with Ctrl-C."
+        if is_whole:
+            self.note = "Not run. Type something else, or press an arrow key to correct this."
         if fix is not None:
             self.note = f"Not run: there's a mistake. Ctrl-F writes: {fix[2]}"
         elif near:

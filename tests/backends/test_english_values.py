@@ -18,6 +18,7 @@ from btlang.tree import ast
 from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
+from tests.examples.cases import world_of
 from tests.language.letters import letters
 from tests.printer import trees
 from tests.profiles import searches
@@ -52,9 +53,8 @@ def natural(text: str) -> str:
 def test_missions_that_ship(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(path.parent)  # where it includes from
     text = path.read_text(encoding="utf-8-sig")
-    world = re.search(r"--world (\S+)", text)
     own = path.with_suffix(".toml")
-    vocabulary = world_vocabulary([str(own)] if own.exists() else [], world=str(ROOT / world[1]) if world else None)
+    vocabulary = world_vocabulary([str(own)] if own.exists() else [], world=world_of(path, text))
     mission = read_mission(Source(text, str(path)), vocabulary).mission
     said = said_and_read(lower_mission(mission, vocabulary), vocabulary, ast.all_facts(mission))
     assert (_BY_ID.search(said) is not None) == (path.stem in NOT_ALL_NATURAL), said

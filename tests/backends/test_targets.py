@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import subprocess
 import sys
 import warnings
@@ -24,6 +23,7 @@ from btlang.text.source import Source
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
 from tests.engine.scripted import n
+from tests.examples.cases import world_of
 from tests.profiles import cases
 
 ROOT = Path(__file__).parents[2]
@@ -37,8 +37,7 @@ if battery is above 20% go to the bay
 
 def example(path: Path) -> Mission:
     text = path.read_text(encoding="utf-8")
-    world = re.search(r"--world (\S+)", text)
-    return btlang.parse_tree(Source(text, str(path)), world=str(ROOT / world[1]) if world else None)
+    return btlang.parse_tree(Source(text, str(path)), world=world_of(path, text))
 
 
 def deep(levels: int = 10_000) -> Mission:

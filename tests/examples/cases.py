@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -370,3 +372,9 @@ CASES |= {
     ),
 }  # fmt: skip
 """Those with people in their worlds."""
+
+
+def world_of(path: Path, text: str) -> str | None:
+    """The world file that a mission names at its top, None for the one that ships."""
+    named = re.search(r'^world "(.+)"$', text, re.MULTILINE)
+    return str(path.parent / named[1]) if named is not None else None

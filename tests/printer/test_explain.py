@@ -11,6 +11,7 @@ from btlang.api import Mission, parse_tree
 from btlang.cli import main
 from btlang.text.source import Source
 from tests.conftest import matches_golden
+from tests.examples.cases import world_of
 from tests.printer.test_sentence import MISSIONS, ROOT
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -44,8 +45,7 @@ def test_examples(name: str, world: str | None) -> None:
 def test_every_mission_fits(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(path.parent)  # where it includes from
     text = path.read_text(encoding="utf-8-sig")
-    world = re.search(r"--world (\S+)", text)
-    tree = parse_tree(Source(text, str(path), may_load=True), world=str(ROOT / world[1]) if world else None)
+    tree = parse_tree(Source(text, str(path), may_load=True), world=world_of(path, text))
     for width in (60, 80, 120):
         lines = tree.explain(width).splitlines()
         assert all(len(line) <= width for line in lines)

@@ -19,9 +19,10 @@ from btlang.text.words import split
 from btlang.tree.node import Tree
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import load_vocabulary
+from tests.examples.cases import world_of
 from tests.language import sentences
 from tests.language.letters import letters
-from tests.printer.test_sentence import MISSIONS, ROOT
+from tests.printer.test_sentence import MISSIONS
 from tests.profiles import searches
 
 _BLANKS = ["", " ", "  ", "\t", " \t ", "\u00a0", "\f", "\ufeff"]
@@ -101,8 +102,7 @@ def test_any_layout(text: str) -> None:
 def test_missions_that_ship(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(path.parent)  # where it includes from
     text = path.read_bytes().decode("utf-8")
-    world = re.search(r"--world (\S+)", text)
-    where = str(ROOT / world[1]) if world else None
+    where = world_of(path, text)
     done = format_mission(Source(text, str(path), may_load=True), world=where)
     assert format_mission(Source(done, str(path), may_load=True), world=where) == done
     trees = [parse_tree(Source(laid, str(path), may_load=True), world=where).tree for laid in (text, done)]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -25,6 +24,7 @@ from btlang.tree.node import Tree
 from btlang.vocabulary.entry import Entry, SlotSpec
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import load_vocabulary
+from tests.examples.cases import world_of
 from tests.language import sentences
 from tests.language.letters import letters, read
 from tests.printer import trees
@@ -109,8 +109,7 @@ def test_blocks_keep_the_tree(mission: ast.Program, width: int, brackets: str) -
 def test_missions_that_ship_keep_their_tree(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(path.parent)  # where it includes from
     text = path.read_text(encoding="utf-8-sig")
-    world = re.search(r"--world (\S+)", text)
-    vocabulary = world_vocabulary(world=str(ROOT / world[1]) if world else None)
+    vocabulary = world_vocabulary(world=world_of(path, text))
     keeps_its_tree(read_mission(Source(text, str(path)), vocabulary).mission, vocabulary)
 
 

@@ -15,6 +15,7 @@ from btlang.repl.draft import Compiled, MissionDraft
 from btlang.run.events import Event
 from btlang.text.source import Source
 from btlang.tree.dump import plain
+from tests.examples.cases import world_of
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.txt"))
@@ -95,7 +96,7 @@ def option(text: str, name: str) -> str | None:
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_a_mission_falls_into_its_statements(path: Path) -> None:
     text = path.read_text()
-    world = option(text, "--world ")
+    world = world_of(path, text)
     keywords = [file for file in [option(text, "--keywords ")] if file]
     draft = MissionDraft(keywords, world)
     entries = draft.entries_of(text, str(path))

@@ -246,6 +246,19 @@ def test_enter_says_why_a_line_does_not_run(repl: Callable[..., Terminal], line:
     assert user.screen().count(f"> {line}") == 1
 
 
+def test_a_line_of_which_nothing_was_understood_gives_way_to_the_next(repl: Callable[..., Terminal]) -> None:
+    user = repl()
+    user.type("hello")
+    user.wait_for("Not run")
+    user.type("show")
+    user.wait_until(lambda screen: "helloshow" not in screen and "> show" in screen)
+    user.type("frobnicate")
+    user.wait_for("Type something else, or press an arrow key")
+    user.press("Left")
+    user.type("x", enter=False)
+    user.wait_for("> frobnicatxe")
+
+
 @pytest.mark.parametrize("word", ["exit", "bye", ":quit"])
 def test_words_that_leave(repl: Callable[..., Terminal], word: str) -> None:
     user = repl()
