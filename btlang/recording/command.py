@@ -16,6 +16,7 @@ from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
 from btlang.pictures.command import pictures_of
+from btlang.pictures.terminal_map import TerminalMap
 from btlang.recording.bundle import ROBOT, files_of
 from btlang.recording.compare import first_difference
 from btlang.recording.diff import diff
@@ -26,6 +27,7 @@ from btlang.recording.recorder import Recorder
 from btlang.recording.replay import Player, Timeline
 from btlang.recording.story import Story
 from btlang.robots.body_file import shipped_bodies
+from btlang.robots.world_problem import read_world
 from btlang.run.command import live_view
 from btlang.run.controls import Controls
 from btlang.run.events import Event
@@ -89,6 +91,8 @@ def _replay(options: argparse.Namespace) -> int:
         player = Player(timeline, sinks, controls)
         lines = Lines(mission.label, mission.is_action, show)
         view = None if options.lines else live_view(mission, controls, keys=partial(_keys, player, controls))
+        if view is not None and "simulated" in (recording.about.get("robot"), recording.about.get("over")):
+            view.show_map(TerminalMap(read_world(mission.world), view.unicode))
         start = -math.inf if options.start is None else options.start
         if options.failure:
             start = next(iter(timeline.failures), -math.inf)

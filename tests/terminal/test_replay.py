@@ -24,6 +24,7 @@ def test_arrows_and_the_next_failure(terminal: Open, tmp_path: Path) -> None:
     assert main(["run", "-c", MISSION, "--speed", "max", "--quiet", "--record", recording]) == 0
     seen = terminal(*BTC, "replay", recording)
     seen.wait_for("left/right 10 s")
+    seen.wait_for("living room")
     seen.press("Right")
     seen.wait_until(partial(is_at, r"1\d"))
     seen.press("f")
