@@ -21,7 +21,7 @@ from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 
 _SENTENCE_END = re.compile(r"[.;!?\n]")
-_ON_THE_WAY = ("SomeoneInTheWay", "SomethingInTheWay")
+_ON_THE_WAY, _BUMPED = ("SomeoneInTheWay", "SomethingInTheWay"), "Bumped"
 
 
 def asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
@@ -76,7 +76,8 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     if not (is_timed or journeys):
         return
     last = before[-1].span.text
-    if is_timed or asked.entry.id in _ON_THE_WAY:
+    bumps = asked.entry.id == _BUMPED and any("navigation" in each.entry.needs for each in journeys)
+    if is_timed or bumps or asked.entry.id in _ON_THE_WAY:
         each = f"{vocabulary.word('whenever')} {node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()}"
         advice = f"'{last}' is over by then. To do it {'meanwhile' if is_timed else 'on the way'}, write: {each}"
         yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((node.span, each),))
