@@ -110,7 +110,7 @@ class Screen:
             self._seen = text, Preview() if is_own else seen
         return self._seen[1]
 
-    def refuse(self, is_whole: bool) -> None:
+    def refuse(self, is_whole: bool = False) -> None:
         """Shows what is wrong with the entry although more might come: the user wants to run it.
 
         If `is_whole`, nothing of it was understood, and it is selected.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from functools import cache
 from math import ceil
 from typing import Any
@@ -274,7 +275,8 @@ class SimulatedRobot(Guarded):
 
     def prepare_journeys(self) -> None:
         """Gets ready to set out, so that the first journey takes no longer than the others."""
-        self._navigator.prepare()
+        with suppress(RobotError):  # a world that is too large fails the journey, with its reason
+            self._navigator.prepare()
 
     def _set_out(self, name: str, pose: Pose | None = None) -> NavigationGoal:
         self._need("navigation")
