@@ -13,67 +13,58 @@ _UP = (
     "no_recordings", "allow_keywords", "include_root", "speed", "serve", "host", "port", "join", "code", "answers",
 )  # fmt: skip
 _ADD = ("code", "priority", "label", "restart", "set", "keywords", "json")
-_ROBOT: Mapping[str, Sequence[str]] = {
-    "up": _UP, "down": ("json",), "status": ("json",), "report": ("since", "json"), "stop": ("reason", "json"),
-    "release": ("json",), "pause": ("json",), "resume": ("json",), "step": ("json",), "say": ("json",),
-    "visitor": ("json",),
-    "unit": _UP, "check": (), "show": (), "urdf": (), "import": (),
-    "backup": ("store",), "restore": ("store",), "invite": (), "revoke": (), "invited": ("json",),
-}  # fmt: skip
-_TASK: Mapping[str, Sequence[str]] = {
-    "add": (*_ADD, "at", "by"), "list": ("all", "live", "limit", "label", "json"), "show": ("json",),
-    "cancel": ("reason", "json"), "kill": ("reason", "json"), "interrupt": ("reason", "json"),
-    "resume": ("token", "json"), "skip": ("reason", "json"), "move": ("priority", "before", "json"),
-    "again": ("json",), "schedule": (*_ADD, "every", "zone", "overlap", "missed", "within"),
-    "schedules": ("json",), "unschedule": ("json",), "put": ("code", "kind", "json"),
-    "delete": ("kind", "json"), "library": ("kind", "json"), "trail": ("limit", "json"), "answer": ("json",),
-}  # fmt: skip
-"""By the acts, the options that mean something there; `--name` always does."""
-ROBOT_ACTS: Mapping[str, str] = {
-    "up": "brings a robot up: btc robot up --robot museum.toml",
-    "down": "ends its process",
-    "status": "says what it does, or what keeps it from doing more",
-    "report": 'says what was done, and why something was not: btc robot report --since "2 hours ago"',
-    "stop": "stops it at once, an emergency stop",
-    "release": "lets it move again after a stop",
-    "pause": "brings it to rest in the middle of a task",
-    "resume": "lets it go on after a pause",
-    "step": "goes on by one tick of a pause",
-    "say": "says a text, whatever else it does: btc robot say we close in ten minutes",
-    "visitor": "a visitor comes, where the world is simulated",
-    "unit": "prints a unit for systemd",
-    "check": "checks a robot file: btc robot check museum.toml",
-    "show": "shows the body of a robot: btc robot show museum.toml",
-    "urdf": "prints its body as URDF",
-    "import": "makes a robot file of a URDF",
-    "backup": "copies its store into a file: btc robot backup monday.db",
-    "restore": "fills an empty store from such a file",
-    "invite": "lets a robot elsewhere join a server here: btc robot invite lobby",
-    "revoke": "ends what an invitation allowed",
-    "invited": "lists the invitations",
+_ROBOT: Mapping[str, tuple[str, Sequence[str]]] = {
+    "up": ("brings a robot up: btc robot up --robot museum.toml", _UP),
+    "down": ("ends its process", ("json",)),
+    "status": ("says what it does, or what keeps it from doing more", ("json",)),
+    "report": (
+        'says what was done, and why something was not: btc robot report --since "2 hours ago"',
+        ("since", "json"),
+    ),
+    "stop": ("stops it at once, an emergency stop", ("reason", "json")),
+    "release": ("lets it move again after a stop", ("json",)),
+    "pause": ("brings it to rest in the middle of a task", ("json",)),
+    "resume": ("lets it go on after a pause", ("json",)),
+    "step": ("goes on by one tick of a pause", ("json",)),
+    "say": ("says a text, whatever else it does: btc robot say we close in ten minutes", ("json",)),
+    "visitor": ("a visitor comes, where the world is simulated", ("json",)),
+    "unit": ("prints a unit for systemd", _UP),
+    "check": ("checks a robot file: btc robot check museum.toml", ()),
+    "show": ("shows the body of a robot: btc robot show museum.toml", ()),
+    "urdf": ("prints its body as URDF", ()),
+    "import": ("makes a robot file of a URDF", ()),
+    "backup": ("copies its store into a file: btc robot backup monday.db", ("store",)),
+    "restore": ("fills an empty store from such a file", ("store",)),
+    "invite": ("lets a robot elsewhere join a server here: btc robot invite lobby", ()),
+    "revoke": ("ends what an invitation allowed", ()),
+    "invited": ("lists the invitations", ("json",)),
 }
-"""What `btc robot` does."""
-TASK_ACTS: Mapping[str, str] = {
-    "add": 'gives the robot a task: btc task add patrol.txt, btc task add -c "go to the lab"',
-    "list": "lists the tasks that aren't over, the next one first",
-    "show": "shows everything about a task: btc task show 3",
-    "cancel": "ends a task as a mission is halted: btc task cancel 3",
-    "kill": "ends a task at once",
-    "interrupt": "halts a task, so that it can go on later: btc task interrupt 3 --reason lunch",
-    "resume": "ends an interruption: btc task resume 3 --token 1f2e",
-    "skip": "leaves out a task that hasn't begun",
-    "move": "gives a task another place in the queue: btc task move 3 --before 1",
-    "again": "adds a task like an earlier one: btc task again 3",
-    "schedule": 'adds a schedule: btc task schedule patrol.txt --every "every day at 9:00"',
-    "schedules": "lists the schedules",
-    "unschedule": "removes a schedule, but not the tasks that it made: btc task unschedule 2",
-    "put": "keeps a mission under a name: btc task put tour tour.txt",
-    "delete": "removes a mission that is kept",
-    "library": "lists what is kept, or the revisions of one: btc task library tour",
-    "trail": "lists the latest commands, and who gave them",
-    "answer": "answers what the robot asks: btc task answer yes",
+_TASK: Mapping[str, tuple[str, Sequence[str]]] = {
+    "add": ('gives the robot a task: btc task add patrol.txt, btc task add -c "go to the lab"', (*_ADD, "at", "by")),
+    "list": ("lists the tasks that aren't over, the next one first", ("all", "live", "limit", "label", "json")),
+    "show": ("shows everything about a task: btc task show 3", ("json",)),
+    "cancel": ("ends a task as a mission is halted: btc task cancel 3", ("reason", "json")),
+    "kill": ("ends a task at once", ("reason", "json")),
+    "interrupt": ("halts a task, so that it can go on later: btc task interrupt 3 --reason lunch", ("reason", "json")),
+    "resume": ("ends an interruption: btc task resume 3 --token 1f2e", ("token", "json")),
+    "skip": ("leaves out a task that hasn't begun", ("reason", "json")),
+    "move": ("gives a task another place in the queue: btc task move 3 --before 1", ("priority", "before", "json")),
+    "again": ("adds a task like an earlier one: btc task again 3", ("json",)),
+    "schedule": (
+        'adds a schedule: btc task schedule patrol.txt --every "every day at 9:00"',
+        (*_ADD, "every", "zone", "overlap", "missed", "within"),
+    ),
+    "schedules": ("lists the schedules", ("json",)),
+    "unschedule": ("removes a schedule, but not the tasks that it made: btc task unschedule 2", ("json",)),
+    "put": ("keeps a mission under a name: btc task put tour tour.txt", ("code", "kind", "json")),
+    "delete": ("removes a mission that is kept", ("kind", "json")),
+    "library": ("lists what is kept, or the revisions of one: btc task library tour", ("kind", "json")),
+    "trail": ("lists the latest commands, and who gave them", ("limit", "json")),
+    "answer": ("answers what the robot asks: btc task answer yes", ("json",)),
 }
-"""What `btc task` does."""
+"""By the acts, what each does, and the options that mean something there; `--name` always does."""
+ROBOT_ACTS, TASK_ACTS = ({act: about for act, (about, _) in acts.items()} for acts in (_ROBOT, _TASK))
+"""What `btc robot` and `btc task` do."""
 COMPONENT_ACTS: Mapping[str, str] = {
     "list": "lists them with their states",
     "restart": "begins one anew: btc components restart camera",
@@ -104,7 +95,7 @@ def check_robot_words(options: argparse.Namespace) -> None:
     found = _given(options)
     if options.act == "stop":
         return  # whatever else is typed: it stops
-    _check(options, found, _ROBOT[options.act])
+    _check(options, found, _ROBOT[options.act][1])
     for each, other in (("host", "serve"), ("port", "serve"), ("code", "join")):
         if each in found and other not in found:
             raise wrong(options.act, f"{options.flags[each]} needs {options.flags[other]}")
@@ -117,7 +108,7 @@ def check_robot_words(options: argparse.Namespace) -> None:
 def check_task_words(options: argparse.Namespace) -> None:
     """As `check_robot_words`, for `btc task`."""
     act, found = options.act, _given(options)
-    _check(options, found, _TASK[act])
+    _check(options, found, _TASK[act][1])
     most = _MOST_WORDS.get(act, 1)
     if "code" in found and len(options.item) == most:
         raise wrong(act, f"it takes -c TEXT or '{options.item[-1]}', but not both")

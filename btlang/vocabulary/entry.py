@@ -140,6 +140,10 @@ class Entry(Record, uncompared=("span",)):
         """Where it was declared."""
         return self.span.source.name if self.span else "Python"
 
+    def slots_of(self, role: str) -> frozenset[str]:
+        """The slots that a role of its verbs fills."""
+        return frozenset(each.slot for _, roles in self.verbs for each in roles if each.name == role)
+
 
 class About(Record):
     """How a role is described to people: the topic it is listed under, what it does, and an example that runs."""

@@ -186,10 +186,14 @@ def statement_start(tokens: Sequence[Token], end: int) -> int:
     return next((at + 1 for at in reversed(range(end)) if tokens[at].kind in LINES), 0)
 
 
+def arguments_of(said: Called | Listed) -> tuple[tuple[tuple[str, str], ...], ...]:
+    """The arguments of a phrase, or those for each value of a list."""
+    return (said.arguments,) if isinstance(said, Called) else said.arguments
+
+
 def texts_of(said: Called | Listed) -> tuple[str, ...]:
     """The values of a phrase, or of all that a list stands for."""
-    each = (said.arguments,) if isinstance(said, Called) else said.arguments
-    return tuple(text for arguments in each for _, text in arguments)
+    return tuple(text for arguments in arguments_of(said) for _, text in arguments)
 
 
 def constraint_of(token: Token) -> Constraint | None:

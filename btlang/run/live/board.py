@@ -125,25 +125,25 @@ class Board:
         if explained:
             below = [*frame.legend_lines(width, signs)[: height - LEAST_HEIGHT - 4], *below]
         rows = height - 1 - len(below)
-        shown = self._beside(width, rows, over) if width >= _BESIDE else self._above_each_other(width, rows, over)
+        shown = self._beside(width, rows) if width >= _BESIDE else self._above_each_other(width, rows)
         return [frame.header(self._title, state, doing, signs), *shown, *below]
 
-    def _beside(self, width: int, rows: int, over: bool) -> list[Line]:
+    def _beside(self, width: int, rows: int) -> list[Line]:
         """The tree, and the map to the right of it."""
         columns, lines = self._map_size(width * _MAP_PART // 100, rows)
         left = width - columns - _APART if columns else width
-        return frame.side_by_side(self._tree(left, rows, over), self._map(columns, lines), left + _APART)
+        return frame.side_by_side(self._tree(left, rows), self._map(columns, lines), left + _APART)
 
-    def _above_each_other(self, width: int, rows: int, over: bool) -> list[Line]:
+    def _above_each_other(self, width: int, rows: int) -> list[Line]:
         """The tree, and the map in the rows that it leaves, or in half of them."""
-        tree = self._tree(width, rows, over)
+        tree = self._tree(width, rows)
         columns, lines = self._map_size(width, max(rows // 2, rows - len(tree)))
         if len(tree) > rows - lines:
-            tree = self._tree(width, rows - lines, over)
+            tree = self._tree(width, rows - lines)
         return [*tree, *self._map(columns, lines)]
 
-    def _tree(self, width: int, rows: int, over: bool) -> list[Line]:
-        return frame.tree_lines(self.state, self._words, rows, width, over, self.signs)
+    def _tree(self, width: int, rows: int) -> list[Line]:
+        return frame.tree_lines(self.state, self._words, rows, width, False, self.signs)
 
     def _map(self, columns: int, lines: int) -> list[Line]:
         return self.map.lines(self.state.robot, columns, lines) if self.map is not None and columns else []

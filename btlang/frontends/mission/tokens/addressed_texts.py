@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Listed, Token
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
@@ -11,7 +9,7 @@ from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, TEXT
+from btlang.vocabulary.value_type import DOOR, OBJECT
 from btlang.vocabulary.word_tree import find
 
 TELL = "TellPerson"
@@ -63,25 +61,6 @@ class AddressedTexts(SentenceReader):
         command.end = text.ends[end - 1]
         self._tokens.append(command)
         return end
-
-    def _inform(self, at: int, ends: Callable[[int], bool]) -> int:
-        """`if the door is open, tell Bob`: tells him what was asked."""
-        text, entry, asking = self._text, self._vocabulary.entry(TELL), self._vocabulary.asking
-        person = self._context.read(PERSON, text, at + 1) if text.words[at] in asking["informing"] else None
-        if person is None or entry is None or not person[0] or person[0][:1] == "{":
-            return 0
-        end = person[1] + (text.words[person[1]] in asking["informed"])
-        slots = {slot.type: slot.name for slot in entry.slots}
-        said = self._asked_of() if ends(end) else ""
-        told = Called(entry, ((slots[PERSON], person[0]), (slots[TEXT], said)))
-        if not said:
-            return self._indirect(at, end, told)
-        self._tokens.append(Token("command", text.starts[at], text.ends[end - 1], told))
-        return end
-
-    def _indirect(self, at: int, first: int, said: Called) -> int:
-        """Reads the indirect question that begins at `first`, whose answer a command says. See Questions."""
-        raise NotImplementedError
 
     def _asked_of(self) -> str:
         """The words of the one condition that the command being read depends on, with names for pronouns; else ""."""

@@ -63,7 +63,7 @@ def _with_recipient(
 ) -> tuple[Match, list[int]]:
     """The same for whom the command before was, with all of its words: `bring Alice the cup, then the book`."""
     entry = match.meaning.entry
-    slots = {role.slot for _, roles in entry.verbs for role in roles if role.name == RECIPIENT} if entry else set()
+    slots = entry.slots_of(RECIPIENT) if entry is not None else frozenset()
     values = whole.values if whole is not None else ()
     recipient = next((value for value in values if value.name in slots), None)
     if recipient is None or any(value.name in slots for value in match.values):
@@ -79,7 +79,7 @@ def _with_recipient(
 def _may_be_theme(match: Match, goal: SlotValue) -> bool:
     """Whether a bare thing that a command is left with as its goal could be one more theme as well."""
     entry = match.meaning.entry
-    slots = {role.slot for _, roles in entry.verbs for role in roles if role.name == THEME} if entry else set()
+    slots = entry.slots_of(THEME) if entry is not None else frozenset()
     themes = [value for value in match.values if value.name in slots]
     return any(theme.name != goal.name and theme.type == goal.type for theme in themes)
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.mission.token import LINES, Called, Listed, Token, constraint_of
+from btlang.frontends.mission.token import LINES, Called, Listed, Token, arguments_of, constraint_of
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.left_out import left_out
 from btlang.frontends.mission.tokens.word_matches import (
@@ -174,14 +174,13 @@ class PartialCommands:
         said, speaker = last.value, self._vocabulary.values.role_words.speaker
         if not isinstance(said, Called | Listed) or self._tokens[-1].kind not in ("and", "comma"):
             return
-        slots = {role.slot for _, roles in said.entry.verbs for role in roles if role.name == RECIPIENT}
-        arguments = said.arguments if isinstance(said, Called) else said.arguments[-1]
-        given = tuple((name, value) for name, value in arguments if name in slots)
+        slots = said.entry.slots_of(RECIPIENT)
+        given = tuple((name, value) for name, value in arguments_of(said)[-1] if name in slots)
         for token in reversed(self._tokens):
             value = token.value
             if token.kind == "command" and isinstance(value, Called | Listed) and value.entry is said.entry:
                 words = (self._text.words[at] for at in words_of(self._text, token))
-                own = (value.arguments,) if isinstance(value, Called) else value.arguments
+                own = arguments_of(value)
                 if any(name in slots for each in own for name, _ in each) or not speaker.isdisjoint(words):
                     return
                 both = tuple((*each, *given) for each in own)

@@ -6,13 +6,14 @@ Each becomes the commands that answer it: what is asked is measured, and said.
 from __future__ import annotations
 
 from btlang.frontends.mission.token import Called, Remembered, Token
+from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.answers import Answers
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.entry import COUNT, SAY, Entry
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import free_key
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import TEXT
+from btlang.vocabulary.value_type import PERSON, TEXT
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import find
 
@@ -67,6 +68,21 @@ class Questions(Answers):
             self._then(at)
         self._say(at, measured, command, slot)
         return last
+
+    def _inform(self, at: int) -> int:
+        """`if the door is open, tell Bob`: tells him what was asked."""
+        text, entry, asking = self._text, self._vocabulary.entry(TELL), self._vocabulary.asking
+        person = self._context.read(PERSON, text, at + 1) if text.words[at] in asking["informing"] else None
+        if person is None or entry is None or not person[0] or person[0][:1] == "{":
+            return 0
+        end = person[1] + (text.words[person[1]] in asking["informed"])
+        slots = {slot.type: slot.name for slot in entry.slots}
+        said = self._asked_of() if self._ends(end) else ""
+        told = Called(entry, ((slots[PERSON], person[0]), (slots[TEXT], said)))
+        if not said:
+            return self._indirect(at, end, told)
+        self._tokens.append(Token("command", text.starts[at], text.ends[end - 1], told))
+        return end
 
     def _indirect(self, at: int, first: int, said: Called) -> int:
         """`tell me where the cup is`, `tell Bob whether the door is open`: the answer to what is asked at `first`."""

@@ -64,7 +64,7 @@ class Requests(Questions):
             counted = self._counted(asked.last)
             return self._say_count(at, counted, command, value.name) if counted is not None else 0
         if entry.id == TELL and text.words[first] in self._vocabulary.roles["and"]:
-            return self._inform(at, self._ends)  # `tell Bob and wave`
+            return self._inform(at)  # `tell Bob and wave`
         if entry.id == TELL and text.words[first - 1] in self._vocabulary.asking["pleading"]:
             return self._plead(entry, value, at, command)
         if entry.id == TELL and value.last == match.last and self._goes_on(match.last):
@@ -132,7 +132,7 @@ class Requests(Questions):
         """`tell me "hello"`: says it; `if the door is open, tell me`: says what was asked."""
         told, text = find(self._vocabulary.telling, self._text.words, at), self._text
         if told is None or self._saying is None:
-            return self._inform(at, self._ends)
+            return self._inform(at)
         if end := self._indirect(at, told[1], self._saying_of("")):
             return end
         if text.words[told[1]][0] == '"':

@@ -23,7 +23,7 @@ def theme_of(match: Match) -> SlotValue | None:
     entry = match.meaning.entry
     if entry is None or match.meaning.role != "command":
         return None
-    slots = {role.slot for _, roles in entry.verbs for role in roles if role.name == THEME}
+    slots = entry.slots_of(THEME)
     values = [value for value in match.values if value.type in WORLD and (value.name in slots or not entry.verbs)]
     return values[0] if len(values) == 1 and not (values[0].more and not values[0].group) else None
 
