@@ -75,11 +75,14 @@ def main(command: Sequence[str]) -> int:
     except OSError as problem:
         show(problem.strerror or str(problem))
         return 1
-    show(str(process.pid))
-    ended = os.pidfd_open(process.pid)
-    select.select([ended, sys.stdin], [], [])
-    with suppress(ProcessLookupError):
-        os.killpg(process.pid, signal.SIGKILL)
+    try:
+        with suppress(BrokenPipeError):  # the robot may have been killed before it knows the number
+            show(str(process.pid))
+        ended = os.pidfd_open(process.pid)
+        select.select([ended, sys.stdin], [], [])
+    finally:
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
     code = process.wait()
     return code if code >= 0 else 128 - code
 

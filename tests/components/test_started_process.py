@@ -58,6 +58,17 @@ def test_it_ends_with_a_robot_that_is_killed(tmp_path: Path, command: list[str])
     wait_until(lambda: are_gone(tmp_path))
 
 
+def test_it_ends_with_a_robot_that_is_killed_before_it_knows_of_it(tmp_path: Path, command: list[str]) -> None:
+    between = [sys.executable, "-m", "btlang.components.started_process", *command]
+    with subprocess.Popen(between, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        process.stdout.close()
+        assert len(numbers(tmp_path)) == 2
+        process.stdin.close()
+    wait_until(lambda: are_gone(tmp_path))
+
+
 @pytest.mark.parametrize(
     ("command", "ending"),
     [(["sh", "-c", "exit 3"], "ended with exit code 3"), (["sh", "-c", "kill -9 $$"], "signal 9")],
