@@ -61,6 +61,12 @@ def answer_is(robot: Listening, text: str) -> bool | Failed:
     return holds(answer, text) or Failed(lambda: f'the answer was "{answer}"')
 
 
+def nobody_answered(robot: Listening) -> bool | Failed:
+    """Whether the last question had no answer."""
+    heard = robot.ears.answer
+    return not heard or Failed(lambda: f'the answer was "{heard}"')
+
+
 def answer(robot: Listening) -> str:
     """The words of the last answer. Fails if there is none."""
     if not robot.ears.answer:
@@ -153,8 +159,9 @@ def listened(
     expected: Expected,
     person: str | None = None,
 ) -> Steps:
-    """Waits for the first text that is wanted, which is then the answer. Fails after a minute."""
+    """Waits for the first text that is wanted, which is then the answer. Fails after a minute, without an answer."""
     watch, ears = Watch(robot), robot.ears
+    ears.answer = ""
     count, until = ears.count, robot.time + WAITS
     robot.ask(question, person or "")
     try:

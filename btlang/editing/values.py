@@ -42,7 +42,12 @@ def places_of(node: ast.Ast) -> dict[str, Place]:
         known = {slot.name: (slot.type, given.get(slot.name, slot.default or "")) for slot in node.entry.slots}
     else:
         fields = _FIELDS.get(type(node), ())
-        return {field: Place(kind, getattr(node, field), partial(_with_field, node, field)) for field, kind in fields}
+        said = ((field, kind, getattr(node, field)) for field, kind in fields)
+        return {
+            field: Place(kind, text, partial(_with_field, node, field))
+            for field, kind, text in said
+            if ";" not in text  # several times of day
+        }
     order = tuple(known)
     return {name: Place(*found, partial(_with_argument, node, order, name)) for name, found in known.items()}
 

@@ -46,6 +46,11 @@ def _timer(milliseconds: str) -> Node:
     return Node("Sleep", (), (("msec", milliseconds),))
 
 
+def _clock(time: str) -> Node:
+    """The same with a time of day."""
+    return Node("WaitForTime", (), (("time", time),))
+
+
 def _within(item: ast.Within, done: list[Lowered], scope: Scope) -> Lowered:
     scripts, limit = _timed(item.seconds, scope)
     return Lowered(behind(scripts, new_node("Timeout", [new_round(done[0])], item.span, msec=limit)))
@@ -57,7 +62,7 @@ def _for(item: ast.For, done: list[Lowered], scope: Scope) -> Lowered:
 
 
 def _until_time(item: ast.UntilTime, done: list[Lowered], _scope: Scope) -> Lowered:
-    return Lowered(_again_beside(Node("WaitForTime", (), (("time", item.time),)), item, done[0]))
+    return Lowered(_again_beside(_clock(item.time), item, done[0]))
 
 
 def _again_beside(timer: Node, item: ast.Ast, body: Lowered) -> Node:
@@ -129,7 +134,12 @@ def _wait_until(item: ast.WaitUntil, done: list[Lowered], scope: Scope) -> Lower
 
 
 def _wait_time(item: ast.WaitTime, _done: list[Lowered], _scope: Scope) -> Lowered:
-    return Lowered(new_node("WaitForTime", (), item.span, time=item.time))
+    """The next of several times is the first of nodes beside one another that is there."""
+    times = item.time.split(";")
+    if len(times) == 1:
+        return Lowered(new_node("WaitForTime", (), item.span, time=item.time))
+    clocks = list(map(_clock, times))
+    return Lowered(new_node("Parallel", clocks, item.span, success_count="1", failure_count="1"))
 
 
 TIMED: dict[type[ast.Ast], Callable[[Any, list[Lowered], Scope], Lowered]] = {

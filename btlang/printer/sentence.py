@@ -212,7 +212,10 @@ def _wait_until(node: ast.WaitUntil, parts: list[Doc], printer: Printer) -> Doc:
 
 
 def _wait_time(node: ast.WaitTime, _parts: list[Doc], printer: Printer) -> Doc:
-    return _leaf(printer.time_of_day("wait_time", node.time).text)
+    """The next of several times: `wait until 08:00, 12:00 or 18:00`."""
+    first, *more = node.time.split(";")
+    said = [printer.time_of_day("wait_time", first).text, *(printer.value(time, "time_of_day") for time in more)]
+    return _leaf(f" {printer.word('or').text} ".join((", ".join(said[:-1]), said[-1])) if more else said[0])
 
 
 def _until_time(node: ast.UntilTime, parts: list[Doc], printer: Printer) -> Doc:

@@ -14,8 +14,9 @@ from btlang.tree import ast
 from btlang.tree.visit import fold
 from btlang.vocabulary.value_type import TEXT
 
-ASK, ANSWERED = "Ask", "AnswerIs"
-"""The ids of the question, and of the condition about its answer."""
+ASK, ANSWERED, UNANSWERED = "Ask", "AnswerIs", "NobodyAnswered"
+"""The ids of the question, and of the conditions about its answer."""
+ABOUT_ANSWERS = frozenset((ANSWERED, UNANSWERED))
 _ONCE = (ast.Retry, ast.Try, ast.Within, ast.UpTo, ast.StopWhen, ast.Constrained, ast.Delay, ast.Provided, ast.Chain)
 """Forms whose commands are done before what comes behind the form."""
 _EXAMPLE = 'ask Alice "Tea?". If so, wave'
@@ -41,7 +42,7 @@ def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:
 
 
 def _is_answered(node: ast.Ast) -> bool:
-    return isinstance(node, ast.Phrase) and node.entry.id == ANSWERED
+    return isinstance(node, ast.Phrase) and node.entry.id in ABOUT_ANSWERS
 
 
 def _depends(node: ast.Ast) -> bool:
@@ -56,7 +57,11 @@ def _gathered(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
     made: list[ast.Ast] = []
     asking: int | None = None
     for item in node.items:
-        if asking is not None and _depends(item):
+        if asking is not None and isinstance(item, ast.If) and _depends(item):
+            behind = _behind_silence(made[asking], item)
+            if behind is not None:
+                made[asking] = behind
+                continue
             form = _form_that_asks(made[asking])
             problem = _problem(made, asking, form, item)
             if problem:
@@ -65,10 +70,63 @@ def _gathered(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
             elif form:
                 made[asking] = _with_last(form, item)
                 continue
-        made.append(item)
+        made = _with_reply(made, asking, item)
         if _questions(item):
             asking = len(made) - 1
     return made[0] if len(made) == 1 else node.replace(items=tuple(made))
+
+
+def _behind_silence(question: ast.Ast, item: ast.If) -> ast.Ast | None:
+    """A reply that would hold in silence, too, behind what is done then: `if she doesn't answer, A. If not, B`."""
+    if isinstance(question, ast.IfWorks) and _questions(question.tried):
+        span = Span(item.span.source, question.body.span.start, item.span.end)
+        body = ast.Chain("sequence", (question.body, item), True, span)
+        return ast.IfWorks(question.tried, body, question.otherwise, question.span)
+    if not (isinstance(question, ast.Chain) and question.operator == "fallback" and _holds_in_silence(item)):
+        return None
+    first, *others = question.items
+    silent = others[0] if len(others) == 1 else question.replace(items=tuple(others))
+    span = Span(item.span.source, question.span.start, item.span.end)
+    return ast.IfWorks(first, item, silent, span) if _questions(first) else None
+
+
+def _with_reply(items: list[ast.Ast], asking: int | None, item: ast.Ast) -> list[ast.Ast]:
+    """Commands with one more, for which nobody has to answer the question among them if it says what silence does.
+
+    `If so, A. If not, B. If she says nothing, C`: silence is no `not`.
+    """
+    if asking is None or not isinstance(item, ast.If) or not _may_be_unanswered(item):
+        return [*items, item]
+    question, others = _tried(items[asking]), items[asking + 1 :]
+    excludes = any(isinstance(each, ast.If) and _holds_in_silence(each) for each in others)
+    is_plain = isinstance(item.condition, ast.Phrase) and not item.negated and item.otherwise is None
+    if not (excludes and is_plain and all(map(_depends, others))):
+        return [*items[:asking], question, *others, item]
+    span = Span(item.span.source, others[0].span.start, others[-1].span.end)
+    otherwise = others[0] if len(others) == 1 else ast.Chain("sequence", tuple(others), True, span)
+    return [*items[:asking], question, item.replace(otherwise=otherwise)]
+
+
+def _holds_in_silence(node: ast.If) -> bool:
+    """Whether a command that depends on an answer does something where there is none."""
+    return node.negated or node.otherwise is not None or _is_denied(node.condition)
+
+
+def _is_denied(condition: ast.Ast) -> bool:
+    return any(isinstance(each, ast.Not) for each in ast.parents_first(condition))
+
+
+def _may_be_unanswered(node: ast.Ast) -> bool:
+    """Whether a command is done where nobody answers, or isn't."""
+    if not isinstance(node, ast.If):
+        return False
+    asked = (each for each in ast.parents_first(node.condition) if isinstance(each, ast.Phrase))
+    return any(each.entry.id == UNANSWERED for each in asked)
+
+
+def _tried(question: ast.Ast) -> ast.Ast:
+    """The question, which nobody has to answer."""
+    return question if isinstance(question, ast.Try) else ast.Try(question, None, question.span)
 
 
 def _questions(node: ast.Ast) -> list[ast.Phrase]:
@@ -98,8 +156,9 @@ def _with_last(form: Sequence[Any], item: ast.Ast) -> ast.Ast:
     """The outermost of some forms, whose innermost has one more command at its end."""
     body = form[-1][1]
     items = body.items if isinstance(body, ast.Chain) and body.operator == "sequence" else (body,)
+    asking = max(at for at, each in enumerate(items) if _questions(each))
     span = Span(body.span.source, body.span.start, item.span.end)
-    changed: ast.Ast = ast.Chain("sequence", (*items, item), True, span)
+    changed: ast.Ast = ast.Chain("sequence", tuple(_with_reply(list(items), asking, item)), True, span)
     for node, part in reversed(form):
         parts = [changed if each is part else each for each in ast.parts(node)]
         changed = ast.with_parts(node, parts)

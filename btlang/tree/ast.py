@@ -271,7 +271,7 @@ class WaitUntil(Ast):
 
 
 class WaitTime(Ast):
-    """Waits for a time of day, which is a port text (18:30)."""
+    """Waits for a time of day, which is a port text (18:30), or for the next of some (08:00;18:00)."""
 
     time: str
     span: Span

@@ -38,12 +38,13 @@ CHANGING = ("increase", "decrease")
 
 ASKING = (
     "journey", "search", "whereabouts", "whether", "any_place", "making_sure", "counting", "asking_be", "asking_do",
-    "answers", "feeling", "there", "very", "states", "subject", "been", "towards", "going", "finding_out",
+    "answers", "silence", "any_answer", "feeling", "there", "very", "states", "subject", "been", "towards", "going",
+    "finding_out",
     "inspecting", "telling", "whole", "located", "wishing", "wished", "fetching", "begging", "home",
     "pleading", "saying_that", "plea", "reminding", "reminder", "addressed", "informing", "informed", "staying",
     "resuming", "interrupting",
-    "if_yes", "if_no", "told_of", "standing", "unable", "waiting", "between_joint", "standing_verbs", "events",
-    "duties", "reasons",
+    "if_yes", "if_no", "told_of", "standing", "unable", "waiting", "apiece", "between_joint", "standing_verbs",
+    "events", "duties", "reasons",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 
@@ -52,7 +53,7 @@ QUESTIONS = ("ask_value", "ask_where", "ask_how_many")
 
 ORDER = (
     "arrival", "arrival_at", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "any_time", "tries",
-    "at_most", "up_to_times", "try_again", "weekly", "instead", "between_times",
+    "at_most", "up_to_times", "try_again", "weekly", "on_days", "instead", "between_times",
 )  # fmt: skip
 """The roles of words about the order of commands."""
 
@@ -82,10 +83,12 @@ ROLES = {
     **dict.fromkeys(("without_entering", "without_leaving"), "zone"),
     **dict.fromkeys(("count", "tries", "at_most", "up_to_times", "more", "at_least_of"), "count"),
     **dict.fromkeys(("arrival_at",), "place"),
-    "weekly": "days time_of_day",
+    **dict.fromkeys(("weekly", "on_days"), "days time_of_day"),
     **dict.fromkeys(("at", "every_day", "until_time", "wait_time", "between_times"), "time_of_day"),
 }
 """The roles that words can have, each with the slot that its phrases hold."""
+LISTED = {**dict.fromkeys(("at", "every_day", "weekly", "on_days"), "and"), "wait_time": "or"}
+"""The roles whose slots take a list of values too, each with the role of the word that joins these."""
 
 COMPARING = {**dict.fromkeys(COMPARISONS, "value"), "between": "low high"}
 """The ways to compare a quantity, each with the slots that its phrases hold."""

@@ -10,6 +10,7 @@ from itertools import chain
 
 from btlang.text.words import Words
 from btlang.vocabulary.entry import MANNER, VIA, Meaning
+from btlang.vocabulary.language_tables import LISTED
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.pattern import Form, Slot
@@ -97,7 +98,7 @@ def longest(
             word = words[i]
             if END in node and (i > best_last or best is None):
                 meaning: Meaning = node[END]
-                if meaning.entry is not None or not any(value.more for value in found):
+                if meaning.entry is not None or all(_may_be_listed(value, meaning.role) for value in found):
                     best, best_last, best_values = meaning, i, found
             if VERBS in node:
                 verbs.append((node, i))
@@ -148,6 +149,11 @@ def longest(
         if match is not None and match.last > best_last:
             return match
     return Match(best, best_last, best_values) if best is not None else None
+
+
+def _may_be_listed(value: SlotValue, role: str) -> bool:
+    """Whether a word of the language takes a value: only some words take lists, `every day at 8 am and 6 pm`."""
+    return not value.more or (role in LISTED and value.joiner in ("", LISTED[role]))
 
 
 def _is_zone(value: SlotValue) -> bool:

@@ -28,7 +28,14 @@ def in_one_line(mission: btlang.Mission) -> str:
 
 @pytest.mark.parametrize(
     ("sentence", "tree"),
-    [*rows("meaning.txt"), *rows("said.txt"), *rows("users.txt"), *rows("chosen.txt"), *rows("outcomes.txt")],
+    [
+        *rows("meaning.txt"),
+        *rows("said.txt"),
+        *rows("users.txt"),
+        *rows("chosen.txt"),
+        *rows("outcomes.txt"),
+        *rows("times.txt"),
+    ],
     ids=lambda text: text,
 )
 def test_meaning(sentence: str, tree: str) -> None:
@@ -61,7 +68,11 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ('ask everyone "Tea?". If so, wave', "BT144"),
         ('ask Alice "Tea?". Ask Bob "Tea?". If so, wave', "BT144"),
         ('go to every person and ask "Tea?". If so, wave', "BT144"),
-        ('ask Alice "Tea?". If she says no, wave. If she doesn\'t answer, nod', "BT145"),
+        ('ask Alice "Tea?". If she says no, wave. Dock. If she doesn\'t answer, nod', "BT145"),
+        ("keep asking Alice if she is ok until she says yes", "BT159"),
+        ("wave at 8 am or 6 pm", "BT160"),
+        ("wait until 8 am and 6 pm", "BT160"),
+        ("go to the lab, then it", "BT010"),
         ("whenever the battery is low, dock. Then wave", "BT151"),
         ("whenever the battery is low, dock. Otherwise wave", "BT151"),
         ("wave. Whenever bumped, nod. Then dock", "BT151"),

@@ -41,7 +41,7 @@ UNKNOWN_AT_THE_START = {"Answer", "Count", "Counted"}
 HOLDS_AT_THE_START = {
     "HandEmpty", "PathClear", "BatteryFull", "DistanceAhead", "DistanceToPlace", "DistanceToPerson", "DistanceToObject",
     "PeopleNear", "BatterySufficient", "DoorOpen", "PlaceOfPerson", "PlaceOfObject", "SwitchedOn", "TodayIs",
-    "ObjectKnown",
+    "ObjectKnown", "NobodyAnswered",
 }  # fmt: skip
 
 

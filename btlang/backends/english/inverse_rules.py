@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from decimal import Decimal
 
 from btlang.backends.english.candidate import REFERENCE, Candidate, Checked
@@ -194,6 +194,8 @@ def _ignoring_failure(_node: Node, children: tuple[Candidate, ...], _checked: Ch
 
 
 def _parallel(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
+    if node.port("success_count") == "1" and all(child.node.id == "WaitForTime" for child in children):
+        yield from _next_time(children, checked)
     timer = children[0].node if len(children) == 2 else node
     if timer.id in ("Sleep", "WaitForTime") and children[1].node.id == "Repeat":
         again = children[1].children
@@ -206,6 +208,13 @@ def _parallel(node: Node, children: tuple[Candidate, ...], checked: Checked) -> 
         if body is not None:
             yield from (ast.UpTo(seconds, body, NOWHERE) for seconds in _seconds(timer.port("msec"), checked))
     yield from _chain("parallel")(node, children, checked)
+
+
+def _next_time(children: Sequence[Candidate], checked: Checked) -> Iterator[ast.Ast]:
+    """The next of several times of day."""
+    times = [time for child in children for time in _times(child.node.port("time"), checked)]
+    if len(times) == len(children):
+        yield ast.WaitTime(";".join(times), NOWHERE)
 
 
 def _fallback(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:

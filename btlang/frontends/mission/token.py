@@ -109,10 +109,11 @@ class Constraint(Record):
 
 
 class OnDays(Record):
-    """A time of day on some days only: the condition `days` holds on those."""
+    """Times of day on some days only: on those one of the conditions `days` holds. `rounds` are -1 for every week."""
 
-    time: str
-    days: Called
+    times: str
+    days: tuple[Called, ...]
+    rounds: int
 
 
 class Each(Record):

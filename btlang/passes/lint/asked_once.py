@@ -13,7 +13,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.text.source import Span
 from btlang.tree import ast
-from btlang.tree.asked import ANSWERED
+from btlang.tree.asked import ABOUT_ANSWERS
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
@@ -106,7 +106,7 @@ def _too_early(node: ast.If, vocabulary: Lexicon) -> Iterator[Diagnostic]:
 def _is_event(condition: ast.Ast, vocabulary: Lexicon) -> bool:
     """Whether a condition says that something happens: `somebody comes`. An answer has been given by then."""
     events = vocabulary.asking["events"]
-    is_phrase = isinstance(condition, ast.Phrase) and condition.entry.id != ANSWERED
+    is_phrase = isinstance(condition, ast.Phrase) and condition.entry.id not in ABOUT_ANSWERS
     return is_phrase and not set(events).isdisjoint(condition.span.text.lower().split())
 
 

@@ -18,7 +18,7 @@ def next_day(compilation: Compilation) -> Iterator[Diagnostic]:
             ended = ""
             for item in node.items:
                 wait = next((each for each in ast.parents_first(item) if isinstance(each, ast.WaitTime)), None)
-                if wait is not None and ended and wait.time == ended:
+                if wait is not None and ended and ended in wait.time.split(";"):
                     yield diagnostic("BT169", wait.span, words=wait.span.text)
                 if isinstance(item, ast.Whenever):
                     continue

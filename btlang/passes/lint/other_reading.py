@@ -6,7 +6,6 @@ the text once more: parts keep what their names and pronouns mean, and a long mi
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property, partial
 from itertools import pairwise
@@ -15,18 +14,13 @@ from btlang.passes.lint.gaps import Gaps, balanced
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree import ast
-from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-MIXED, POSTFIX, LIST, OTHERWISE, NEGATED = "mixed", "postfix", "list", "otherwise", "negated"
-AFTER, PACED, FORMS, SENTENCES, SEARCHES = "after", "paced", "forms", "sentences", "searches"
-_SENTENCE_END = re.compile(r"[.;!?]")
-_SEES = "perception"
-_WORD = re.compile(r"\w+")
+MIXED, POSTFIX, LIST, NEGATED, AFTER = "mixed", "postfix", "list", "negated", "after"
 
 
 class Readings(Record):
@@ -66,9 +60,12 @@ def in_chain(chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabula
         if not (wrapped or lists or _is_open(left) or _is_open(right)):
             continue
         gaps = gaps or Gaps(items, vocabulary)
-        if not gaps.is_open(at):
-            continue
         place, start, gap = _Place(chain, gaps, at, is_part), left.span.start, gaps.text(at)
+        if not gaps.is_open(at):
+            is_last = at == len(items) - 2 and gap.strip(" ,").lower() in vocabulary.roles["or"]
+            if is_last and chain.operator == "fallback" and wrapped and isinstance(wrapped[0], ast.If):
+                yield Attachment(POSTFIX, start, partial(place.instead, wrapped[0]))
+            continue
         if _is_open(right):
             yield Attachment(MIXED, start, partial(place.mixed_right, right))
         elif _is_open(left):
@@ -79,70 +76,6 @@ def in_chain(chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabula
             yield Attachment(LIST, start, partial(place.list_left, left))
         elif lists and _is_sequence(right) and "(" not in gap:
             yield Attachment(LIST, start, partial(place.list_right, right))
-
-
-def in_sentences(chain: ast.Chain, vocabulary: Lexicon) -> Iterator[Attachment]:
-    """`if C, A. If D, B. Otherwise E`, and `if the lamp is on, switch it off. If it is off, switch it on`."""
-    if chain.operator != "sequence":
-        return
-    then = vocabulary.word("then").capitalize()
-    for first, second in pairwise(chain.items):
-        if not isinstance(first, ast.If) or not isinstance(second, ast.If) or first.otherwise is not None:
-            continue
-        if second.negated or not (_is_before(first) and _is_before(second)):
-            continue
-        if "\n" in _between(first, second) or _WORD.search(_between(first, second)):
-            continue
-        if second.otherwise is None:
-            if _brings_about(first.body, second.condition):
-                gap = Span(first.span.source, first.span.end, second.span.start)
-                yield Attachment(SENTENCES, first.span.start, partial(_as_otherwise, first, second, gap, f". {then} "))
-        elif _SENTENCE_END.search(_between(second.body, second.otherwise)):
-            gap = Span(first.span.source, second.body.span.end, second.otherwise.span.start)
-            words = f", {_WORD.findall(gap.text)[0].lower()} " if _WORD.search(gap.text) else gap.text
-            yield Attachment(SENTENCES, first.span.start, partial(_as_otherwise, first, second, gap, words))
-
-
-def _is_before(node: ast.If) -> bool:
-    """Whether its condition stands before its command."""
-    return node.condition.span.start < node.body.span.start
-
-
-def _between(left: ast.Ast, right: ast.Ast) -> str:
-    return left.span.source.text[left.span.end : right.span.start]
-
-
-def _brings_about(body: ast.Ast, condition: ast.Ast) -> bool:
-    """Whether a command makes a condition true."""
-    if not isinstance(condition, ast.Phrase):
-        return False
-    values = {text for _, text in condition.arguments}
-    done = (each for each in ast.parents_first(body) if isinstance(each, ast.Phrase))
-    return any(
-        condition.entry.id in each.entry.achieves and values == {text for _, text in each.arguments} for each in done
-    )
-
-
-def _as_otherwise(first: ast.If, second: ast.If, gap: Span, words: str) -> Readings:
-    """`if C, A. If D, B`: if C, A, otherwise if D, B."""
-    span = Span(first.span.source, first.span.start, second.span.end)
-    taken = ast.Chain("sequence", (first, second), True, span)
-    return Readings(taken, first.replace(otherwise=second, span=span), span, (gap, words))
-
-
-def in_time(node: ast.For, vocabulary: Lexicon) -> Iterator[Attachment]:
-    """`wait for Alice for 10 min`: once, and at most so long."""
-    body = node.body
-    if not isinstance(body, ast.Phrase) or body.span.start != node.span.start or _in_brackets(body.span):
-        return
-    entry = body.entry
-    if entry.achieves and _SEES in entry.needs and (entry.first or MOVES not in entry.resources):
-        yield Attachment(SEARCHES, node.span.start, partial(_once_at_most, node, vocabulary.word("repeat")))
-
-
-def _once_at_most(node: ast.For, repeat: str) -> Readings:
-    fix = node.body.span, f"{repeat} ({node.body.span.text})"
-    return Readings(node, ast.Within(node.seconds, node.body, node.span), node.span, fix)
 
 
 def _behind_after(
@@ -158,91 +91,18 @@ def _behind_after(
             yield Attachment(AFTER, before.span.start, partial(place.after, right))
 
 
-def in_pace(node: ast.Every, vocabulary: Lexicon) -> Iterator[Attachment]:
-    """`A 3 times every 10 s`: the number could be that of each round."""
-    start, body = node.span.start, node.body.span
-    if not node.rounds or body.start != start:
-        return  # as nearly always
-    behind = node.span.source.text[body.end : node.span.end]
-    words = {vocabulary.orthography.words(pattern)[0] for pattern in vocabulary.roles["every"]}
-    at = min((match.start() for match in _WORD.finditer(behind) if match[0].lower() in words), default=0)
-    if _WORD.search(behind[:at]):
-        yield Attachment(PACED, start, partial(_repeated, node, Span(body.source, body.end, node.span.end), at))
-
-
-def _repeated(node: ast.Every, behind: Span, at: int) -> Readings:
-    """`A 3 times every 10 s`: every 10 s, A 3 times."""
-    rounds, pace = behind.text[:at].strip(), behind.text[at:]
-    other = node.replace(body=ast.Repeat(node.rounds, node.body, node.span), rounds="")
-    return Readings(node, other, node.span, (behind, f" {pace} {rounds}"))
-
-
-def in_form(node: ast.If | ast.Try, vocabulary: Lexicon) -> Iterator[Attachment]:
-    """An `otherwise` that both this form and one at the end of its body could have, and another `if` there."""
-    if node.otherwise is not None or node.body.span.start <= node.span.start:
-        return
-    body = node.body
-    joins = isinstance(body, ast.Chain) and body.operator in ("sequence", "parallel") and not body.bracketed
-    if isinstance(node, ast.If) and isinstance(body, ast.Chain) and joins and len(body.items) > 1:
-        before, last = body.items[-2:]
-        gap = Span(last.span.source, before.span.end, last.span.start)
-        is_open = gap.text.strip() in (",", *vocabulary.roles["and"]) or gap.text.strip(" ,") in vocabulary.roles["and"]
-        if isinstance(last, ast.If) and last.otherwise is None and last.body.span.start > last.span.start and is_open:
-            yield Attachment(FORMS, node.span.start, partial(_side_by_side, node, gap, vocabulary.word("then")))
-            return
-    path: list[ast.Ast] = [node]
-    part: Any = node.body
-    while not _has_otherwise(part):
-        path.append(part)
-        if isinstance(part, ast.Chain) and not part.bracketed and not is_list(part):
-            part = in_order(part.items)[-1]
-        elif isinstance(part, ast.If | ast.Try | ast.Chain) or _in_brackets(part.span):
-            return
-        elif getattr(part, "body", None) is not None and part.body.span.start > part.span.start:
-            part = part.body
-        else:
-            return
-    text = part.span.source.text
-    if _in_brackets(part.span) or "\n" in text[node.span.start : part.span.start]:
-        return
-    yield Attachment(OTHERWISE, node.span.start, partial(_moved, node, path, part))
-
-
 def _negates_first(items: Sequence[ast.Ast]) -> bool:
     """`not C or D`, without a second `not` that would make it clear."""
     first = items[0]
     is_prefix = isinstance(first, ast.Not) and first.span.start < first.condition.span.start
-    return is_prefix and not _in_brackets(first.span) and not any(isinstance(item, ast.Not) for item in items[1:])
+    return is_prefix and not is_in_brackets(first.span) and not any(isinstance(item, ast.Not) for item in items[1:])
 
 
 def _negated(chain: ast.Chain) -> Readings:
     """`not C or D`: not (C or D)."""
     first: Any = chain.items[0]
     inner = ast.Chain("any", (first.condition, *chain.items[1:]), True, chain.span)
-    return Readings(chain, ast.Not(inner, chain.span), chain.span, _bracketed(first.span))
-
-
-def _side_by_side(node: ast.If, gap: Span, then: str) -> Readings:
-    """`if C, A, if D, B`: if C, A; then, whatever came of that, if D, B."""
-    body: Any = node.body
-    *before, last = body.items
-    first = before[0] if len(before) == 1 else body.replace(items=tuple(before))
-    fix = (gap, f" {then} ")
-    if body.operator == "parallel":
-        head = Span(body.span.source, node.condition.span.end, body.span.end)
-        fix = head, f", ({body.span.text})"
-    taken = node.replace(body=body.replace(bracketed=True))
-    other = ast.Chain(body.operator, (node.replace(body=first), last), False, node.span)
-    return Readings(taken, other, node.span, fix)
-
-
-def _moved(node: Any, path: Sequence[ast.Ast], part: Any) -> Readings:
-    """`if C, if D, A otherwise B`: if C, (if D, A) otherwise B."""
-    tried = isinstance(part, ast.Try) and part.body.span.start == part.span.start
-    changed: ast.Ast = part.body if tried else part.replace(otherwise=None)
-    for inner, outer in zip([part, *path[:0:-1]], path[::-1], strict=True):
-        changed = _with(outer, inner, changed)
-    return Readings(node, changed.replace(otherwise=part.otherwise), node.span, _bracketed(part.span))
+    return Readings(chain, ast.Not(inner, chain.span), chain.span, bracketed(first.span))
 
 
 class _Place:
@@ -266,13 +126,13 @@ class _Place:
         """`A then B and C`: (A then B) and C."""
         first = in_order(right.items)[0]
         group = self._joined(self.first, self.at + 1, {self.at + 1: first})
-        return self._readings(self.first, self.at + 1, _with(right, first, group), self.at + 1)
+        return self._readings(self.first, self.at + 1, with_part(right, first, group), self.at + 1)
 
     def mixed_left(self, left: Any) -> Readings:
         """`A and B then C`: A and (B then C)."""
         last = in_order(left.items)[-1]
         group = self._joined(self.at, self.last, {self.at: last})
-        return self._readings(self.at, self.last, _with(left, last, group), self.at)
+        return self._readings(self.at, self.last, with_part(left, last, group), self.at)
 
     def postfix(self, right: Any, wrapped: Sequence[Any]) -> Readings:
         """`A then B 3 times`: (A then B) 3 times."""
@@ -280,6 +140,13 @@ class _Place:
         for form in reversed(wrapped):
             group = form.replace(body=group)
         return self._readings(self.first, self.at + 1, group, self.at + 1)
+
+    def instead(self, right: ast.If) -> Readings:
+        """`A, or B if C`: if C, B, otherwise A."""
+        before = self._joined(0, self.at, {})
+        body, otherwise = (before, right.body) if right.negated else (right.body, before)
+        other = right.replace(negated=False, body=body, otherwise=otherwise)
+        return Readings(self.chain, other, balanced(self.chain.span), bracketed(right.span))
 
     def list_left(self, left: Any) -> Readings:
         """`go to A and B and wave`: go to A, and then go to B and wave."""
@@ -321,7 +188,7 @@ class _Place:
         items = [other if item is self.items[place] else item for item in ast.parts(whole) if id(item) not in gone]
         changed = ast.Chain(self.chain.operator, tuple(items), True, self.chain.span) if len(items) > 1 else other
         commas = self.chain.operator == "sequence" or not self.is_part
-        fix = (self.gaps.comma(self.at), ",") if commas else _bracketed(part)
+        fix = (self.gaps.comma(self.at), ",") if commas else bracketed(part)
         span = Span(part.source, self.items[self.first].span.start, self.items[self.last].span.end)
         return Readings(whole, changed, balanced(span), fix)
 
@@ -340,10 +207,6 @@ def _is_sequence(node: ast.Ast) -> bool:
 
 def _is_open(node: ast.Ast) -> bool:
     return isinstance(node, ast.Chain) and not node.bracketed
-
-
-def _has_otherwise(node: ast.Ast) -> bool:
-    return getattr(node, "otherwise", None) is not None
 
 
 def _after_its_body(node: ast.Ast) -> list[Any]:
@@ -365,7 +228,7 @@ def in_order(items: Sequence[ast.Ast]) -> Sequence[ast.Ast]:
     return items if starts == sorted(starts) else sorted(items, key=lambda item: item.span.start)
 
 
-def _in_brackets(span: Span) -> bool:
+def is_in_brackets(span: Span) -> bool:
     text, start, end = span.source.text, span.start, span.end
     while text[start - 1 : start] in (" ", "\t"):
         start -= 1
@@ -374,11 +237,11 @@ def _in_brackets(span: Span) -> bool:
     return text[start - 1 : start] == "(" and text[end : end + 1] == ")"
 
 
-def _bracketed(span: Span) -> tuple[Span, str]:
+def bracketed(span: Span) -> tuple[Span, str]:
     return span, f"({span.text})"
 
 
-def _with(outer: Any, part: ast.Ast, changed: ast.Ast) -> ast.Ast:
+def with_part(outer: Any, part: ast.Ast, changed: ast.Ast) -> ast.Ast:
     """A node with another part in the place of one."""
     if isinstance(outer, ast.Chain):
         made: ast.Ast = outer.replace(items=tuple(changed if item is part else item for item in outer.items))

@@ -9,7 +9,9 @@
 - `after` behind two commands: `A then B after C`;
 - a number before a pace: `A 3 times every 10 s`;
 - two sentences that could exclude one another: `if C, A. If D, B. Otherwise E`;
-- a search for a time: `look for Alice for 5 min`.
+- a search for a time: `look for Alice for 5 min`;
+- `or` before a command with an `if` behind it: `A, or B if C`;
+- what follows a command that is tried: `try to A, then B`.
 """
 
 from __future__ import annotations
@@ -21,17 +23,8 @@ from collections.abc import Iterator, Sequence
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.gaps import Gaps
-from btlang.passes.lint.other_reading import (
-    Attachment,
-    Readings,
-    in_chain,
-    in_form,
-    in_order,
-    in_pace,
-    in_sentences,
-    in_time,
-    is_list,
-)
+from btlang.passes.lint.other_form import in_form, in_pace, in_sentences, in_time
+from btlang.passes.lint.other_reading import Attachment, Readings, in_chain, in_order, is_list
 from btlang.text.source import Source, Span
 from btlang.tree import ast
 

@@ -206,20 +206,22 @@ class Builder:
         if kind in ("at", "every_day"):
             waiting = self._waiting(token)
             once = self.chain("sequence", (waiting, body), span.start, span.end)
-            return once if kind == "at" else Repeat("-1", once, span)
+            rounds = _rounds(token)
+            return once if rounds == 1 else Repeat(str(rounds), once, span)
         if kind == "until_time":
             return UntilTime(amount, body, span)
         timed = {"for": For, "up_to": UpTo, "within": Within, "delay": Delay}[kind]
         return timed(amount, body, span)
 
     def _waiting(self, token: Token) -> Ast:
-        """Until a time of day, on some days alone where the token says so."""
+        """Until the next of some times of day, on some days alone where the token says so."""
         said, span = token.value, self.span(token.start, token.end)
         if not isinstance(said, OnDays):
             return WaitTime(_amount(token), span)
         end = self.span(token.end, token.end)
-        asked = Check(_called(said.days.entry, said.days.arguments, end), end)
-        return Retry("-1", Chain("sequence", (WaitTime(said.time, span), asked), True, span), "", span)
+        days = tuple(_called(day.entry, day.arguments, end) for day in said.days)
+        asked = Check(days[0] if len(days) == 1 else Chain("any", days, True, end), end)
+        return Retry("-1", Chain("sequence", (WaitTime(said.times, span), asked), True, span), "", span)
 
     def form(self, kind: str, condition: Ast, body: Ast, otherwise: Ast | None, start: int, end: int) -> Ast:
         """A form with a condition, before or after a command; of `if_works` the condition is a command."""
@@ -254,6 +256,13 @@ def _outlasts(body: Ast, pace: object) -> bool:
         return isinstance(body, UntilTime) or (isinstance(body, For) and float(body.seconds) >= float(str(seconds)))
     except ValueError:
         return False  # a value of the mission
+
+
+def _rounds(token: Token) -> int:
+    """How often what is done at some times of day is done: -1 for ever."""
+    if isinstance(token.value, OnDays):
+        return token.value.rounds
+    return len(_amount(token).split(";")) if token.role == "at" else -1
 
 
 def _amount(token: Token) -> str:

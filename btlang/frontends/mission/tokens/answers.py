@@ -6,11 +6,13 @@ from functools import cached_property
 
 from btlang.frontends.mission.token import Called, Listed, Token
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
-from btlang.tree.asked import ANSWERED, ASK
+from btlang.tree.asked import ABOUT_ANSWERS, ANSWERED, ASK, UNANSWERED
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import PERSON, TEXT
 from btlang.vocabulary.word_tree import find
 
 _PERSON_SAYS, _SOMEBODY_SAYS = "PersonSays", "SomebodySays"
+_LIMITS = frozenset(("within", "up_to"))
 _STOPS = frozenset(("semi", "newline"))
 
 
@@ -36,10 +38,30 @@ class Answers(AddressedTexts):
         self._if(Token("condition", start, end, yes), found[0])
         return found[1] + (self._text.words[found[1]] == ",")
 
+    def silence(self, match: Match, at: int) -> int:
+        """`..., if she says nothing, A` behind other replies, or with more conditions: as a condition of its own.
+
+        Right behind the question it is what is done if that fails.
+        """
+        text, last, entry = self._text, match.last, self._vocabulary.entry(UNANSWERED)
+        is_joined = any(text.words[last] in self._vocabulary.roles[role] for role in ("or", "and"))
+        is_reply = self._is_asked(right_before=False) and (is_joined or not self._is_asked(right_before=True))
+        if entry is None or not is_reply:
+            return 0
+        has_comma = text.words[last - 1] == ","
+        start, end = text.starts[at], text.ends[last - 1 - has_comma]
+        self._tokens += [Token("if", start, start), Token("condition", start, end, Called(entry, ()))]
+        if has_comma:
+            self._tokens.append(Token("comma", text.starts[last - 1], text.ends[last - 1]))
+        return last
+
     def said(self, token: Token, at: int) -> None:
-        """`wait until she says stop` where nobody is asked: what is heard, not an answer."""
+        """`wait until she says stop` where nobody is asked is what is heard; `she says nothing` is silence."""
         value = token.value
-        if not isinstance(value, Called) or value.entry.id != ANSWERED or self._may_ask:
+        if not isinstance(value, Called) or value.entry.id != ANSWERED:
+            return
+        if self._may_ask:
+            self._silent(token, value.arguments[0][1])
             return
         if find(self._vocabulary.values.pronoun_words, self._text.words, at) is None:
             return
@@ -48,6 +70,21 @@ class Answers(AddressedTexts):
         if heard is not None:
             by_type = {PERSON: person, TEXT: words}
             token.value = Called(heard, tuple((slot.name, by_type[slot.type]) for slot in heard.slots))
+
+    def _silent(self, token: Token, words: str) -> None:
+        """Makes `she says nothing` and `she doesn't say anything` the condition that nobody has answered."""
+        entry, asking = self._vocabulary.entry(UNANSWERED), self._vocabulary.asking
+        if entry is None or words.lower() not in (*asking["silence"], *asking["any_answer"]):
+            return
+        if self._text.source.text[token.end - 1] == '"':
+            return
+        token.value = Called(entry, ())
+        if words.lower() in asking["silence"]:
+            return
+        if self._tokens and self._tokens[-1].kind == "not":
+            self._tokens.pop()
+        else:
+            self._tokens.append(Token("not", token.start, token.start))
 
     @cached_property
     def _may_ask(self) -> bool:
@@ -66,9 +103,11 @@ class Answers(AddressedTexts):
             while first and tokens[first - 1].kind not in _STOPS:
                 first -= 1
             values = [token.value for token in tokens[first:last] if isinstance(token.value, Called | Listed)]
+            while tokens[last - 1].kind in _LIMITS:
+                last -= 1
             if tokens[last - 1].kind == "command" and values and values[-1].entry.id == ASK:
                 return True
-            if right_before or tokens[first].kind != "if" or not values or values[0].entry.id != ANSWERED:
+            if right_before or tokens[first].kind != "if" or not values or values[0].entry.id not in ABOUT_ANSWERS:
                 return False
             last = first
         return False

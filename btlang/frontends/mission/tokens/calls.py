@@ -78,7 +78,7 @@ class Calls:
                 self._alternatives[self._reference(listed.type)] = made, listed
             return made
         if values:
-            return Token(meaning.role, start, end, values[0].text)
+            return Token(meaning.role, start, end, ";".join((values[0].text, *values[0].more)))
         return Token(meaning.role, start, end, str(meaning.value) if meaning.role == "count" else None, meaning.between)
 
     def with_details(self, token: Token, at: int, names: TrieNode) -> int:

@@ -5,9 +5,12 @@ from __future__ import annotations
 from btlang.frontends.mission.token import Called, OnDays, Token
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.silent_words import BEGINS
-from btlang.vocabulary.match import Match
+from btlang.text.time_of_day import WEEKDAYS
+from btlang.vocabulary.match import Match, SlotValue
+from btlang.vocabulary.trie import longest
 
 _TIME = "time_of_day"
+_WEEKDAYS = frozenset(map(str.lower, WEEKDAYS))
 _TODAY, _DAYTIME = "TodayIs", "TimeOfDay"
 
 
@@ -15,17 +18,42 @@ class ClockWords(SentenceReader):
     """Those of one text."""
 
     def _weekly(self, match: Match, at: int) -> int:
-        """`on weekdays at 9, A`: as every day at that time, but on such days alone."""
+        """`on weekdays at 9, A`: as every day at that time, but on such days alone; `on Friday at 9, A` is once."""
         entry = self._vocabulary.entry(_TODAY)
         said = {value.name: value for value in match.values}
         if entry is None or len(said) != 2:
             return 0
-        days, time = said["days"], said["time_of_day"]
+        days, times = ((said[name].text, *said[name].more) for name in ("days", "time_of_day"))
         start, end = self._text.starts[at], self._text.ends[match.last - 1]
-        named = ";".join((days.text, *days.more))
-        asked = Called(entry, ((entry.slots[0].name, named),))
-        self._tokens.append(Token("every_day", start, end, OnDays(time.text, asked)))
+        asked = tuple(Called(entry, ((entry.slots[0].name, day),)) for day in days)
+        is_once = match.meaning.role == "on_days" and self._is_singular(said["days"])
+        rounds = len(days) * len(times) if is_once else -1
+        self._tokens.append(Token("every_day", start, end, OnDays(";".join(times), asked, rounds)))
         return match.last
+
+    def times(self, match: Match, at: int) -> int:
+        """`at 8 am, at noon and at 6 pm, A`: as `at 8 am, noon and 6 pm, A`. Returns 0 for anything else."""
+        text, tokens, found = self._text, self._tokens, [match]
+        joints = self._vocabulary.roles["and"]
+        while text.words[found[-1].last] in (",", *joints):
+            behind = found[-1].last + (text.words[found[-1].last] == ",")
+            behind += text.words[behind] in joints
+            more = longest(self._vocabulary.trie, text, behind, self._context)
+            if more is None or more.meaning.role != "at":
+                break
+            found.append(more)
+        is_front = not tokens or tokens[-1].kind in BEGINS
+        goes_on = is_front and text.words[found[-1].last] == ","
+        if len(found) < 2 or not (goes_on or self._is_end(found[-1].last)):
+            return 0
+        times = [time for each in found for time in (each.values[0].text, *each.values[0].more)]
+        tokens.append(Token("at", text.starts[at], text.ends[found[-1].last - 1], ";".join(times)))
+        return found[-1].last
+
+    def _is_singular(self, days: SlotValue) -> bool:
+        """Whether days are said by the names that they have, `Friday`: not `Fridays`, `weekdays`."""
+        names = {name.lower() for name in (days.text, *days.more)}
+        return names.issubset(self._text.words[days.first : days.last]) and names.issubset(_WEEKDAYS)
 
     def _between(self, match: Match, at: int) -> int:
         """`every 15 minutes between 10 pm and 6 am, A`: each time, if it is then."""

@@ -39,6 +39,8 @@ def left_out(
         ):
             continue  # a part of a value, or the way of the command before
         added = [value for value in match.values if value.last > len(front)] if match is not None else []
+        if added and all(text.words[places[value.first]] in context.values.plural_pronouns for value in added):
+            continue  # `go to the lab and the hall, each`: what was said before
         if added and all(map(_is_own, added)):
             continue  # only the way or the manner of the command before: `to the lab, going through the hall`
         if match is None or match.last <= len(front) or match.meaning.role not in ("command", "name"):

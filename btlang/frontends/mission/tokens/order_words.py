@@ -49,7 +49,7 @@ class OrderWords(ClockWords):
             return self._wait_at(match, at)
         if role == "any_time":
             return self._any_time(match.last)
-        if role == "weekly":
+        if role in ("weekly", "on_days"):
             return self._weekly(match, at)
         if role == "instead":
             return self._instead(match, at)

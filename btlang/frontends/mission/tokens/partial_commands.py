@@ -5,7 +5,7 @@ Both are read as the words that they stand for would be, in a text put together 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from btlang.frontends.mission.token import LINES, Called, Listed, Token, arguments_of, constraint_of
 from btlang.frontends.mission.tokens.calls import Calls
@@ -52,6 +52,8 @@ class PartialCommands:
         self._tokens = tokens
         self._tries = vocabulary.trie, names
         self._and = frozenset(vocabulary.roles["and"])
+        self.with_text: Callable[[Match, int, Token], int] = lambda _match, _at, _token: 0
+        """Reads what a command says or asks where that is no text in quotes, as behind the verb itself."""
         self.sharing: set[int] = set()
         """The words at which commands begin that share their theme with the one before."""
         self._said: dict[int, list[int]] = {}  # the words of commands that leave some out, by where these begin
@@ -95,15 +97,18 @@ class PartialCommands:
         before.kind = {"if": "if_doing", "while": "while_doing", "followed_by": "then"}.get(before.kind, before.kind)
         token = self._token_of(match, at)
         token.role = "doing"
-        self._tokens.append(token)
-        return end
+        return max(end, self._place(match, at, token))
 
     def add(self, at: int) -> int:
         """The same where nothing before it is changed: `would you mind waving`."""
         match = self.doing(at)
-        if match is None:
-            return 0
-        self.append(match, at)
+        return self._place(match, at, self._token_of(match, at)) if match is not None else 0
+
+    def _place(self, match: Match, at: int, token: Token) -> int:
+        """Adds a command in a form of its verb, with its text. Returns where to go on."""
+        if end := self.with_text(match, at, token):
+            return end
+        self._tokens.append(token)
         return match.last
 
     def append(self, match: Match, at: int) -> None:
@@ -124,8 +129,7 @@ class PartialCommands:
             return 0
         token = self._token_of(match, at)
         token.role = "third"
-        tokens.append(token)
-        return match.last
+        return self._place(match, at, token)
 
     def add_forbidden(self, at: int, end: int) -> int:
         """Such a constraint. Returns where to go on, 0 where there is none."""

@@ -69,6 +69,10 @@ def without_meaning(
     if not tokens:
         return 0
     before = tokens[-1]
+    if text.words[at] in vocabulary.asking["apiece"]:
+        follows = longest(vocabulary.trie, text, at + 1, context)
+        if before.kind == "count" or (follows is not None and follows.meaning.role == "count"):
+            return at + 1  # `visit the lab and the hall, each twice`: both, twice
     if before.kind in ("check", "while") and text.words[at] in vocabulary.subjects:
         follows = longest(vocabulary.trie, text, at + 1, context)
         if follows is not None and follows.meaning.role == "command":

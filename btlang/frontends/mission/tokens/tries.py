@@ -53,7 +53,10 @@ class Tries(SentenceReader):
         return match.last
 
     def again(self, match: Match, at: int) -> int:
-        """`A. If that fails, wait 5 s and try again, at most 3 times`: A again, with pauses; without a number once."""
+        """`A. If that fails, wait 5 s and try again, at most 3 times`: A again, with pauses; without a number once.
+
+        `at most 3 times` is in all, `twice` are those that follow the first.
+        """
         tokens, end = self._tokens, len(self._tokens)
         end = self._behind(end)
         pause = tokens[end - 1] if end and tokens[end - 1].kind == "wait" else None
@@ -67,12 +70,16 @@ class Tries(SentenceReader):
         behind = match.last + (self._text.words[match.last] == ",")
         behind += self._text.words[behind] in self._vocabulary.roles["but"]
         amount = longest(self._vocabulary.trie, self._text, behind, self._context)
-        if amount is not None and amount.meaning.role in ("at_most", "up_to_times", "tries", "count"):
+        if amount is not None and amount.meaning.role in ("at_most", "up_to_times", "tries", "count", "more"):
             stop, number = self._text.ends[amount.last - 1], str(self._calls.token(amount, behind).value)
+            if amount.meaning.role in ("count", "more") and number != "-1":  # `try again twice` is three times in all
+                if not number.isdecimal():
+                    return 0
+                number = str(int(number) + 1)
         else:
             amount = None
         delay = longest(self._vocabulary.trie, self._text, match.last, self._context)
-        if delay is not None and delay.meaning.role in ("delay", "more"):
+        if delay is not None and delay.meaning.role == "delay":
             return 0  # `try again after 5 minutes`
         del tokens[last:]
         if tokens[first].kind in ("try", "retry"):

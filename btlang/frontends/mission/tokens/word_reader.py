@@ -76,6 +76,7 @@ class WordReader:
         shared = text, vocabulary, context, self._calls, self._partial, tokens
         self._order, self._places, self._tries = OrderWords(*shared), Places(*shared), Tries(*shared)
         self._requests, self._outcomes = Requests(*shared), Outcomes(*shared)
+        self._partial.with_text = self._requests.value_in
         self._remarks = Remarks(text, vocabulary, context)
         self._verb_forms = verb_forms(text, vocabulary)
         self._unknown = UnknownWords(
@@ -186,6 +187,8 @@ class WordReader:
         is_first = begins(tokens)
         if is_first and (end := self._requests.reply(at, role)):
             return end
+        if match is not None and role == "if_unanswered" and (end := self._requests.silence(match, at)):
+            return end
         if match is not None and role == "never" and (end := self._partial.add_forbidden(at, match.last)):
             return end
         if role != "command":
@@ -294,6 +297,8 @@ class WordReader:
                 if end := self._partial.add_left_out(at, match.last):  # `go to the kitchen and then in the lab`
                     return end
             return self._places.before(at) or self._partial.add_third(at + 1, None) if begins(tokens) else 0
+        if role == "at":
+            return self._order.times(match, at)
         if role == "check":
             return self._order.inspection(at, match.last)
         if role == "command" and at in self._text.articles:  # `then the dock`: with an article it is a name

@@ -1,0 +1,196 @@
+"""The forms that can be read in another way: sentences side by side, what is tried, searched or counted."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from functools import partial
+from itertools import pairwise
+
+from btlang.passes.lint.other_reading import (
+    Attachment,
+    Readings,
+    bracketed,
+    in_order,
+    is_in_brackets,
+    is_list,
+    with_part,
+)
+from btlang.text.source import Span
+from btlang.tree import ast
+from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.lexicon import Lexicon
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+OTHERWISE, PACED, FORMS, SENTENCES, SEARCHES, TRIED = "otherwise", "paced", "forms", "sentences", "searches", "tried"
+_SENTENCE_END = re.compile(r"[.;!?]")
+_SEES = "perception"
+_WORD = re.compile(r"\w+")
+
+
+def in_form(node: ast.If | ast.Try, vocabulary: Lexicon) -> Iterator[Attachment]:
+    """An `otherwise` that both this form and one at the end of its body could have, and another `if` there."""
+    if node.otherwise is not None or node.body.span.start <= node.span.start:
+        return
+    body = node.body
+    if isinstance(node, ast.Try) and _is_tried(node, vocabulary) and _is_joined_by_then(body, vocabulary):
+        yield Attachment(TRIED, node.span.start, partial(_tried_first, node))
+        return
+    joins = isinstance(body, ast.Chain) and body.operator in ("sequence", "parallel") and not body.bracketed
+    if isinstance(node, ast.If) and isinstance(body, ast.Chain) and joins and len(body.items) > 1:
+        before, last = body.items[-2:]
+        gap = Span(last.span.source, before.span.end, last.span.start)
+        is_open = gap.text.strip() in (",", *vocabulary.roles["and"]) or gap.text.strip(" ,") in vocabulary.roles["and"]
+        if isinstance(last, ast.If) and last.otherwise is None and last.body.span.start > last.span.start and is_open:
+            yield Attachment(FORMS, node.span.start, partial(_side_by_side, node, gap, vocabulary.word("then")))
+            return
+    path: list[ast.Ast] = [node]
+    part: Any = node.body
+    while not _has_otherwise(part):
+        path.append(part)
+        if isinstance(part, ast.Chain) and not part.bracketed and not is_list(part):
+            part = in_order(part.items)[-1]
+        elif isinstance(part, ast.If | ast.Try | ast.Chain) or is_in_brackets(part.span):
+            return
+        elif getattr(part, "body", None) is not None and part.body.span.start > part.span.start:
+            part = part.body
+        else:
+            return
+    text = part.span.source.text
+    if is_in_brackets(part.span) or "\n" in text[node.span.start : part.span.start]:
+        return
+    yield Attachment(OTHERWISE, node.span.start, partial(_moved, node, path, part))
+
+
+def in_pace(node: ast.Every, vocabulary: Lexicon) -> Iterator[Attachment]:
+    """`A 3 times every 10 s`: the number could be that of each round."""
+    start, body = node.span.start, node.body.span
+    if not node.rounds or body.start != start:
+        return  # as nearly always
+    behind = node.span.source.text[body.end : node.span.end]
+    words = {vocabulary.orthography.words(pattern)[0] for pattern in vocabulary.roles["every"]}
+    at = min((match.start() for match in _WORD.finditer(behind) if match[0].lower() in words), default=0)
+    if _WORD.search(behind[:at]):
+        yield Attachment(PACED, start, partial(_repeated, node, Span(body.source, body.end, node.span.end), at))
+
+
+def in_time(node: ast.For, vocabulary: Lexicon) -> Iterator[Attachment]:
+    """`wait for Alice for 10 min`: once, and at most so long."""
+    body = node.body
+    if not isinstance(body, ast.Phrase) or body.span.start != node.span.start or is_in_brackets(body.span):
+        return
+    entry = body.entry
+    if entry.achieves and _SEES in entry.needs and (entry.first or MOVES not in entry.resources):
+        yield Attachment(SEARCHES, node.span.start, partial(_once_at_most, node, vocabulary.word("repeat")))
+
+
+def in_sentences(chain: ast.Chain, vocabulary: Lexicon) -> Iterator[Attachment]:
+    """`if C, A. If D, B. Otherwise E`, and `if the lamp is on, switch it off. If it is off, switch it on`."""
+    if chain.operator != "sequence":
+        return
+    then = vocabulary.word("then").capitalize()
+    for first, second in pairwise(chain.items):
+        if not isinstance(first, ast.If) or not isinstance(second, ast.If) or first.otherwise is not None:
+            continue
+        if second.negated or not (_is_before(first) and _is_before(second)):
+            continue
+        if "\n" in _between(first, second) or _WORD.search(_between(first, second)):
+            continue
+        if second.otherwise is None:
+            if _brings_about(first.body, second.condition):
+                gap = Span(first.span.source, first.span.end, second.span.start)
+                yield Attachment(SENTENCES, first.span.start, partial(_as_otherwise, first, second, gap, f". {then} "))
+        elif _SENTENCE_END.search(_between(second.body, second.otherwise)):
+            gap = Span(first.span.source, second.body.span.end, second.otherwise.span.start)
+            words = f", {_WORD.findall(gap.text)[0].lower()} " if _WORD.search(gap.text) else gap.text
+            yield Attachment(SENTENCES, first.span.start, partial(_as_otherwise, first, second, gap, words))
+
+
+def _is_before(node: ast.If) -> bool:
+    """Whether its condition stands before its command."""
+    return node.condition.span.start < node.body.span.start
+
+
+def _between(left: ast.Ast, right: ast.Ast) -> str:
+    return left.span.source.text[left.span.end : right.span.start]
+
+
+def _brings_about(body: ast.Ast, condition: ast.Ast) -> bool:
+    """Whether a command makes a condition true."""
+    if not isinstance(condition, ast.Phrase):
+        return False
+    values = {text for _, text in condition.arguments}
+    done = (each for each in ast.parents_first(body) if isinstance(each, ast.Phrase))
+    return any(
+        condition.entry.id in each.entry.achieves and values == {text for _, text in each.arguments} for each in done
+    )
+
+
+def _is_tried(node: ast.Try, vocabulary: Lexicon) -> bool:
+    """Whether it begins with a word for `try`, not with `if possible`."""
+    first = _WORD.match(node.span.text)
+    return first is not None and first[0].lower() in {phrase.split()[0] for phrase in vocabulary.roles["try"]}
+
+
+def _is_joined_by_then(body: ast.Ast, vocabulary: Lexicon) -> bool:
+    """Whether commands stand behind one another with a word between the first two that says so, out of brackets."""
+    if not isinstance(body, ast.Chain) or body.operator != "sequence" or body.bracketed:
+        return False
+    return _between(*body.items[:2]).strip(" ,").lower() in vocabulary.roles["then"]
+
+
+def _has_otherwise(node: ast.Ast) -> bool:
+    return getattr(node, "otherwise", None) is not None
+
+
+def _moved(node: Any, path: Sequence[ast.Ast], part: Any) -> Readings:
+    """`if C, if D, A otherwise B`: if C, (if D, A) otherwise B."""
+    tried = isinstance(part, ast.Try) and part.body.span.start == part.span.start
+    changed: ast.Ast = part.body if tried else part.replace(otherwise=None)
+    for inner, outer in zip([part, *path[:0:-1]], path[::-1], strict=True):
+        changed = with_part(outer, inner, changed)
+    return Readings(node, changed.replace(otherwise=part.otherwise), node.span, bracketed(part.span))
+
+
+def _side_by_side(node: ast.If, gap: Span, then: str) -> Readings:
+    """`if C, A, if D, B`: if C, A; then, whatever came of that, if D, B."""
+    body: Any = node.body
+    *before, last = body.items
+    first = before[0] if len(before) == 1 else body.replace(items=tuple(before))
+    fix = (gap, f" {then} ")
+    if body.operator == "parallel":
+        head = Span(body.span.source, node.condition.span.end, body.span.end)
+        fix = head, f", ({body.span.text})"
+    taken = node.replace(body=body.replace(bracketed=True))
+    other = ast.Chain(body.operator, (node.replace(body=first), last), False, node.span)
+    return Readings(taken, other, node.span, fix)
+
+
+def _tried_first(node: ast.Try) -> Readings:
+    """`try to A, then B`: try to A; then B in any case."""
+    body: Any = node.body
+    first = node.replace(body=body.items[0])
+    other = ast.Chain("sequence", (first, *body.items[1:]), True, node.span)
+    return Readings(node, other, node.span, bracketed(body.span))
+
+
+def _repeated(node: ast.Every, behind: Span, at: int) -> Readings:
+    """`A 3 times every 10 s`: every 10 s, A 3 times."""
+    rounds, pace = behind.text[:at].strip(), behind.text[at:]
+    other = node.replace(body=ast.Repeat(node.rounds, node.body, node.span), rounds="")
+    return Readings(node, other, node.span, (behind, f" {pace} {rounds}"))
+
+
+def _once_at_most(node: ast.For, repeat: str) -> Readings:
+    fix = node.body.span, f"{repeat} ({node.body.span.text})"
+    return Readings(node, ast.Within(node.seconds, node.body, node.span), node.span, fix)
+
+
+def _as_otherwise(first: ast.If, second: ast.If, gap: Span, words: str) -> Readings:
+    """`if C, A. If D, B`: if C, A, otherwise if D, B."""
+    span = Span(first.span.source, first.span.start, second.span.end)
+    taken = ast.Chain("sequence", (first, second), True, span)
+    return Readings(taken, first.replace(otherwise=second, span=span), span, (gap, words))
