@@ -175,18 +175,19 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--for", type=duration, dest="time_limit", metavar="DURATION", help="stop after this time, such as 60s or 2min"
     )
-    parser.add_argument(
-        "--seed", type=int, metavar="N", help="repeat what an earlier run did by chance: its log has the seed"
-    )
-    parser.add_argument("--answers", metavar="FILE", help="answer what the robot asks from a TOML file")
+    parser.add_argument("--seed", type=int, metavar="N", help="seed of random choices; the log of a run has its seed")
+    parser.add_argument("--answers", metavar="FILE", help="TOML file with answers to what the robot asks")
     parser.add_argument("--log", metavar="FILE", help="write every event as a line of JSON")
     parser.add_argument(
         "--picture", type=picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"
     )
     parser.add_argument(
-        "--tree-picture", type=picture(".svg", ".png"), metavar="FILE", help="draw the tree with every final status"
+        "--tree-picture",
+        type=picture(".svg", ".png"),
+        metavar="FILE",
+        help="draw the tree with the final status of every node: .svg or .png",
     )
-    parser.add_argument("--voice", metavar="FILE", help="write what the robot says as sound: a WAV file")
+    parser.add_argument("--voice", metavar="FILE", help="write what the robot says to a WAV file")
     parser.add_argument("--lines", action="store_true", help="print plain lines, even on a terminal")
     parser.add_argument("--quiet", action="store_true", help="print only errors")
     add_recording_options(parser)
@@ -225,23 +226,26 @@ def _ros_node_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _help_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("subject", nargs="?", metavar="VERB", help="whose options to list")
+    parser.add_argument("subject", nargs="?", metavar="VERB", help="verb whose options to list")
 
 
 _RECORDING = "btlang.recording.options"
 _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
-    "repl": ("type a mission line by line, as with `btc` alone", _repl_options),
+    "repl": ("start the prompt, as `btc` alone does", _repl_options),
     "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
-    "replay": ("show a recorded run as it was", _replay_options),
+    "replay": ("replay a recorded run", _replay_options),
     "why": ("explain what happened in a recorded run, and why it failed", _elsewhere(_RECORDING, "add_recording_file")),
     "test": ("run tests of missions, written in English", _elsewhere("btlang.testing.options", "add_test_options")),
     "diff": ("show what differs between two missions, trees or recorded runs", add_diff_options),
-    "check": ("report the mistakes in missions and trees", add_check_options),
+    "check": ("report mistakes in missions and trees", add_check_options),
     "tree": ("print the behavior tree of a mission", add_tree_options),
     "compile": ("write the tree of a mission as XML, English, JSON, a picture ...", add_compile_options),
     "words": ("list what missions can say", add_listing_options),
     "grammar": ("write a grammar of missions, for language models", add_grammar_options),
-    "robot": ("keep a robot up for many tasks of many people", _elsewhere("btlang.task.options", "add_robot_options")),
+    "robot": (
+        "bring a robot up for many tasks, and control it",
+        _elsewhere("btlang.task.options", "add_robot_options"),
+    ),
     "task": ("give work to a robot that is up", _elsewhere("btlang.task.options", "add_task_options")),
     "world": ("check, draw, import and export world files", _elsewhere("btlang.maps.options", "add_world_options")),
     "gesture": (
@@ -252,19 +256,25 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
         "list the components and devices of a robot that is up",
         _elsewhere("btlang.task.options", "add_component_options"),
     ),
-    "serve": ("let others reach the robots that are up", _elsewhere("btlang.server.options", "add_serve_options")),
-    "user": ("say who may come in through btc serve", _elsewhere("btlang.server.options", "add_user_options")),
+    "serve": (
+        "serve the robots that are up to browsers and programs",
+        _elsewhere("btlang.server.options", "add_serve_options"),
+    ),
+    "user": ("manage the users of btc serve", _elsewhere("btlang.server.options", "add_user_options")),
     "edit": ("write a mission in the browser", _elsewhere("btlang.server.options", "add_edit_options", True)),
     "mcp": ("let language models write and simulate missions, as an MCP server", add_words_options),
     "examples": ("list, print or copy the example missions", _examples_options),
-    "new": ("begin a component, a device or a robot", _elsewhere("btlang.templates.options", "add_new_options")),
+    "new": (
+        "create a project: a component, a device or a robot",
+        _elsewhere("btlang.templates.options", "add_new_options"),
+    ),
     "explain": ("show how a mission is understood, or explain a message code", add_explain_options),
     "format": ("format missions: indentation, spaces, empty lines", add_format_options),
     "sim-ros": (
         "run the simulated robot as a ROS 2 node",
         _elsewhere("btlang.ros.simulator.command", "add_simulator_options"),
     ),
-    "ros-node": ("run missions for other programs, as a ROS 2 node", _ros_node_options),
+    "ros-node": ("run missions as a ROS 2 node, for other programs", _ros_node_options),
     "ros-devices": (
         "show the devices of a robot as ROS 2 topics",
         _elsewhere("btlang.ros.devices.command", "add_device_options"),

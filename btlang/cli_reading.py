@@ -25,7 +25,7 @@ def add_words_options(parser: argparse.ArgumentParser) -> None:
         help="another keyword file, an XML file whose nodes become words, or the name of a pack; may be repeated",
     )
     parser.add_argument(
-        "--language", default=ENGLISH, metavar="LANG", help="of the mission: en, es, or a folder (default: en)"
+        "--language", default=ENGLISH, metavar="LANG", help="language of missions: en, es, or a folder (default: en)"
     )
     add_world(parser)
 
@@ -37,7 +37,7 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
         "--parser",
         choices=list(PARSERS),
         default=DEFAULT_PARSER,
-        help="how to parse; both give the same tree (default: %(default)s)",
+        help="which parser to use; both give the same tree (default: %(default)s)",
     )
     parser.add_argument("--include-root", metavar="DIR", help="missions may also include files below DIR")
 
@@ -82,7 +82,9 @@ def add_check_options(parser: argparse.ArgumentParser) -> None:
 def add_diff_options(parser: argparse.ArgumentParser) -> None:
     """Those of `btc diff`."""
     add_words_options(parser)
-    parser.add_argument("--markdown", action="store_true", help="print a list in Markdown, such as for a pull request")
+    parser.add_argument(
+        "--markdown", action="store_true", help="print a list in Markdown, for example for a pull request"
+    )
     parser.add_argument("old", metavar="OLD", help="mission, tree in XML or JSON, or recording")
     parser.add_argument("new", metavar="NEW", help="what to compare with it")
 
@@ -105,14 +107,14 @@ def add_compile_options(parser: argparse.ArgumentParser) -> None:
         "-o",
         dest="out",
         metavar="OUT",
-        help="file to write (with markdown: or folder); its ending can select the target",
+        help="file to write, or with markdown a folder; without --to, its ending selects the target",
     )
     parser.add_argument("--dialect", type=int, choices=(3, 4), help="BehaviorTree.CPP version of the XML (default: 4)")
     parser.add_argument(
-        "--onto", metavar="XML", help="the file that the mission was made from: changes what was edited"
+        "--onto", metavar="XML", help="the file that the mission was made from: change only what was edited"
     )
     parser.add_argument(
-        "--force", action="store_true", help="with --onto: also where the file has changed, or is another one"
+        "--force", action="store_true", help="with --onto: even if the file has changed since, or is a different one"
     )
 
 
@@ -120,9 +122,9 @@ def add_listing_options(parser: argparse.ArgumentParser) -> None:
     """Those of `btc words`."""
     add_words_options(parser)
     parser.add_argument("--all", action="store_true", help="list everything, with what it does and an example")
-    about = "make words for the nodes of this XML file, by its TreeNodesModel and its trees; may be repeated"
+    about = "make a keyword file for the nodes of this XML file; may be repeated"
     parser.add_argument("--from", dest="sources", action="append", default=[], metavar="XML", help=about)
-    parser.add_argument("-o", dest="out", metavar="FILE", help="with --from: keyword file (default: standard output)")
+    parser.add_argument("-o", dest="out", metavar="FILE", help="with --from: file to write (default: standard output)")
     parser.add_argument("search", nargs="*", metavar="SEARCH", help="a topic, or words to search for")
 
 

@@ -38,7 +38,7 @@ class _Help(argparse.HelpFormatter):
             textwrap.fill(about, self._width, initial_indent=f"  {act:{column - 2}}", subsequent_indent=" " * column)
             for act, about in zip(rows[::2], rows[1::2], strict=True)
         ]
-        return "\n".join(("what it can do:", *lines, ""))
+        return "\n".join(("acts:", *lines, ""))
 
 
 class OptionParser(argparse.ArgumentParser):
@@ -47,6 +47,14 @@ class OptionParser(argparse.ArgumentParser):
     def __init__(self, prog: str | None = None, **options: Any) -> None:
         super().__init__(prog, formatter_class=_Help, **options)
         self.set_defaults(refuse=self.refuse)  # ends with a usage error what only the verb can see to be wrong
+
+    def format_help(self) -> str:
+        """What argparse says, and then examples."""
+        from btlang.command_examples import EXAMPLES
+
+        found = EXAMPLES.get(self.prog.removeprefix("btc "), ())
+        lines = [f"  {command}\n      {about}\n" for command, about in found]
+        return "".join((super().format_help(), "\nexamples:\n" * bool(lines), *lines))
 
     def check_option(self, name: str) -> None:
         """Refuses an option that doesn't exist, before its value is taken for a file."""

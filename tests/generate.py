@@ -12,6 +12,7 @@ from btlang.run.events import LOGGED, Event
 from btlang.run.field_types import field_type
 from btlang.run.json_log import described
 from btlang.task import command_schema
+from tests.cli_page import cli_page
 
 ROOT = Path(__file__).parent.parent
 _TYPES = {"string": "string", "integer": "number", "number": "number", "boolean": "boolean", "null": "null"}
@@ -103,6 +104,7 @@ FILES: dict[str, Callable[[], str]] = {
     "btlang/run/events.schema.json": events_schema,
     "btlang/task/commands.schema.json": commands_schema,
     "btlang/web/src/events.ts": events_module,
+    "docs/cli.md": cli_page,
     "grammar/mission.tables.json": grammar_tables,
 }
 """The files, with what makes the text of each."""

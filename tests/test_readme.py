@@ -30,6 +30,7 @@ ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
 PAGES = [README, *sorted((ROOT / "docs").rglob("*.md"))]
 SET_UP = "python3 -m venv "  # what lines start with that only `.ci/run` runs
+_LINK = re.compile(r"\]\((?!\w+:)([^)#\s]*)(#([^)\s]*))?\)")
 _BLOCK = re.compile(r"^```(\w+)(?: ([\w.]+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -249,6 +250,22 @@ def test_ci_runs_the_two_set_up_commands() -> None:
     assert pattern == SET_UP
     assert 'bash -euo pipefail -c "${commands[0]}"' in script
     assert 'bash -euo pipefail -c "${commands[1]}"' in script
+
+
+def test_links_between_the_pages_lead_somewhere() -> None:
+    """To a file, and to a heading of it."""
+    for page in (*PAGES, *ROOT.glob("*.md")):
+        for name, _, anchor in _LINK.findall(_BLOCK.sub("", page.read_text(encoding="utf-8"))):
+            target = page.parent / name if name else page
+            assert target.exists(), f"{page}: {name}"
+            if anchor and target.suffix == ".md":
+                headings = re.findall(r"^#+ (.*)$", target.read_text(encoding="utf-8"), re.MULTILINE)
+                assert anchor in map(as_anchor, headings), f"{page}: {name}#{anchor}"
+
+
+def as_anchor(heading: str) -> str:
+    """As GitHub makes it."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
 def test_files_of_the_pages_load(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,6 +12,7 @@ import pytest
 from btlang import __version__
 from btlang.cli import _VERBS, main
 from btlang.cli_options import _OPTIONS, GROUPS, parsed
+from btlang.command_examples import EXAMPLES
 from btlang.gestures.options import ACTS as GESTURE_ACTS
 from btlang.server.options import USER_ACTS
 from btlang.task.applicable import COMPONENT_ACTS, ROBOT_ACTS, TASK_ACTS
@@ -184,6 +185,15 @@ def test_help_says_what_each_act_does(verb: str, acts: Mapping[str, str], capsys
         for example in re.findall(r"(?<=btc )[^,]+", about):
             options = parsed(shlex.split(example))
             assert (options.verb, options.act) == (verb, act)
+
+
+@pytest.mark.parametrize("verb", EXAMPLES)
+def test_examples_of_a_verb_are_commands(verb: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert not typed("help", verb)
+    out = capsys.readouterr().out
+    for command, about in EXAMPLES[verb]:
+        assert f"\n  {command}\n      {about}\n" in out
+        assert parsed(shlex.split(command)[1:]).verb == verb
 
 
 def test_names_of_another_world_that_ships(capsys: pytest.CaptureFixture[str]) -> None:

@@ -23,20 +23,23 @@ def add_world_options(parser: argparse.ArgumentParser) -> None:
         "       btc world import FILE ... -o OUT [--start X,Y[,FACING]]\n"
         "       btc world export FILE --to nav2|json|yaml -o OUT"
     )
-    about = "world file, perhaps after check, import or export (default: the world that ships)"
+    about = "world file; check, import or export may come first (default: the world that ships)"
     parser.add_argument("words", nargs="*", default=[], metavar="FILE", help=about)
     parser.add_argument("--picture", type=picture(".svg", ".png"), metavar="OUT", help="draw the world: .svg or .png")
-    parser.add_argument("-o", dest="out", metavar="OUT", help="what to write: a file, or a folder for nav2")
+    parser.add_argument("-o", dest="out", metavar="OUT", help="file to write, or a folder for nav2")
     parser.add_argument("--to", choices=TARGETS, help="what to export to")
     parser.add_argument(
         "--start", type=_start, metavar="X,Y[,FACING]", help="where the robot starts (default: the first way point)"
     )
     parser.add_argument(
-        "--resolution", type=between(0.005, 10.0), metavar="M", help="of an exported map (default: 0.05 metres a cell)"
+        "--resolution",
+        type=between(0.005, 10.0),
+        metavar="M",
+        help="size of a cell of an exported map, in metres (default: 0.05)",
     )
     parser.add_argument(
         "--robot", type=robot_on(tuple(ROBOTS)), default="simulated", metavar="ROBOT",
-        help="robot file, for how much room it needs and how fast it is (default: simulated)",
+        help="robot file, for the robot's size and speed (default: simulated)",
     )  # fmt: skip
     parser.add_argument(
         "--format", choices=FORMATS, default="text", help="format of messages: text, or json (default: text)"

@@ -29,11 +29,15 @@ def add_recording_options(parser: argparse.ArgumentParser) -> None:
     """Those of `btc run`."""
     parser.add_argument("--record", metavar="FILE", help="record the run as MCAP, for replay, why and Foxglove")
     parser.add_argument(
-        "--record-scans", type=between(0, 100), default=2.0, metavar="HZ", help="scans per second in it (default: 2)"
+        "--record-scans",
+        type=between(0, 100),
+        default=2.0,
+        metavar="HZ",
+        help="with --record: scans per second (default: 2)",
     )
     add_groot_option(parser)
     parser.add_argument(
-        "--record-size", type=size, metavar="SIZE", help="begin another file at this size, such as 100MB"
+        "--record-size", type=size, metavar="SIZE", help="with --record: begin another file at this size, such as 100MB"
     )
 
 
@@ -57,13 +61,22 @@ def add_replay_options(parser: argparse.ArgumentParser) -> None:
         "--picture", type=picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"
     )
     parser.add_argument(
-        "--tree-picture", type=picture(".svg", ".png"), metavar="FILE", help="draw the tree with its final statuses"
+        "--tree-picture",
+        type=picture(".svg", ".png"),
+        metavar="FILE",
+        help="draw the tree with the final status of every node: .svg or .png",
     )
-    parser.add_argument("--why", action="store_true", help="explain at the end what happened, as btc why does")
-    parser.add_argument("--to", metavar="FILE", help="write it for Groot2: a file that ends with .btlog")
-    parser.add_argument("--as-mission", action="store_true", help="run the mission again; report where it differs")
+    parser.add_argument("--why", action="store_true", help="at the end, explain what happened, as btc why does")
+    parser.add_argument("--to", metavar="FILE", help="write the recording as a log file of Groot2 (.btlog)")
     parser.add_argument(
-        "--keywords", action="append", default=[], metavar="FILE", help="a keyword file of the mission to run again"
+        "--as-mission", action="store_true", help="run the recorded mission again, and report where the run differs"
+    )
+    parser.add_argument(
+        "--keywords",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="with --as-mission: keyword file; may be repeated",
     )
     add_recording_file(parser)
 

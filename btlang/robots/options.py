@@ -11,14 +11,17 @@ def add_simulate(parser: ArgumentParser) -> None:
     """The option --simulate."""
     parser.add_argument(
         "--simulate", action="append", nargs="?", const=ALL, default=[], metavar="DEVICE",
-        help="simulate the devices of the robot file, or only the one of this name or kind",
+        help="simulate all devices of the robot file, or only those of this name or kind",
     )  # fmt: skip
 
 
 def add_robot_words(parser: ArgumentParser) -> None:
     """The option --robot of a verb that only reads missions."""
     parser.add_argument(
-        "--robot", default="", metavar="ROBOT", help="robot file or name of a robot, whose words and world count"
+        "--robot",
+        default="",
+        metavar="ROBOT",
+        help="read missions with the words and the world of this robot: a robot file or a name",
     )
 
 

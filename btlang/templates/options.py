@@ -14,8 +14,8 @@ _LONGEST = 40
 
 def add_new_options(parser: argparse.ArgumentParser) -> None:
     """All of them."""
-    parser.add_argument("kind", choices=KINDS, metavar="KIND", help=", ".join(KINDS))
-    parser.add_argument("name", type=project_name, metavar="NAME", help="of it, and of the folder to make")
+    parser.add_argument("kind", choices=KINDS, metavar="KIND", help="component, device or robot")
+    parser.add_argument("name", type=project_name, metavar="NAME", help="name of the project and of its folder")
 
 
 def project_name(text: str) -> str:
