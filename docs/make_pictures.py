@@ -16,6 +16,10 @@ DOCS = Path(__file__).parent
 
 def make_pictures(folder: Path) -> None:
     """Runs the mission of the README and draws its run and its tree, the guide of the museum, and the layers."""
+    sys.path.insert(0, str(DOCS))
+    from framework_figure import draw_layers
+    from moving_picture import moving_picture
+
     readme = (DOCS.parent / "README.md").read_text(encoding="utf-8")
     found = re.search(r"```mission tea\.txt\n(.*?)```", readme, re.DOTALL)
     assert found is not None, "the README has no mission tea.txt"
@@ -25,17 +29,13 @@ def make_pictures(folder: Path) -> None:
         mission.write_text(found[1], encoding="utf-8")
         run = ["run", str(mission), "--speed", "max", "--quiet", "--picture"]
         assert main([*run, str(folder / "tea_run.svg"), "--tree-picture", str(folder / "tea_tree_after_run.svg")]) == 0
-        assert main([*run, str(folder / "tea_run.gif")]) == 0
-        assert main(["tree", str(mission), "--picture", str(folder / "tea_tree.svg")]) == 0
+        (folder / "tea.svg").write_bytes(moving_picture(mission))
     guide = DOCS.parent / "examples" / "guide"
     robot = ["--robot", str(guide / "robot.toml")]
     tour = ["run", str(guide / "missions" / "short_tour.txt"), *robot, "--speed", "max", "--quiet"]
     assert main([*tour, "--picture", str(folder / "guide_tour.gif")]) == 0
     assert main(["gesture", "picture", "bow", *robot, "-o", str(folder / "guide_bow.svg")]) == 0
     assert main(["world", str(guide / "world.toml"), "--picture", str(folder / "guide_museum.svg")]) == 0
-    sys.path.insert(0, str(DOCS))
-    from framework_figure import draw_layers
-
     (folder / "framework.svg").write_bytes(draw_layers())
 
 
