@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from btlang.diagnostics.diagnostic import Diagnostic
     from btlang.diagnostics.errors import MissionError
     from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere, Unknown
-    from btlang.run.runner import Outcome
+    from btlang.run.outcome import Outcome
     from btlang.run.statuses import Status
     from btlang.session import Run, Session
 
@@ -33,7 +33,7 @@ _HOMES = {
     "Failed": "btlang.engine.leaves.leaf",
     "MissionError": "btlang.diagnostics.errors",
     "NotThere": "btlang.engine.leaves.leaf",
-    "Outcome": "btlang.run.runner",
+    "Outcome": "btlang.run.outcome",
     "Parameter": "btlang.components.component",
     "Run": "btlang.session",
     "Session": "btlang.session",

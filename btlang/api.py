@@ -3,50 +3,44 @@
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Callable, Mapping, Sequence
-from functools import partial
+from collections.abc import Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
-from btlang.frontends.table import XML_ENDINGS, frontend_of, read_text
+from btlang.frontends.table import frontend_of, read_text
 from btlang.gc_pause import gc_paused
+from btlang.mission_vocabulary import described, mission_vocabulary, world_of, world_vocabulary
 from btlang.passes import compile_mission, errors_of, lower_mission, run_passes
 from btlang.passes.compilation import Compilation
 from btlang.record import Record
 from btlang.text.output import show
 from btlang.text.source import Source, Span
-from btlang.text.words import split
 from btlang.tree.ast import Fact, Program, all_facts, says_ports
 from btlang.tree.node import Node, Tree
-from btlang.vocabulary.cache import cached, recent, stamp
-from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.load import load_vocabulary, vocabulary_with
-from btlang.vocabulary.nouns import Features
 from btlang.vocabulary.reading_context import Known
-from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH
+from btlang.vocabulary.shipped import ENGLISH
 from btlang.vocabulary.values import key_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, TypeVar
+    from typing import Any
 
+    from btlang.mission_vocabulary import Path
     from btlang.passes.compilation import Origins
     from btlang.robots.registry import Connect
-    from btlang.run.runner import Outcome
+    from btlang.run.outcome import Outcome
     from btlang.tree.dump import Outline
-
-    World = TypeVar("World", bound=str | Source | None)
+    from btlang.vocabulary.load import Keywords
 
 
 def parse_tree(
     text: str | Source,
     *,
     parser: str = DEFAULT_PARSER,
-    keywords: Sequence[str | Entry | Callable[..., Any]] = (),
-    world: str | Source | None = None,
+    keywords: Keywords = (),
+    world: Path | Source | None = None,
     main: str = "",
     language: str = ENGLISH,
     values: Mapping[str, object] = {},
@@ -62,24 +56,25 @@ def parse_tree(
     gets them (`Session.prepare`). `origins` gets the nodes by their identities, each with the syntax that it was made
     of. Raises MissionError with all diagnostics.
     """
-    source = Source(text) if isinstance(text, str) else text
+    source = _source_of(text)
     with gc_paused:
-        vocabulary, world = mission_vocabulary(source, keywords, world, language)
+        vocabulary, chosen = mission_vocabulary(source, keywords, world_of(world), language)
         read = read_text(source, main, vocabulary=vocabulary, parser=parser, errors_of=errors_of, known=_known(values))
         if isinstance(read, Tree):
-            compilation = run_passes(Compilation(vocabulary, tree=read))
-            return Mission(compilation.tree, vocabulary, world, tuple(compilation.warnings))
+            return mission_of_tree(read, vocabulary, chosen)
         compilation = run_passes(Compilation(vocabulary, read.mission, warnings=read.warnings, origins=origins))
     program = read.mission
-    return Mission(compilation.tree, vocabulary, world, tuple(compilation.warnings), program, tuple(all_facts(program)))
+    return Mission(
+        compilation.tree, vocabulary, chosen, tuple(compilation.warnings), program, tuple(all_facts(program))
+    )
 
 
 def parse_file(
-    path: str,
+    path: Path,
     *,
     parser: str = DEFAULT_PARSER,
-    keywords: Sequence[str | Entry | Callable[..., Any]] = (),
-    world: str | Source | None = None,
+    keywords: Keywords = (),
+    world: Path | Source | None = None,
     main: str = "",
     include_root: str | None = None,
     language: str = ENGLISH,
@@ -91,16 +86,56 @@ def parse_file(
     """
     from btlang.diagnostics.reading import read_source
 
-    source = read_source(path, include_root)
+    source = read_source(os.fspath(path), include_root)
     return parse_tree(source, parser=parser, keywords=keywords, world=world, main=main, language=language)
+
+
+def mission_of(given: object, *, keywords: Keywords = (), world: Path | Source | None = None) -> Mission:
+    """The mission that something stands for: a text, the path of a file (an os.PathLike), a tree, a behavior made with
+    the functions of btlang.builders, a function decorated with `action` or `condition`, or a mission itself.
+
+    A str is always the text of a mission, never a path: a program may get it from anybody. `keywords` and `world` are
+    those of `parse_tree`. Raises MissionError for mistakes, TypeError for anything else.
+    """
+    if isinstance(given, Mission):
+        return given
+    if isinstance(given, str | Source):
+        return parse_tree(given, keywords=keywords, world=world)
+    if isinstance(given, os.PathLike):
+        return parse_file(given, keywords=keywords, world=world)
+    if isinstance(given, Node | Tree):
+        tree = Tree(given) if isinstance(given, Node) else given
+        return mission_of_tree(tree, world_vocabulary(keywords, world), world)
+    compile = getattr(given, "mission", None)
+    if callable(compile):
+        made: Mission = compile(keywords=keywords, world=world)
+        return made
+    raise TypeError(f"a mission is a text, a path (pathlib.Path), a tree or a btlang.Mission, not {described(given)}")
+
+
+def mission_of_tree(
+    tree: Tree, vocabulary: Lexicon, world: Path | Source | None = None, facts: tuple[Fact, ...] = ()
+) -> Mission:
+    """Check a tree that no mission was compiled to, and make a mission of it. Raises MissionError."""
+    compilation = run_passes(Compilation(vocabulary, tree=tree))
+    return Mission(compilation.tree, vocabulary, world_of(world), tuple(compilation.warnings), facts=facts)
+
+
+def _source_of(text: object) -> Source:
+    if isinstance(text, Source):
+        return text
+    if isinstance(text, str):
+        return Source(text)
+    advice = "; parse_file reads a file" if isinstance(text, os.PathLike) else ""
+    raise TypeError(f"the text of a mission is a str, not {described(text)}{advice}")
 
 
 def format_mission(
     text: str | Source,
     *,
     parser: str = DEFAULT_PARSER,
-    keywords: Sequence[str | Entry | Callable[..., Any]] = (),
-    world: str | Source | None = None,
+    keywords: Keywords = (),
+    world: Path | Source | None = None,
     language: str = ENGLISH,
 ) -> str:
     """The text in the canonical layout: with the same words, comments, lines and tree.
@@ -109,7 +144,7 @@ def format_mission(
     """
     from btlang.printer.layout import laid_out
 
-    source = Source(text) if isinstance(text, str) else text
+    source = _source_of(text)
     if frontend_of(source) != "english":
         raise MissionError([diagnostic("BT001", Span(source, 0, 1), file=source.name, reason="it isn't English")])
     with gc_paused:
@@ -132,113 +167,7 @@ def value_key(name: str) -> str:
     return key_of(name.lower().split())
 
 
-def mission_vocabulary(
-    source: Source,
-    keywords: Sequence[str | Entry | Callable[..., Any]],
-    world: World,
-    language: str = ENGLISH,
-) -> tuple[Lexicon, World | str]:
-    """The words of a text and its world, with the files that it needs as its first lines say.
-
-    A given `world` wins over the text's own; `keywords` are added to its own. Raises MissionError.
-    """
-    first = _FIRST_LINE.match(source.text)
-    if first is None or _QUOTES.isdisjoint(first[1]):
-        return world_vocabulary(keywords, world, language), world
-    from btlang.diagnostics.reading import OUTSIDE, included_path, is_below
-    from btlang.frontends.mission.symbols.needs import WORDS, find_needs, unusable
-
-    vocabulary = load_vocabulary([word for word in keywords if not _is_xml(word)], None, language)
-    files: dict[str, str] = {}
-    lines: dict[str, Span] = {}
-    problems: list[Diagnostic] = []
-    for need in find_needs(split(source, vocabulary.orthography), vocabulary).found:
-        if need.role != WORDS and world is not None:
-            continue
-        path, real = included_path(need.path, source)
-        if not source.may_load:
-            problems.append(unusable(need, "only a mission that you name yourself can load files"))
-        elif not any(is_below(real, root) for root in source.roots):
-            problems.append(unusable(need, OUTSIDE))
-        elif os.path.exists(real) and not os.path.isfile(real):
-            problems.append(unusable(need, "it isn't a regular file"))
-        files[path], lines[path] = need.role, need.span
-    if problems:
-        raise MissionError(problems)
-    own = [path for path, role in files.items() if role == WORDS and path not in keywords]
-    chosen = next((path for path, role in files.items() if role != WORDS), world)
-    try:
-        return world_vocabulary([*own, *keywords], chosen, language), chosen
-    except MissionError as error:
-        raise MissionError([_at_line(problem, lines) for problem in error.diagnostics]) from None
-
-
-_QUOTES = frozenset("\"'“”„«»’‘")  # noqa: RUF001
-_FIRST_LINE = re.compile(r"(?:#[^\n]*\n|[\s\ufeff])*([^\n]*)")
-
-
-def _at_line(problem: Diagnostic, lines: Mapping[str, Span]) -> Diagnostic:
-    """A problem with a file that a mission needs, with the line that names it."""
-    line = lines.get(problem.span.source.name)
-    if line is None:
-        return problem
-    if not problem.span.source.text:
-        return problem.replace(span=line)  # type: ignore[no-any-return]
-    return problem.replace(notes=(*problem.notes, (line, "The mission needs this file.")))  # type: ignore[no-any-return]
-
-
-def world_vocabulary(
-    keywords: Sequence[str | Entry | Callable[..., Any]] = (),
-    world: str | Source | None = None,
-    language: str = ENGLISH,
-) -> Lexicon:
-    """The words of a language and of the keyword files, and the names of a world; `keywords` as for `parse_tree`.
-
-    Nodes of XML files get words that all others leave free, as `btc words --from` makes them. Raises MissionError.
-    """
-    find = partial(_names_by_type, world)
-    if isinstance(world, Source):
-        by_type, features = recent(_names, world.text, find)
-    else:
-        by_type, features = cached("world", [DEFAULT_WORLD if world is None else world], find)
-    others = [word for word in keywords if not _is_xml(word)]
-    vocabulary = load_vocabulary(others, by_type, language, features)
-    models = [str(word) for word in keywords if _is_xml(word)]
-    if not models:
-        return vocabulary
-
-    def make() -> Lexicon:
-        from btlang.backends.keyword_pack import vocabulary_of_models  # most missions have only other words
-
-        return vocabulary_of_models(models, vocabulary, partial(vocabulary_with, keywords=others, language=language))
-
-    try:
-        key = (id(vocabulary), *map(stamp, models))
-    except OSError:
-        return make().with_names(by_type, features)
-    return recent(_with_models, key, lambda: (vocabulary, make()))[1].with_names(by_type, features)
-
-
-_with_models: dict[tuple[object, ...], tuple[Lexicon, Lexicon]] = {}  # the first stays, so that no id is used again
-
-
-def _is_xml(word: object) -> bool:
-    return isinstance(word, str) and word.endswith(XML_ENDINGS)
-
-
-_names: dict[str, tuple[dict[str, tuple[str, ...]], Features]] = {}  # by the text of the world
-
-
-def _names_by_type(world: str | Source | None) -> tuple[dict[str, tuple[str, ...]], Features]:
-    from btlang.robots.world_file import WorldError, world_names
-
-    try:
-        names = world_names(world)
-    except WorldError as error:
-        from btlang.robots.data_file import as_mission_error
-
-        raise as_mission_error(error) from None
-    return names.by_type, names.features
+_LONGEST = 60  # characters of a mission in its repr
 
 
 class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
@@ -258,6 +187,14 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
 
     def __str__(self) -> str:
         return str(self.__rich__())
+
+    def __repr__(self) -> str:
+        count, warned = sum(1 for _ in self.tree.walk()), len(self.warnings)
+        warnings = f", {warned} warning{'s' * (warned > 1)}" if warned else ""
+        root = self.tree.root
+        words = self.label(root) if root.span is None else " ".join(root.span.text.split())
+        words = words if len(words) <= _LONGEST else f"{words[: _LONGEST - 3]}..."
+        return f"<Mission {words!r}, {count} node{'s' * (count > 1)}{warnings}>"
 
     def __rich__(self) -> Outline:
         from btlang.tree.dump import Outline

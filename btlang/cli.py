@@ -11,12 +11,13 @@ from functools import partial
 from importlib import import_module
 
 import btlang
-from btlang.api import Mission, format_mission, world_vocabulary
+from btlang.api import Mission, format_mission
 from btlang.cli_input import add_robot_files, hinting, mission_of, typed_source
 from btlang.cli_options import parsed, show_help, verb_parsers
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
 from btlang.diagnostics.report import Report
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.testing.names import is_test_file
 from btlang.text.output import listing_width, pass_on, show
 from btlang.text.source import Source

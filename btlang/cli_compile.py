@@ -44,9 +44,9 @@ def serve(options: argparse.Namespace) -> int:
 def _write_pages(options: argparse.Namespace) -> None:
     from functools import partial
 
-    from btlang.api import world_vocabulary
     from btlang.documents.command import write_pages
     from btlang.documents.project import read_documents
+    from btlang.mission_vocabulary import world_vocabulary
 
     vocabulary = world_vocabulary(options.keywords, options.world, options.language)
     project = read_documents(options.file, vocabulary, partial(parsed_mission, options=options))

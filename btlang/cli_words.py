@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from btlang.api import world_vocabulary
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.text.output import listing_width, show
 
 _SUCCESS = 0

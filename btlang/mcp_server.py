@@ -11,12 +11,13 @@ from functools import wraps
 from importlib.util import find_spec
 
 import btlang
-from btlang.api import Mission, parse_tree, world_vocabulary
+from btlang.api import Mission, parse_tree
 from btlang.diagnostics.data import as_data
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError, in_order
 from btlang.diagnostics.reading import MOST_BYTES
 from btlang.editing.partial import partial_reading
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.recording.trial import simulated
 from btlang.run.lines import Lines
 from btlang.text.source import Source, Span

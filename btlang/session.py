@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 import os
 import threading
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import AsyncIterator, Callable, Collection, Generator, Iterable, Iterator, Mapping
 from functools import cache, partial
+from importlib import import_module
 
 from btlang.backends.engine import bind_leaf
 from btlang.backends.touching import awaited
@@ -27,10 +28,11 @@ from btlang.run.bus import Bus
 from btlang.run.controls import Controls, disable
 from btlang.run.failure_history import FailureHistory
 from btlang.run.limits import RATES, SLOWEST
+from btlang.run.outcome import Outcome
 from btlang.run.recent import RecentEvents
 from btlang.run.report import failure_report
 from btlang.run.resumption import RunChoices
-from btlang.run.runner import Outcome, Runner, traced_engine
+from btlang.run.runner import Runner, traced_engine
 from btlang.run.snapshot import Follower, Snapshot
 from btlang.run.statuses import Status
 from btlang.text.escaping import RED
@@ -41,7 +43,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import TracebackType
-    from typing import Any, Protocol, overload
+    from typing import Any, Protocol, TypeAlias, overload
 
     from btlang.engine.instance import Hooks
     from btlang.pictures.terminal_map import TerminalMap
@@ -52,6 +54,7 @@ if TYPE_CHECKING:
     from btlang.tree.ast import Fact
     from btlang.tree.node import Node, Tree
     from btlang.vocabulary.lexicon import Lexicon
+    from btlang.vocabulary.load import Keywords
 
     class Runnable(Protocol):
         """What a session needs from a mission; see btlang.api.Mission."""
@@ -70,26 +73,48 @@ if TYPE_CHECKING:
 
         def label(self, node: Node) -> str: ...
 
+    class Compilable(Protocol):
+        """What a mission can be made from; see btlang.behavior.Behavior."""
+
+        def mission(self, *, keywords: Keywords = ..., world: str | Source | None = ...) -> Runnable: ...
+
+    Given: TypeAlias = Runnable | Compilable | Tree | Node | str | Source | os.PathLike[str]
+
+
+_MISSION_OF = "btlang.api", "mission_of"
+
 
 class Session:
     """A robot for many runs, one after the other. Its world continues from run to run; a mission's own names don't.
 
     `robot` is "simulated", "ros", "actions", the path of a robot file or the name of one that ships, or a function that
     takes a World and returns a btlang.run.connection.Connection. `over` is what the robot in a file runs on, by default
-    what the file says. `world` is the path of a world file, or its text, by default the world that ships. Raises
-    MissionError if the world or the robot can't be read (BT070, BT071) or ROS 2 can't be used (BT100), ValueError for
-    other names.
+    what the file says. `world` is the path of a world file, or its text, by default the world that ships. `keywords`
+    are further words of the texts that it runs, as for `btlang.parse_tree`. Raises MissionError if the world or the
+    robot can't be read (BT070, BT071) or ROS 2 can't be used (BT100), ValueError for other names.
     """
 
     def __init__(
-        self, robot: str | Connect = "simulated", *, world: str | Source | None = None, over: str | None = None
+        self,
+        robot: str | os.PathLike[str] | Connect = "simulated",
+        *,
+        world: str | os.PathLike[str] | Source | None = None,
+        over: str | None = None,
+        keywords: Keywords = (),
     ) -> None:
-        connect = connector(robot, over) if isinstance(robot, str) else robot
-        self.world = read_world(world, getattr(connect, "body", None))
+        if not isinstance(robot, str | os.PathLike) and not callable(robot):
+            raise TypeError(f"robot is a name, a path or a function of a World, not {robot!r}")
+        connect = robot if callable(robot) else connector(os.fspath(robot), over)
+        given = os.fspath(world) if isinstance(world, os.PathLike) else world
+        self._read_with = {"keywords": keywords, "world": given}
+        self.world = read_world(given, getattr(connect, "body", None))
         self.connection: Connection = connect(self.world)
         self._is_simulated = getattr(connect, "over", "") == "simulated"
         self.current: Run | None = None
         """The latest run."""
+
+    def __repr__(self) -> str:
+        return f"<Session on {type(self.robot).__name__}{f', {self.current!r}' if self.current is not None else ''}>"
 
     def map(self, unicode: bool) -> TerminalMap | None:
         """The world for a terminal, if the robot moves in it, and not in a room of which it may be no map."""
@@ -106,7 +131,7 @@ class Session:
 
     def prepare(
         self,
-        mission: Runnable,
+        mission: Given,
         *,
         speed: float | str = "real",
         rate: float = 20.0,
@@ -119,29 +144,36 @@ class Session:
     ) -> Run:
         """A run that hasn't started yet: for `Run.execute` and `Run.tick`.
 
+        `mission` is a btlang.Mission, the text of one, the path of a file (pathlib.Path), a tree or a behavior. Texts
+        are read with the world and `keywords` of this session.
+
         `speed` is "real", "max" or a factor of real time. `rate` is in ticks per second of mission time, and the
         mission ends after `time_limit` seconds. `sinks` get events (see btlang.run.events) according to their policy
         (see btlang.run.bus). `values` are initial blackboard entries, or values by their names in the mission.
         `controls` may be created before the run. Chance follows from `seed`, by default that of the world, or another
         one for each run. `hooks` are those of an engine.
 
-        Raises MissionError if a command can't run (BT080) or the robot lacks something it needs (BT101), ValueError for
-        another speed or rate, RuntimeError during another run.
+        Raises MissionError if the text has mistakes, a command can't run (BT080) or the robot lacks something it needs
+        (BT101), ValueError or TypeError for another speed, rate or mission, RuntimeError during another run.
         """
+        found = self._mission_of(mission)
         if self.current is not None and self.current.is_under_way:
             raise RuntimeError("another run is active; a session has one run at a time")
         factor = {"real": 1.0, "max": math.inf}.get(speed) if isinstance(speed, str) else speed
         if factor is None or not factor >= SLOWEST:
             raise ValueError(f'speed must be "real", "max" or a number from {SLOWEST} on, not {speed!r}')
+        for name, number in (("rate", rate), ("time_limit", time_limit)):
+            if not isinstance(number, int | float | None):
+                raise TypeError(f"{name} is a number, not {number!r}")
         if not RATES[0] <= rate <= RATES[1]:
             raise ValueError(f"rate must be from {RATES[0]:g} to {RATES[1]:g} ticks a second, not {rate!r}")
         chance = self.world.seed if seed is None else seed
         if isinstance(values, Mapping):
             values = Blackboard(values={key_of(name.lower().split()): value for name, value in values.items()})
-        self.current = Run(mission, self.connection, factor, rate, time_limit, sinks, values, controls, chance, hooks)
+        self.current = Run(found, self.connection, factor, rate, time_limit, sinks, values, controls, chance, hooks)
         return self.current
 
-    def restore(self, mission: Runnable, saved: Mapping[str, Any], **options: Any) -> Run:
+    def restore(self, mission: Given, saved: Mapping[str, Any], **options: Any) -> Run:
         """Like `prepare`, for a run that goes on where another one was saved, maybe in another process.
 
         Positions, counts, timers, values and mission time are as they were; commands that were running start again.
@@ -151,17 +183,24 @@ class Session:
         run._restore(saved)
         return run
 
-    def run(self, mission: Runnable, **options: Any) -> Run:
-        """Runs a mission to its end, in this thread; the options are those of `prepare`. Ctrl-C ends it."""
+    def run(self, mission: Given, **options: Any) -> Run:
+        """Runs a mission to its end, in this thread; what it takes is as for `prepare`. Ctrl-C ends it."""
         run = self.prepare(mission, **options)
         run.execute()
         return run
 
-    def start(self, mission: Runnable, **options: Any) -> Run:
+    def start(self, mission: Given, **options: Any) -> Run:
         """Like `run`, but in a separate thread; returns at once."""
         run = self.prepare(mission, **options)
         run.start()
         return run
+
+    def _mission_of(self, given: Given) -> Runnable:
+        if hasattr(given, "says_ids"):
+            return given  # type: ignore[return-value]
+        module, function = _MISSION_OF
+        made: Runnable = getattr(import_module(module), function)(given, **self._read_with)
+        return made
 
     def emergency_stop(self) -> None:
         """Stops the robot at once, from any thread, and ends the current or prepared run before its next tick."""
@@ -189,7 +228,8 @@ class Session:
 class Run:
     """One execution of a mission, made by a Session. All methods except `execute`, `tick` and `halt` are thread-safe.
 
-    It ends once. After that, only its results are available.
+    It ends once. After that, only its results are available. `async for event in run` gives the events, and
+    `await run` the outcome; both start a run that hasn't started yet, in a thread of its own.
     """
 
     def __init__(
@@ -231,10 +271,20 @@ class Run:
             controls=self.controls, pace=connection.pace,
         )  # fmt: skip
 
+    def __repr__(self) -> str:
+        if self.outcome is not None:
+            return f"<Run {self.id[:8]}, ended: {self.outcome.status.name} after {self.outcome.seconds:.1f} s>"
+        return f"<Run {self.id[:8]}, {'under way' if self._under_way else 'not started'}, {self.seconds:.1f} s>"
+
     @property
     def nodes(self) -> Engine:
         """The nodes of the tree by their numbers, after expansion of subtrees."""
         return self._engine
+
+    @property
+    def seconds(self) -> float:
+        """The mission time."""
+        return self.bus.clock.now
 
     @property
     def is_under_way(self) -> bool:
@@ -245,8 +295,7 @@ class Run:
         """Runs to the end, in this thread, and brings the robot to rest. Once for each run."""
         self._under_way = True
         try:
-            outcome: Outcome = self._runner.run().replace(why=self.why, statuses=self.statuses)
-            self.outcome = outcome
+            self.outcome = outcome = self._explained(self._runner.run())
             return outcome
         finally:
             self._runner.end_requests()
@@ -280,9 +329,17 @@ class Run:
             raise RuntimeError("only a run that was started can be waited for")
         return self.outcome
 
-    def tick(self) -> int:
-        """Ticks once and advances the world by one period; returns the status (see btlang.engine.status)."""
-        return self._runner.tick()
+    def tick(self, seconds: float | None = None) -> Status:
+        """Ticks once, in a loop of your own, and returns the status; then that much mission time passes.
+
+        By default it is one period of the rate. Mission time, and so a simulated world, only goes on by that: pass the
+        time since the last tick on a robot that moves by itself. Once the tree completes there is an `outcome`; another
+        tick starts it again. Raises ValueError for a time that isn't positive.
+        """
+        status = Status(self._runner.tick(seconds))
+        is_over = status not in (Status.RUNNING, Status.IDLE)
+        self.outcome = self._explained(self._runner.completed(status)) if is_over else None
+        return status
 
     def halt(self) -> None:
         """Halts every running leaf and stops the robot; the next tick starts over."""
@@ -356,6 +413,19 @@ class Run:
         """The latest events (up to btlang.run.recent.MOST_EVENTS), then new ones until the run is over."""
         return self._recent.events()
 
+    def __aiter__(self) -> AsyncIterator[Event]:
+        if not self._under_way and self.outcome is None:
+            self.start()
+        return self._recent.events_async()
+
+    def __await__(self) -> Generator[Any, None, Outcome]:
+        async def ended() -> Outcome:
+            async for _ in self:
+                pass
+            return self.wait()  # the thread is at its end
+
+        return ended().__await__()
+
     def snapshot(self) -> Snapshot:
         """The statuses of all nodes and the state of the robot, after the event with the number in it."""
         return self.follower.snapshot(self.mission.label)
@@ -371,6 +441,9 @@ class Run:
     def sink_errors(self) -> list[Exception]:
         """Exceptions from sinks. Such a sink gets no more events, and the mission continues."""
         return self.bus.errors
+
+    def _explained(self, outcome: Outcome) -> Outcome:
+        return outcome.replace(why=self.why, statuses=self.statuses)  # type: ignore[no-any-return]
 
     def _work(self) -> None:
         try:

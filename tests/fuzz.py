@@ -18,11 +18,12 @@ from collections import Counter
 from collections.abc import Callable
 from functools import partial
 
-from btlang.api import Mission, world_vocabulary
+from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.examples import examples
 from btlang.frontends.mission.completion.completer import completions
 from btlang.frontends.mission.reader import read_mission
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import compile_mission
 from btlang.printer.layout import laid_out
 from btlang.text.source import Source

@@ -17,6 +17,7 @@ class Trial:
         self.mission = parse_tree(mission, **options) if isinstance(mission, str) else mission
         self.controls = Controls()
         self.latest: Run | None = None
+        self._by_hand = False
         self._given = session
         self._session = session
 
@@ -31,8 +32,9 @@ class Trial:
 
     def tick(self) -> int:
         """By hand, in a run that goes on until `run` begins another one."""
-        if self.latest is None or self.latest.outcome is not None:
+        if not self._by_hand:
             self._prepared("simulated", speed="max")
+            self._by_hand = True
         assert self.latest is not None
         return self.latest.tick()
 
@@ -61,5 +63,6 @@ class Trial:
         if self._given is None:
             self._session = Session(robot, world=self.mission.world)
         assert self._session is not None
+        self._by_hand = False
         self.latest = self._session.prepare(self.mission, controls=self.controls, **options)
         return self.latest

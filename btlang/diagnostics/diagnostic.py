@@ -24,6 +24,9 @@ class Diagnostic(Record):
     fix: tuple[Span, str] | None = None
     readings: tuple[tuple[Span, str], ...] = ()
 
+    def __repr__(self) -> str:
+        return f"<Diagnostic {self.code} at {self.span.place}: {self.message}>"
+
     @property
     def kind(self) -> Code:
         """The entry of the table of codes."""

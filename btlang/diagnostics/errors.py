@@ -16,6 +16,9 @@ class MissionError(Exception):
         self.diagnostics = in_order(diagnostics)
         super().__init__(self.diagnostics)
 
+    def __repr__(self) -> str:
+        return f"<MissionError {', '.join(d.code for d in self.diagnostics)}>"
+
     def __str__(self) -> str:
         return "\n\n".join(render(d) for d in self.diagnostics)
 

@@ -9,7 +9,7 @@ from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.compile import compile_instances, expand
 from btlang.engine.instance import EngineError, EngineState, Fault, NodeInstance, blackboard_key
-from btlang.engine.leaves.leaf import REFUSED, LeafBinding, reason_text, unheard
+from btlang.engine.leaves.leaf import REFUSED, ActionFailed, LeafBinding, reason_text, unheard
 from btlang.engine.recursion import allowing_depth
 from btlang.engine.saving import restore_nodes, save_nodes
 from btlang.engine.script.values import as_text
@@ -88,8 +88,10 @@ class Engine:
         self._beside: set[object] = set()
         own = {"wake": self._wake, "wake_at": clock.leaf_wake_at, "progress": unheard, "beside": self._beside}
         self._state = EngineState(bind, clock, {**own, **services}, enums, stopwatch, proxies)
-        if on_warning is not None:
-            self._state.on_warning = lambda fault: on_warning(self._failure(fault))
+        self.raised: dict[int, BaseException] = {}
+        """The latest exception of each leaf that raised one other than ActionFailed, by the number of its node."""
+        self._on_warning = on_warning
+        self._state.on_warning = self._warned
         with gc_paused:
             self._instances = expand(tree, self.blackboard, self._state)
             self._trace = None if listener is None else StatusTrace(self._state, listener)
@@ -281,6 +283,13 @@ class Engine:
     def _with_values(self, instance: NodeInstance) -> Node:
         ports = tuple((port, _valued(instance.scope, port, text)) for port, text in instance.node.ports)
         return instance.node.replace(ports=ports)  # type: ignore[no-any-return]
+
+    def _warned(self, fault: Fault | NodeInstance) -> None:
+        failure = self._failure(fault)
+        if failure.exception is not None and not isinstance(failure.exception, ActionFailed):
+            self.raised[failure.index] = failure.exception
+        if self._on_warning is not None:
+            self._on_warning(failure)
 
     def _wake(self) -> None:
         if self.on_wake is not None:

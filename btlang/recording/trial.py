@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.run.events import Sink
-    from btlang.run.runner import Outcome
+    from btlang.run.outcome import Outcome
     from btlang.tree.node import Node, Tree
     from btlang.vocabulary.lexicon import Lexicon
 

@@ -7,12 +7,13 @@ import re
 from collections.abc import Mapping, Sequence
 from textwrap import indent
 
-from btlang.api import Mission, mission_vocabulary
+from btlang.api import Mission
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.blackboard import Blackboard
 from btlang.frontends.mission.reader import DEFAULT_PARSER, lexed, read_mission
 from btlang.frontends.mission.tokens.lexer import Lexer
+from btlang.mission_vocabulary import mission_vocabulary
 from btlang.passes import compile_mission, errors_of, run_passes
 from btlang.passes.compilation import Compilation
 from btlang.record import Record

@@ -12,13 +12,13 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
 from btlang.diagnostics.render import render
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.status import FAILURE, SKIPPED
+from btlang.engine.status import FAILURE
 from btlang.run.controls import Controls
 from btlang.run.emergency import PATIENCE, emergency_signal
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines, brief
+from btlang.run.outcome import Outcome
 from btlang.run.overruns import are_many
-from btlang.run.runner import Outcome
 from btlang.run.sampler import Sampler
 from btlang.run.standstill import Standstill
 from btlang.run.world_input import WorldInput
@@ -147,7 +147,7 @@ def run_mission(
     if outcome.status == FAILURE:
         show(outcome.why(colour=has_colour(sys.stderr)), stream=sys.stderr)
     elif not quiet:
-        show(_ending(outcome))
+        show(str(outcome))
     lost = [error for error in run.sink_errors if isinstance(error, OSError)]
     for failed in [error for error in run.sink_errors if not isinstance(error, OSError)]:
         show(f"An event sink failed: {failed}", sys.stderr)
@@ -233,17 +233,3 @@ def _opened(log: str | None) -> Iterator[TextIO | None]:
 def _too_slow(outcome: Outcome, node: Node, seconds: float, label: Callable[[Node], str]) -> str:
     ticks = f"{outcome.overruns} of {outcome.ticks} tick{'s' * (outcome.ticks > 1)} took too long"
     return f'{ticks}; the slowest leaf was "{label(node)}" with {brief(seconds)} s.'
-
-
-def _ending(outcome: Outcome) -> str:
-    seconds = f"{outcome.seconds:.1f} s"
-    rest = "" if outcome.standstill.alarming else f"; {outcome.standstill}"
-    if outcome.stopped == "interrupted":
-        return f"Interrupted after {seconds}{rest}."
-    if outcome.stopped == "emergency stop":
-        return f"Emergency stop after {seconds}{rest}."
-    if outcome.stopped:
-        return f"Stopped after {seconds}, as asked{rest}."
-    if outcome.status == SKIPPED:
-        return f"Nothing to do ({seconds}): every command was skipped."
-    return f"The mission succeeded in {seconds}."

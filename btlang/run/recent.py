@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import suppress
 from threading import Condition
 
 from btlang.run.bus import INLINE
@@ -27,6 +28,7 @@ class RecentEvents:
         self._kept = self._count = 0
         self._over = False
         self._changed = Condition()
+        self._waiting: list[Callable[[], None]] = []  # what wakes the readers in loops of asyncio
 
     def __call__(self, event: Event) -> None:
         if isinstance(event, PeriodPassed):
@@ -37,13 +39,13 @@ class RecentEvents:
             self._count += 1
             while self._kept > MOST_EVENTS and len(self._events) > 1:
                 self._kept -= self._events.popleft().count
-            self._changed.notify_all()
+            self._notify()
 
     def close(self) -> None:
         """The run is over."""
         with self._changed:
             self._over = True
-            self._changed.notify_all()
+            self._notify()
 
     def events(self) -> Iterator[Event]:
         """The latest ones, then new ones until `close`."""
@@ -52,9 +54,43 @@ class RecentEvents:
             with self._changed:
                 while self._count == given and not self._over:
                     self._changed.wait()
-                new = min(self._count - given, len(self._events))
-                batch = list(self._events)[len(self._events) - new :]
-                given = self._count
+                batch, given = self._after(given)
             if not batch:
                 return
             yield from batch
+
+    async def events_async(self) -> AsyncIterator[Event]:
+        """Like `events`, for a task of asyncio, which doesn't block its loop meanwhile."""
+        from asyncio import Event as Signal
+        from asyncio import get_running_loop
+
+        loop, arrived, given = get_running_loop(), Signal(), 0
+
+        def wake() -> None:
+            with suppress(RuntimeError):  # the loop is closed
+                loop.call_soon_threadsafe(arrived.set)
+
+        self._waiting.append(wake)
+        try:
+            while True:
+                arrived.clear()
+                with self._changed:
+                    batch, given = self._after(given)
+                    over = self._over
+                for event in batch:
+                    yield event
+                if over:
+                    return
+                await arrived.wait()
+        finally:
+            self._waiting.remove(wake)
+
+    def _after(self, given: int) -> tuple[list[Event], int]:
+        """The kept ones behind the first `given`, and how many there have been now."""
+        new = min(self._count - given, len(self._events))
+        return list(self._events)[len(self._events) - new :], self._count
+
+    def _notify(self) -> None:
+        self._changed.notify_all()
+        for wake in tuple(self._waiting):
+            wake()

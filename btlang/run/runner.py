@@ -12,16 +12,16 @@ from btlang.engine.blackboard import Blackboard
 from btlang.engine.engine import Engine, Failure
 from btlang.engine.leaves.leaf import LeafBinding, raised_in
 from btlang.engine.status import IDLE, NAMES, RUNNING
-from btlang.record import Record
 from btlang.run.bus import Bus
 from btlang.run.controls import Controls, disable
 from btlang.run.events import Ended, PeriodPassed, StatusesChanged, Troubled, Warned
+from btlang.run.outcome import EMERGENCY, SUSPENDED, Outcome
 from btlang.run.overruns import Overruns
 from btlang.run.pace import Pace
 from btlang.run.robot_state import read_robot
 from btlang.run.standstill import Standstill, standstill_of
 from btlang.run.statuses import Status
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -53,40 +53,9 @@ if TYPE_CHECKING:
         def close(self, patience: float = 0.0) -> list[Failure]: ...
 
 
-SUSPENDED, EMERGENCY = "suspended", "emergency stop"
 _LOOK = 0.5  # seconds of real time after which who waits for a tick looks whether the run goes on
 _REST = 2.0  # seconds of the mission that a robot gets to come to rest
 _PATIENCE = 2.0  # seconds of real time that background leaves get to end after the last halt
-
-
-class Outcome(Record, uncompared=("why", "statuses")):
-    """How a run ended.
-
-    `why()` is why it failed, as `btc run` says it, "" where it did not; `statuses()` are those of the nodes at the end,
-    by their words.
-
-    `stopped` is "" where the tree completed, else (status IDLE) "time limit", "interrupted", "suspended" (it can go on
-    in another run) or "emergency stop".
-    `seconds` are those of the mission, without the time in which the robot came to rest. `overruns` are the ticks that
-    took too long, `worst` the slowest leaf in one and its seconds; None where no leaf was to blame, or nobody looked.
-    `standstill` says whether the robot came to rest.
-    """
-
-    status: Status
-    seconds: float
-    ticks: int
-    failure: Failure | None
-    stopped: str = ""
-    overruns: int = 0
-    worst: tuple[Node, float] | None = None
-    standstill: Standstill = Standstill()
-    why: Callable[..., str] = str
-    statuses: Callable[[], Mapping[str, Status]] = dict
-
-    @property
-    def succeeded(self) -> bool:
-        """Whether the mission did what it should. One that had nothing to do did, too (status SKIPPED)."""
-        return self.status in (Status.SUCCESS, Status.SKIPPED)
 
 
 def traced_engine(
@@ -186,21 +155,35 @@ class Runner:
         """Halts the tree and stops the robot, outside of run(); the next tick starts the tree again."""
         self._end()
 
-    def tick(self) -> int:
-        """One period: ticks the tree, then, unless it completed, moves clock and robot on. Returns the status.
+    def tick(self, seconds: float | None = None) -> int:
+        """Ticks the tree, then, unless it completed, moves clock and robot on by `seconds`, or one period. Returns the
+        status.
 
         After an emergency stop, also one during this tick, it halts the tree instead and returns IDLE.
         """
+        if seconds is not None and not 0 < seconds < math.inf:
+            raise ValueError(f"the time that passes behind a tick must be positive, not {seconds!r}")
         status = IDLE if self.controls.emergency else self._tick(self._engine)
         if self.controls.emergency:
             self._end()
             self.controls.take_emergency()
             return IDLE
         if status == RUNNING:
-            self._advance(self._period_left())
+            self._advance(self._period_left() if seconds is None else seconds)
         else:
             self._engine.close()
         return status
+
+    def completed(
+        self, status: Status, stopped: str = "", seconds: float | None = None, standstill: Standstill | None = None
+    ) -> Outcome:
+        """The outcome of a tree that came to this status, or was `stopped`, after so many seconds, by default now."""
+        failure = None if stopped else self._engine.failure
+        count, worst = (self._overruns.count, self._overruns.worst) if self._overruns is not None else (0, None)
+        standstill = Standstill() if standstill is None else standstill
+        raised = tuple(getattr(self._engine, "raised", {}).values())
+        seconds = self._clock.now - self._began if seconds is None else seconds
+        return Outcome(status, seconds, self.ticks, failure, stopped, count, worst, standstill, exceptions=raised)
 
     def between_ticks(self, call: Callable[[], Any]) -> Any:
         """What `call` returns or raises, between two ticks of `run`. From any thread; waits until then."""
@@ -253,9 +236,7 @@ class Runner:
             standstill = self._end(suspends=self.controls.suspends)
         if self.controls.emergency:
             status, stopped = IDLE, EMERGENCY
-        failure = None if stopped else self._engine.failure
-        count, worst = (self._overruns.count, self._overruns.worst) if self._overruns is not None else (0, None)
-        outcome = Outcome(Status(status), seconds, self.ticks, failure, stopped, count, worst, standstill)
+        outcome = self.completed(Status(status), stopped, seconds, standstill)
         self._bus.emit(Ended, *_ending(outcome))
         return outcome
 

@@ -13,7 +13,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.engine.leaves.leaf import described
 from btlang.engine.status import RUNNING
 from btlang.house_rules import HouseRules
-from btlang.run.runner import EMERGENCY, SUSPENDED
+from btlang.run.outcome import EMERGENCY, SUSPENDED
 from btlang.session import Run, Session
 from btlang.task.database import StoreError
 from btlang.task.emergency import EmergencyStop
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.run.events import Sink
+    from btlang.run.outcome import Outcome
     from btlang.run.robot_state import RobotState
-    from btlang.run.runner import Outcome
 
 _RETRY = 1.0  # seconds of real time after which a store that could not be written to is tried again
 _LOOK = 0.05  # seconds of real time for which an executor waits that can't do anything

@@ -13,8 +13,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.api import Mission
     from btlang.run.events import Sink
+    from btlang.run.outcome import Outcome
     from btlang.run.robot_state import RobotState
-    from btlang.run.runner import Outcome
     from btlang.session import Run
 
 

@@ -19,7 +19,7 @@ from btlang.run.events import (
     Seen,
     StatusesChanged,
 )
-from btlang.run.runner import Outcome
+from btlang.run.outcome import Outcome
 from btlang.testing.commands import Command
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Node

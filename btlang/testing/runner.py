@@ -11,7 +11,7 @@ from btlang.record import Record
 from btlang.robots.registry import Connector, body_of
 from btlang.robots.world import World
 from btlang.run.controls import Controls
-from btlang.run.runner import Outcome
+from btlang.run.outcome import Outcome
 from btlang.session import Run, Session
 from btlang.testing.chaos import Chaos
 from btlang.testing.commands import Command, find_command

@@ -13,13 +13,14 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 
-from btlang.api import Mission, parse_tree, world_vocabulary
+from btlang.api import Mission, parse_tree
 from btlang.components.words import words_of
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import OUTSIDE, included_path, is_below, read_source
 from btlang.frontends.mission.symbols.needs import WORDS as NEEDED_WORDS
 from btlang.house_rules import house_rules
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.printer.layout import laid_out
 from btlang.record import Record
 from btlang.robots.registry import body_of

@@ -17,9 +17,12 @@ from btlang.vocabulary.shipped import ENGLISH, keyword_files, language_folder, l
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, TypeAlias
 
     from btlang.vocabulary.keyword_file import KeywordFile
+
+    Keywords: TypeAlias = Sequence[str | os.PathLike[str] | Entry | Callable[..., Any]]
+    """Paths of keyword files, names of installed packs, entries, and functions that carry one."""
 
 ENTRY_POINTS = "btlang.keywords"
 

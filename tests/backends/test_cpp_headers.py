@@ -12,8 +12,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from btlang.api import world_vocabulary
 from btlang.backends.btcpp import to_xml
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.tree.node import Node, Tree
 from tests.profiles import amount
 

@@ -7,12 +7,13 @@ from pathlib import Path
 import pytest
 from hypothesis import given, note
 
-from btlang.api import parse_tree, world_vocabulary
+from btlang.api import parse_tree
 from btlang.backends.english import to_english
 from btlang.backends.english.editors import without_editors
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.mission.reader import read_mission
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import lower_mission
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.two_readings import two_readings

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from btlang.api import parse_tree, world_vocabulary
+from btlang.api import parse_tree
 from btlang.backends.english import to_english
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.tree.node import Node, Tree
 
 WAVE, NOD, TURN, LOW = Node("Wave"), Node("Nod"), Node("TurnLeft"), Node("BatteryLow")

@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 
-from btlang.api import parse_tree, world_vocabulary
+from btlang.api import parse_tree
 from btlang.backends.english import to_english
 from btlang.frontends.mission.reader import read_mission
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import lower_mission
 from btlang.text.source import Source
 from btlang.tree import ast

@@ -13,12 +13,13 @@ from typing import Any
 import pytest
 from jsonschema import Draft202012Validator
 
-from btlang.api import parse_file, parse_tree, world_vocabulary
+from btlang.api import parse_file, parse_tree
 from btlang.backends.grammar.forms import FORMS
 from btlang.backends.grammar.targets import GRAMMARS
 from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import PARSERS, read_mission
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import vocabulary_with

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.api import parse_file, parse_tree, world_vocabulary
+from btlang.api import parse_file, parse_tree
 from btlang.backends.keyword_pack import KeywordPack, keyword_pack, leaves_of, pack_of_files
 from btlang.backends.keywords import is_unknown
 from btlang.backends.wording import SpokenPorts, phrases
@@ -16,6 +16,7 @@ from btlang.cli import main
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.files import read_files
 from btlang.frontends.btcpp.models import nav2_models
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.printer.phrase import leaf_words
 from btlang.text.source import Source
 from btlang.tree.dump import plain

@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given, reject
 from hypothesis import strategies as st
 
-from btlang.api import world_vocabulary
 from btlang.backends.btcpp import to_xml
 from btlang.backends.btcpp.onto import written_onto
 from btlang.backends.english import to_english
@@ -18,6 +17,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.mission.reader import read_mission
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import lower_mission
 from btlang.text.source import Source
 from btlang.tree.dump import plain

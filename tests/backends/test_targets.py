@@ -14,11 +14,12 @@ import pydot
 import pytest
 
 import btlang
-from btlang.api import Mission, format_mission, world_vocabulary
+from btlang.api import Mission, format_mission
 from btlang.backends.targets import TARGETS, compiled, target_of
 from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.json.reader import read_json
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree

@@ -18,7 +18,6 @@ from pathlib import Path
 from statistics import median
 
 import btlang
-from btlang.api import world_vocabulary
 from btlang.backends.engine import bind_leaf
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
@@ -28,6 +27,7 @@ from btlang.frontends.mission.reader import PARSERS, read_mission
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.gc_pause import gc_paused
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from tests.benchmarks.missions import mission
 

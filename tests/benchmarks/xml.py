@@ -12,10 +12,10 @@ from collections.abc import Callable
 from functools import partial
 from xml.etree import ElementTree
 
-from btlang.api import world_vocabulary
 from btlang.backends.btcpp import to_xml
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.gc_pause import gc_paused
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 
 LEAVES = 4  # below each Fallback

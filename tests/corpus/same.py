@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from functools import cache
 
-from btlang.api import world_vocabulary
 from btlang.backends.btcpp import to_xml
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.btcpp.scan import scanned
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.tree.node import Tree
 from btlang.vocabulary.lexicon import Lexicon

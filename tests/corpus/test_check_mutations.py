@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from btlang.api import world_vocabulary
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.reading import read_source
 from btlang.diagnostics.render import render
 from btlang.frontends.btcpp.files import XmlFiles
 from btlang.frontends.btcpp.project import read_project
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.projects.checking import project_problems
 from btlang.text.source import Source
 from tests.corpus.test_mutations import mutated

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from btlang.api import world_vocabulary
 from btlang.cli import main
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.robots import simulation
 from btlang.robots.simulated import SimulatedRobot
 

@@ -9,11 +9,12 @@ from pathlib import Path
 import pytest
 
 import btlang
-from btlang.api import format_mission, world_vocabulary
+from btlang.api import format_mission
 from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.completion.completer import completions
 from btlang.frontends.mission.reader import PARSERS
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.printer.mission import english
 from btlang.repl.draft import MissionDraft
 from btlang.ros.mission.setup import Setup

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from btlang.api import world_vocabulary
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.printer.phrase import leaf_words
 from btlang.vocabulary import node_words
 from btlang.vocabulary.lexicon import Lexicon

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from btlang.api import world_vocabulary
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import read_mission
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import compile_mission
 from btlang.printer import blocks
 from btlang.printer.mission import english

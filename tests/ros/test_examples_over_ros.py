@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from btlang.api import world_vocabulary
 from btlang.cli import main
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 from tests.examples.cases import CASES
 from tests.examples.test_examples import mission, words_of

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.api import world_vocabulary
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.robots.body_file import standard_body
 from btlang.ros.robot_interface import interfaces
 from btlang.vocabulary.capabilities import CAPABILITIES, POSTURE

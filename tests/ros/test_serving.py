@@ -15,8 +15,8 @@ from nav_msgs.msg import Odometry
 from std_srvs.srv import Trigger
 
 import btlang
-from btlang.api import world_vocabulary
 from btlang.cli import main
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 from tests.profiles import only_long
 from tests.ros.client import Client, Goal, answer

@@ -17,7 +17,8 @@ from btlang.ros.pace import RosPace
 from btlang.run import pace
 from btlang.run.bus import Bus
 from btlang.run.events import PeriodPassed
-from btlang.run.runner import Outcome, Runner
+from btlang.run.outcome import Outcome
+from btlang.run.runner import Runner
 from btlang.tree.node import Node, Tree
 from tests.engine.scripted import n
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from btlang.api import world_vocabulary
 from btlang.diagnostics.errors import MissionError
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.vocabulary import cache

@@ -13,9 +13,9 @@ from typing import Any
 
 import pytest
 
-from btlang.api import world_vocabulary
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.mission.reader import read_mission
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import compile_mission
 from btlang.printer.mission import english
 from btlang.robots.world_file import world_names

@@ -6,12 +6,12 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from btlang.api import world_vocabulary
 from btlang.arguments import between, node_name, real_speed
 from btlang.backends.engine import bind_leaf
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.instance import EngineError
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.robots.needs import lacking
 from btlang.robots.registry import connector
 from btlang.ros.available import require_interfaces, require_ros

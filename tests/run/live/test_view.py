@@ -15,8 +15,9 @@ from collections.abc import Callable, Iterator
 import pytest
 
 import btlang
-from btlang.api import Mission, world_vocabulary
+from btlang.api import Mission
 from btlang.engine.status import SUCCESS
+from btlang.mission_vocabulary import world_vocabulary
 from btlang.run.live.capture import Capture
 from btlang.run.live.keys import Keys
 from btlang.run.live.view import LiveView

@@ -1,0 +1,64 @@
+"""How a run ended."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from btlang.engine.engine import Failure
+from btlang.record import Record
+from btlang.run.standstill import Standstill
+from btlang.run.statuses import Status
+from btlang.tree.node import Node
+
+SUSPENDED, EMERGENCY = "suspended", "emergency stop"
+
+
+class Outcome(Record, uncompared=("why", "statuses", "exceptions")):
+    """How a run ended, which `print(outcome)` says as `btc run` does.
+
+    `why()` is why it failed, as `btc run` says it, "" where it did not; `statuses()` are those of the nodes at the end,
+    by their words. `exceptions` are those that leaves have raised, except ActionFailed: the latest of each leaf, also
+    where the mission went on.
+
+    `stopped` is "" where the tree completed, else (status IDLE) "time limit", "interrupted", "suspended" (it can go on
+    in another run) or "emergency stop".
+    `seconds` are those of the mission, without the time in which the robot came to rest. `overruns` are the ticks that
+    took too long, `worst` the slowest leaf in one and its seconds; None where no leaf was to blame, or nobody looked.
+    `standstill` says whether the robot came to rest.
+    """
+
+    status: Status
+    seconds: float
+    ticks: int
+    failure: Failure | None
+    stopped: str = ""
+    overruns: int = 0
+    worst: tuple[Node, float] | None = None
+    standstill: Standstill = Standstill()
+    why: Callable[..., str] = str
+    statuses: Callable[[], Mapping[str, Status]] = dict
+    exceptions: tuple[BaseException, ...] = ()
+
+    def __repr__(self) -> str:
+        failure = f": {self.failure.reason}" if self.failure is not None else ""
+        return f"<Outcome {self.stopped or self.status.name} after {self.seconds:.1f} s{failure}>"
+
+    def __str__(self) -> str:
+        if self.failure is not None:
+            return self.why() or f"The mission failed after {self.seconds:.1f} s."
+        seconds = f"{self.seconds:.1f} s"
+        rest = "" if self.standstill.alarming else f"; {self.standstill}"
+        if self.stopped == "interrupted":
+            return f"Interrupted after {seconds}{rest}."
+        if self.stopped == EMERGENCY:
+            return f"Emergency stop after {seconds}{rest}."
+        if self.stopped:
+            return f"Stopped after {seconds}, as asked{rest}."
+        if self.status == Status.SKIPPED:
+            return f"Nothing to do ({seconds}): every command was skipped."
+        return f"The mission succeeded in {seconds}."
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether the mission did what it should. One that had nothing to do did, too (status SKIPPED)."""
+        return self.status in (Status.SUCCESS, Status.SKIPPED)

@@ -1,0 +1,148 @@
+"""What sessions take, and how runs are ticked, awaited and shown."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import btlang
+from btlang.run.events import Ended, Said
+from btlang.tree.node import Node
+
+
+@btlang.action("stumble")
+def stumble() -> None:
+    raise ZeroDivisionError("over a stone")
+
+
+def test_a_session_takes_texts_paths_missions_and_trees(tmp_path: Path) -> None:
+    path = tmp_path / "mission.txt"
+    path.write_text("say hello", encoding="utf-8")
+    node = Node("Say", ports=(("text", "hello"),))
+    xml = btlang.parse_tree("say hello").to("xml")
+    assert isinstance(xml, str)
+    for given in ("say hello", path, btlang.parse_tree("say hello"), btlang.parse_tree("say hello").tree, node, xml):
+        said: list[Any] = []
+        with btlang.Session() as session:
+            run = session.run(given, speed="max", sinks=[said.append])
+        assert run.outcome is not None
+        assert run.outcome.succeeded
+        assert [event.text for event in said if isinstance(event, Said)] == ["hello"]
+
+
+def test_a_text_is_read_with_the_words_and_the_world_of_the_session(tmp_path: Path) -> None:
+    world = tmp_path / "world.toml"
+    world.write_text('start = { x = 1, y = 1 }\nplaces = [{ name = "bay", x = 2, y = 2 }]\n', encoding="utf-8")
+    with btlang.Session(world=world, keywords=[stumble]) as session:
+        assert session.run("go to the bay", speed="max").outcome.succeeded  # type: ignore[union-attr]
+        assert not session.run("stumble", speed="max").outcome.succeeded  # type: ignore[union-attr]
+        with pytest.raises(btlang.MissionError):
+            session.run("go to the lab")
+
+
+def test_a_str_is_never_a_path(tmp_path: Path) -> None:
+    path = tmp_path / "mission.txt"
+    path.write_text("say hello", encoding="utf-8")
+    with btlang.Session() as session, pytest.raises(btlang.MissionError):
+        session.run(str(path))
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: btlang.Session().run(3), "a mission is a text, a path .* not an int"),
+        (lambda: btlang.Session().run(None), "not None"),
+        (lambda: btlang.Session(3), "robot is a name"),
+        (lambda: btlang.parse_tree(Path("x.txt")), "parse_file reads a file"),
+        (lambda: btlang.parse_tree("wave", keywords="words.toml"), "keywords is a list"),
+        (lambda: btlang.parse_tree("wave", keywords=[3]), "decorate it"),
+        (lambda: btlang.parse_tree("wave", world=3), "world is the path"),
+        (lambda: btlang.parse_tree("wave").run(time_limit="3"), "time_limit is a number"),
+        (lambda: btlang.parse_tree("wave").run(rate="3"), "rate is a number"),
+    ],
+)
+def test_what_is_of_the_wrong_type_says_what_is_taken(call: Any, said: str) -> None:
+    with pytest.raises(TypeError, match=said):
+        call()
+
+
+def test_mission_time_passes_as_the_caller_says() -> None:
+    with btlang.Session() as session:
+        run = session.prepare("wait 1 s")
+        statuses = []
+        while run.outcome is None:
+            statuses.append(run.tick(0.25))
+        assert statuses == [*[btlang.Status.RUNNING] * 4, btlang.Status.SUCCESS]
+        assert run.seconds == pytest.approx(1.0)
+        assert str(run.outcome) == "The mission succeeded in 1.0 s."
+        assert run.tick(0.25) is btlang.Status.RUNNING
+        assert run.outcome is None
+        with pytest.raises(ValueError, match="positive"):
+            run.tick(0)
+
+
+def test_events_and_the_outcome_in_asyncio() -> None:
+    async def main() -> tuple[list[Any], btlang.Outcome, int]:
+        beats = 0
+
+        async def beat() -> None:
+            nonlocal beats
+            while True:
+                beats += 1
+                await asyncio.sleep(0)
+
+        with btlang.Session() as session:
+            other = asyncio.create_task(beat())
+            run = session.prepare("say hello then wait 0.2 s", speed=4)
+            events = [event async for event in run]
+            outcome = await run
+            other.cancel()
+            assert [event async for event in run] == events
+        return events, outcome, beats
+
+    events, outcome, beats = asyncio.run(main())
+    assert outcome.succeeded
+    assert isinstance(events[-1], Ended)
+    assert any(isinstance(event, Said) for event in events)
+    assert beats > 3, "the loop was blocked"
+
+
+def test_awaiting_a_run_raises_what_ended_it() -> None:
+    async def main() -> None:
+        with btlang.Session() as session:
+            run = session.prepare("wave", speed="max")
+            run.after_ticks(lambda: 1 / 0)
+            await run
+
+    with pytest.raises(ZeroDivisionError):
+        asyncio.run(main())
+
+
+def test_each_repr_is_short() -> None:
+    mission = btlang.parse_tree("say hello then stumble or nod", keywords=[stumble])
+    assert repr(mission) == "<Mission 'say hello then stumble or nod', 5 nodes, 1 warning>"
+    with btlang.Session() as session:
+        assert repr(session) == "<Session on SimulatedRobot>"
+        run = session.prepare(mission, speed="max")
+        assert repr(run) == f"<Run {run.id[:8]}, not started, 0.0 s>"
+        outcome = run.execute()
+        assert repr(run) == f"<Run {run.id[:8]}, ended: SUCCESS after {outcome.seconds:.1f} s>"
+    assert repr(outcome) == f"<Outcome SUCCESS after {outcome.seconds:.1f} s>"
+    assert [repr(error) for error in outcome.exceptions] == ["ZeroDivisionError('over a stone')"]
+    with pytest.raises(btlang.MissionError) as caught:
+        btlang.parse_tree("fly")
+    assert repr(caught.value) == "<MissionError BT010>"
+    assert repr(caught.value.diagnostics[0]).startswith("<Diagnostic BT010 at <text>:1:1: ")
+
+
+def test_an_outcome_is_printed_as_the_command_line_does() -> None:
+    outcome = btlang.parse_tree("stumble", keywords=[stumble]).run(speed="max")
+    assert str(outcome) == outcome.why()
+    assert repr(outcome) == "<Outcome FAILURE after 0.0 s: ZeroDivisionError: over a stone>"
+    assert len(outcome.exceptions) == 1
+    stopped = btlang.parse_tree("wait 9 s").run(speed="max", time_limit=1)
+    assert str(stopped) == "Stopped after 1.0 s, as asked; the robot stands still."
+    assert repr(stopped) == "<Outcome time limit after 1.0 s>"
