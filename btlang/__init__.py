@@ -9,49 +9,41 @@ from __future__ import annotations
 
 __version__ = "0.2.0"
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from btlang.api import Mission, parse_file, parse_tree
-    from btlang.components.component import Component, Parameter
-    from btlang.decorators import action, condition, quantity
-    from btlang.diagnostics.diagnostic import Diagnostic
-    from btlang.diagnostics.errors import MissionError
-    from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere, Unknown
-    from btlang.run.outcome import Outcome
-    from btlang.run.statuses import Status
-    from btlang.session import Run, Session
-
-__all__ = [
-    "ActionFailed", "Component", "Diagnostic", "Failed", "Mission", "MissionError", "NotThere", "Outcome", "Parameter",
-    "Run", "Session", "Status", "Unknown", "action", "condition", "parse_file", "parse_tree", "quantity",
-]  # fmt: skip
-
-_HOMES = {
-    "ActionFailed": "btlang.engine.leaves.leaf",
-    "Component": "btlang.components.component",
-    "Diagnostic": "btlang.diagnostics.diagnostic",
-    "Failed": "btlang.engine.leaves.leaf",
-    "MissionError": "btlang.diagnostics.errors",
-    "NotThere": "btlang.engine.leaves.leaf",
-    "Outcome": "btlang.run.outcome",
-    "Parameter": "btlang.components.component",
-    "Run": "btlang.session",
-    "Session": "btlang.session",
-    "Status": "btlang.run.statuses",
-    "Unknown": "btlang.engine.leaves.leaf",
-    "action": "btlang.decorators",
-    "condition": "btlang.decorators",
-    "quantity": "btlang.decorators",
-}
+PUBLIC: dict[str, tuple[str, ...]] = {
+    "btlang.api": ("Mission", "parse_file", "parse_tree"),
+    "btlang.behavior": ("Behavior",),
+    "btlang.builders": (
+        "always_failure", "always_success", "async_fallback", "async_sequence", "delay", "fallback",
+        "force_failure", "force_success", "if_then_else", "inverter", "keep_in", "keep_out",
+        "keep_running_until_failure", "leaf", "loop_bool", "loop_double", "loop_int", "loop_string", "parallel",
+        "parallel_all", "pipeline_sequence", "precondition", "rate_controller", "reactive_fallback",
+        "reactive_sequence", "recovery_node", "repeat", "retry_until_successful", "round_robin", "run_once",
+        "script", "script_condition", "sequence", "sequence_with_memory", "set_blackboard",
+        "skip_unless_updated", "sleep", "sub_tree", "switch_2", "switch_3", "switch_4", "switch_5", "switch_6",
+        "timeout", "try_catch", "unset_blackboard", "wait_for_time", "wait_value_update", "was_entry_updated",
+        "whenever", "while_do_else",
+    ),
+    "btlang.components.component": ("Component", "Parameter"),
+    "btlang.decorators": ("action", "condition", "quantity"),
+    "btlang.diagnostics.diagnostic": ("Diagnostic",),
+    "btlang.diagnostics.errors": ("MissionError",),
+    "btlang.engine.leaves.leaf": ("ActionFailed", "Failed", "NotThere", "Unknown"),
+    "btlang.run.outcome": ("Outcome",),
+    "btlang.run.statuses": ("Status",),
+    "btlang.session": ("Run", "Session"),
+}  # fmt: skip
+"""The public names by the modules that have them. Their types are in __init__.pyi, which is made from this."""
+_HOMES = {name: module for module, names in PUBLIC.items() for name in names}
+__all__ = sorted(_HOMES)
 
 
 def __getattr__(name: str) -> object:
     """Public names are loaded when they are used, so that `btc` starts fast."""
-    if name not in __all__:
+    if name not in _HOMES:
         raise AttributeError(f"module 'btlang' has no attribute '{name}'")
     from importlib import import_module
 
-    return getattr(import_module(_HOMES.get(name, "btlang.api")), name)
+    return getattr(import_module(_HOMES[name]), name)
 
 
 def __dir__() -> list[str]:

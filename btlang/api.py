@@ -106,6 +106,8 @@ def mission_of(given: object, *, keywords: Keywords = (), world: Path | Source |
     if isinstance(given, Node | Tree):
         tree = Tree(given) if isinstance(given, Node) else given
         return mission_of_tree(tree, world_vocabulary(keywords, world), world)
+    if hasattr(given, "btlang_entry"):
+        return mission_of_tree(Tree(Node(given.btlang_entry.id)), world_vocabulary([*keywords, given], world), world)  # type: ignore[list-item]
     compile = getattr(given, "mission", None)
     if callable(compile):
         made: Mission = compile(keywords=keywords, world=world)

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import json
+import keyword
+import re
 import runpy
+import textwrap
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from btlang import PUBLIC
 from btlang.run.events import LOGGED, Event
 from btlang.run.field_types import field_type
 from btlang.run.json_log import described
 from btlang.task import command_schema
 from tests.cli_page import cli_page
+from btlang.tree.catalogue import CATALOGUE, POST_CONDITIONS, PRE_CONDITIONS, NodeKind, Port
 
 ROOT = Path(__file__).parent.parent
 _TYPES = {"string": "string", "integer": "number", "number": "number", "boolean": "boolean", "null": "null"}
@@ -100,7 +105,109 @@ def grammar_tables() -> str:
     return str(make["text_of"]((ROOT / "grammar" / "mission.lark").read_text(encoding="utf-8")))
 
 
+_PYTHON = {"int": "int | str", "unsigned int": "int | str", "double": "float | str", "bool": "bool | str"}
+
+
+def builder_name(node_id: str) -> str:
+    """The name of the function that builds a node."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z0-9])", "_", node_id).lower()
+
+
+def builders_module() -> str:
+    """The functions that build trees, one for each built-in node."""
+    scripts = "\n".join(f"        {script}: str" for script in (*PRE_CONDITIONS, *POST_CONDITIONS))
+    made = [_builder(kind) for kind in CATALOGUE.values()]
+    names = "\n".join(f'    "{name}",' for name in sorted(["leaf", *map(builder_name, CATALOGUE)]))
+    return f"""\
+\"\"\"Functions that build trees: one for each built-in node. Made from the catalogue by `python -m tests.generate`.
+
+The keyword arguments are the ports of the node; docs/engine.md says what each node does.
+\"\"\"
+
+from __future__ import annotations
+
+from btlang.behavior import Behavior, Child, Value, built, leaf
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypedDict, Unpack
+
+    class Scripts(TypedDict, total=False):
+        \"\"\"Scripts that every node may have.\"\"\"
+
+{scripts}
+
+
+__all__ = [
+{names}
+]
+
+
+""" + "\n\n".join(made)
+
+
+def _builder(kind: NodeKind) -> str:
+    if kind.roles:
+        roles = [_parameter(role) for role in kind.roles]
+        children = [f"{role}: Child{' | None = None' * (at >= kind.least)}" for at, role in enumerate(roles)]
+        given = f"({', '.join(roles)})"
+    elif kind.most == 1:
+        children, given = ["child: Child"], "(child,)"
+    elif kind.most:
+        children, given = ["*children: Child"], "children"
+    else:
+        children, given = [], "()"
+    ports = [f"{_parameter(port)}: {_annotation(found)}" for port, found in kind.ports.items()]
+    star = ["*"] if not children or children[0][0] != "*" else []
+    others = "**scripts: Value" if kind.any_ports else "**scripts: Unpack[Scripts]"
+    parameters = [*children, *star, *ports, 'name: str = ""', others]
+    head = _wrapped(f"def {builder_name(kind.id)}(", parameters, ") -> Behavior:", "")
+    values = ", ".join(f'"{port}": {_parameter(port)}' for port in kind.ports)
+    arguments = [f'"{kind.id}"', given, f"{{{values}}}", "name", "scripts"]
+    about = f"The node {kind.id} of {kind.origin}." if kind.origin != "btlang" else f"The node {kind.id} of btlang."
+    text = textwrap.fill(f"{about} {kind.text}".strip(), 112, subsequent_indent="    ")
+    end = "\n    " if "\n" in text else ""
+    body = _wrapped("    return built(", arguments, ")", "    ")
+    return f'{head}\n    """{text}{end}"""\n{body}\n'
+
+
+def _parameter(name: str) -> str:
+    return f"{name}_" if keyword.iskeyword(name) else name
+
+
+def _annotation(port: Port) -> str:
+    kind = _PYTHON.get(port.type, "Value")
+    return kind if port.default is None else f"{kind} | None = None"
+
+
+def _wrapped(begin: str, items: list[str], end: str, indent: str) -> str:
+    """As ruff lays it out: in one line, in one line of its own, or one line each."""
+    line = begin + ", ".join(items) + end
+    inner = f"{indent}    {', '.join(items)}"
+    if len(line) <= 120:
+        return line
+    if len(inner) <= 120:
+        return f"{begin}\n{inner}\n{indent}{end}"
+    deeper = f"{indent}    "
+    each = [
+        _wrapped(f"{deeper}{{", item[1:-1].split(", "), "},", deeper) if item[0] == "{" else f"{deeper}{item},"
+        for item in items
+    ]
+    return "\n".join([begin, *each, f"{indent}{end}"])
+
+
+def public_stub() -> str:
+    """The types of the public names, for mypy and editors."""
+    lines = [f"from {module} import {name} as {name}" for module, names in sorted(PUBLIC.items()) for name in names]
+    head = "# Made from btlang/__init__.py by `python -m tests.generate`."
+    return "\n".join(
+        [head, *lines, "", "PUBLIC: dict[str, tuple[str, ...]]", "__all__: list[str]", "__version__: str", ""]
+    )
+
+
 FILES: dict[str, Callable[[], str]] = {
+    "btlang/__init__.pyi": public_stub,
+    "btlang/builders.py": builders_module,
     "btlang/run/events.schema.json": events_schema,
     "btlang/task/commands.schema.json": commands_schema,
     "btlang/web/src/events.ts": events_module,

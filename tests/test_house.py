@@ -40,6 +40,7 @@ LONG: dict[str, str] = {
     "examples/guide/robot.toml": "all of a humanoid",
     "btlang/web/package-lock.json": "made by npm",
     "btlang/robots/capabilities.py": "what robots can do, one capability after the other",
+    "btlang/builders.py": "made from the catalogue",
     "btlang/session.py": "a session, and the runs that it makes",
     "btlang/robots/simulated.py": "the robot, one capability after the other",
     "btlang/run/events.py": "the classes of events, from which the schema of logs is made",

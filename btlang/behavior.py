@@ -1,0 +1,232 @@
+"""Trees in Python: what the functions of btlang.builders make, and how a mission is made of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TypeAlias
+
+from btlang.api import Mission, mission_of_tree
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.engine.script.values import kept
+from btlang.frontends.table import read_text
+from btlang.mission_vocabulary import described, world_vocabulary
+from btlang.passes import compile_mission, errors_of
+from btlang.record import Record
+from btlang.text.source import NOWHERE, Source
+from btlang.tree.ast import Fact, all_facts
+from btlang.tree.catalogue import CATALOGUE, MOST_NODES, POST_CONDITIONS, PRE_CONDITIONS
+from btlang.tree.node import Node, Tree
+from btlang.tree.visit import fold
+from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.shipped import ENGLISH
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    import os
+    from typing import Any
+
+    from btlang.run.outcome import Outcome
+    from btlang.vocabulary.load import Keywords
+
+Value: TypeAlias = str | float | bool
+"""What a port can be set to; a text `{key}` refers to the blackboard."""
+
+
+class Behavior(Record):
+    """A node of a tree in Python, with its children. Immutable; `mission` checks it and finds the words of its texts.
+
+    A child is another behavior, a command or condition in English, the text of a mission, XML or JSON, a function decorated with `btlang.action` or
+    `btlang.condition`, a btlang.Mission or a tree. `call` is the decorated function of a leaf, None for others.
+    """
+
+    id: str
+    children: tuple[Child, ...] = ()
+    ports: tuple[tuple[str, str], ...] = ()
+    name: str = ""
+    call: Callable[..., Any] | None = None
+
+    def __repr__(self) -> str:
+        count = len(self.children)
+        return f"<Behavior {self.id}{f', {count} child' + 'ren' * (count > 1) if count else ''}>"
+
+    def mission(
+        self,
+        *,
+        keywords: Keywords = (),
+        world: str | os.PathLike[str] | Source | None = None,
+        language: str = ENGLISH,
+        subtrees: Mapping[str, Child] = {},
+    ) -> Mission:
+        """Compile it. Its functions are words of its texts, too; the options are those of `btlang.parse_tree`.
+
+        `subtrees` are the trees that `sub_tree` nodes name. Raises MissionError for all mistakes of the first text that
+        has some, or of the tree.
+        """
+        functions = dict.fromkeys(_functions([self, *subtrees.values()]))
+        vocabulary = world_vocabulary([*keywords, *functions], world, language)
+        assembly = _Assembly(vocabulary)
+        for name, child in subtrees.items():
+            assembly.define(name, assembly.node(child))
+        root = assembly.node(self)
+        return mission_of_tree(Tree(root, tuple(assembly.subtrees.items())), vocabulary, world, tuple(assembly.facts))
+
+    def run(self, **options: Any) -> Outcome:
+        """Compile and run it; the options are those of `btlang.Mission.run`."""
+        return self.mission().run(**options)
+
+    def to(self, target: str, **options: Any) -> str | bytes:
+        """The tree as "english", "xml" or another target of `btlang.Mission.to`."""
+        return self.mission().to(target, **options)
+
+    def __str__(self) -> str:
+        return str(self.mission())
+
+
+Child: TypeAlias = "Behavior | str | Source | Node | Tree | Mission | Callable[..., object]"
+
+
+def leaf(what: str | Callable[..., object], /, *values: Value, name: str = "", **ports: Value) -> Behavior:
+    """A command or condition: a decorated function (`btlang.action`, `btlang.condition`), or the id of a known one.
+
+    `leaf(cheer, "Alice", times=2)` and `leaf("GoTo", place="lab")`. The values are for the slots of the function in the
+    order of its phrase. A port called `name` is set with a value in that order. Raises TypeError if they don't fit.
+    """
+    if isinstance(what, str):
+        if values:
+            raise TypeError(f"the ports of {what} are set by their names")
+        return Behavior(what, (), _ports(ports), name)
+    entry = _entry(what)
+    slots = [slot.name for slot in entry.slots]
+    if "name" in slots[len(values) :] and name:
+        ports, name = {**ports, "name": name}, ""
+    given = dict(zip(slots, values, strict=False))
+    unknown = [port for port in ports if port not in slots or port in given]
+    if len(values) > len(slots) or unknown:
+        wrong = f"{unknown[0]!r}" if unknown else f"{len(values)} values"
+        raise TypeError(f"{entry.id} takes {', '.join(slots) or 'no values'}, not {wrong}")
+    return Behavior(entry.id, (), _ports({**given, **ports}), name, what)
+
+
+def built(
+    node_id: str,
+    children: tuple[Child | None, ...],
+    ports: Mapping[str, object],
+    name: str,
+    scripts: Mapping[str, object],
+) -> Behavior:
+    """A behavior of a built-in node: what the functions of btlang.builders do. Raises TypeError if it doesn't fit."""
+    kind, own = CATALOGUE[node_id], tuple(child for child in children if child is not None)
+    if not kind.least <= len(own) <= kind.most:
+        most = "" if kind.most >= MOST_NODES else f" to {kind.most}" if kind.most != kind.least else ""
+        least = f"at least {kind.least}" if kind.most >= MOST_NODES else f"{kind.least}{most}"
+        raise TypeError(
+            f"{node_id} takes {least} child{'ren' * (max(kind.least, kind.most % MOST_NODES) > 1)}, not {len(own)}"
+        )
+    for child in own:
+        if not isinstance(child, Behavior | str | Source | Node | Tree | Mission):
+            _entry(child)
+    for script in scripts:
+        if script not in PRE_CONDITIONS + POST_CONDITIONS and not kind.any_ports:
+            raise TypeError(f"{node_id} has no port {script!r}")
+    return Behavior(node_id, own, _ports({**ports, **scripts}), name)
+
+
+def _ports(ports: Mapping[str, object]) -> tuple[tuple[str, str], ...]:
+    return tuple((port, _text(port, value)) for port, value in ports.items() if value is not None)
+
+
+def _text(port: str, value: object) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int | float):
+        return str(kept(value))
+    if isinstance(value, str):
+        return value
+    raise TypeError(f"{port} is a text, a number or a bool, not {described(value)}")
+
+
+def _entry(what: object) -> Entry:
+    entry = getattr(what, "btlang_entry", None)
+    if isinstance(entry, Entry):
+        return entry
+    name = getattr(what, "__name__", "") or described(what)
+    raise TypeError(f"{name} can't be a part of a tree; decorate a function with btlang.action or btlang.condition")
+
+
+def _functions(waiting: list[Child]) -> list[Callable[..., object]]:
+    """The functions in behaviors, and those that the words of their missions call."""
+    found: list[Callable[..., object]] = []
+    while waiting:
+        child = waiting.pop()
+        if isinstance(child, Behavior):
+            found += (child.call,) if child.call is not None else ()
+            waiting += child.children
+        elif isinstance(child, Mission):
+            entries = (child.vocabulary.entry(node.id) for node in child.tree.walk())
+            found += (entry.call for entry in entries if entry is not None and hasattr(entry.call, "btlang_entry"))  # type: ignore[misc]
+        elif hasattr(child, "btlang_entry"):
+            found.append(child)  # type: ignore[arg-type]
+    return found
+
+
+_ONLY_A_CONDITION = "BT028"
+
+
+class _Assembly:
+    """Makes one tree of behaviors, and collects what their texts define."""
+
+    def __init__(self, vocabulary: Lexicon) -> None:
+        self._vocabulary = vocabulary
+        self.subtrees: dict[str, Node] = {}
+        self.facts: list[Fact] = []
+
+    def define(self, name: str, root: Node) -> None:
+        """Raises MissionError (BT127) for another tree with a name that is taken."""
+        if self.subtrees.setdefault(name, root) != root:
+            raise MissionError([diagnostic("BT127", root.span or NOWHERE, name=name)])
+
+    def node(self, child: Child) -> Node:
+        return fold(child, _parts, self._made)
+
+    def _made(self, child: Child, children: list[Node]) -> Node:
+        if isinstance(child, Behavior):
+            return Node(child.id or self._id_of(child.call), tuple(children), child.ports, child.name)
+        if isinstance(child, Node):
+            return child
+        if isinstance(child, str | Source):
+            return self._root(self._read(Source(child) if isinstance(child, str) else child))
+        if isinstance(child, Mission):
+            self.facts += child.facts
+            return self._root(child.tree)
+        if isinstance(child, Tree):
+            return self._root(child)
+        return Node(_entry(child).id or self._id_of(child))
+
+    def _root(self, tree: Tree) -> Node:
+        for name, root in tree.subtrees:
+            self.define(name, root)
+        return tree.root
+
+    def _read(self, source: Source) -> Tree:
+        try:
+            read = read_text(source, vocabulary=self._vocabulary, errors_of=errors_of)
+        except MissionError as error:
+            if [problem.code for problem in error.diagnostics] != [_ONLY_A_CONDITION]:
+                raise
+            checked = source.with_text(f"{self._vocabulary.word('check')} {source.text}")
+            read = read_text(checked, vocabulary=self._vocabulary, errors_of=errors_of)
+        if isinstance(read, Tree):
+            return read
+        self.facts += all_facts(read.mission)
+        return compile_mission(read.mission, self._vocabulary)
+
+    def _id_of(self, call: object) -> str:
+        """The id of a function that replaces the word with its phrase."""
+        found = (node_id for node_id, known in self._vocabulary.entries.items() if any(e.call is call for e in known))
+        return next(found, "")
+
+
+def _parts(child: Child) -> tuple[Child, ...]:
+    return child.children if isinstance(child, Behavior) else ()

@@ -1,0 +1,157 @@
+"""Trees that are built in Python."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import btlang
+from btlang import (
+    PUBLIC,
+    action,
+    builders,
+    condition,
+    fallback,
+    if_then_else,
+    leaf,
+    parallel,
+    repeat,
+    sequence,
+    sub_tree,
+    timeout,
+    whenever,
+)
+from btlang.tree.catalogue import CATALOGUE
+from btlang.tree.dump import plain
+from btlang.tree.node import Node
+from tests.generate import builder_name
+
+DONE: list[object] = []
+
+
+@action("cheer for {person} {count} times", id="CheerFor")
+def cheer(person: str, count: int = 1) -> None:
+    DONE.append((person, count))
+
+
+@action("shout")
+def shout() -> None:
+    DONE.append("shout")
+
+
+@condition("somebody shouted")
+def shouted() -> bool:
+    return "shout" in DONE
+
+
+def test_a_tree_of_functions_texts_and_nodes_runs() -> None:
+    DONE.clear()
+    tree = sequence(
+        fallback(shouted, shout),
+        leaf(cheer, "Alice", count=2),
+        "cheer for Bob 3 times then say hello",
+        Node("Say", ports=(("text", "bye"),)),
+        btlang.parse_tree("shout", keywords=[shout]),
+    )
+    assert tree.run(speed="max").succeeded
+    assert DONE == ["shout", ("Alice", 2), ("Bob", 3), "shout"]
+    with btlang.Session() as session:
+        assert session.run(tree, speed="max").outcome.succeeded  # type: ignore[union-attr]
+        assert session.run(shout, speed="max").outcome.succeeded  # type: ignore[union-attr]
+
+
+def test_it_is_the_tree_of_the_same_english() -> None:
+    tree = whenever("the battery is low", "go to the dock", repeat(sequence("wave", "nod"), num_cycles=2))
+    english = tree.to("english")
+    assert isinstance(english, str)
+    assert plain(btlang.parse_tree(english).tree) == plain(tree.mission().tree)
+    xml = tree.to("xml")
+    assert isinstance(xml, str)
+    assert '<Repeat num_cycles="2">' in xml
+    assert "Whenever" in str(tree)
+
+
+def test_a_text_may_be_a_condition() -> None:
+    tree = fallback("the battery is not low", "the battery is above 20% and not bumped", "dock")
+    assert plain(tree.mission().tree) == plain(
+        btlang.parse_tree(
+            "(check the battery is not low) or (check the battery is above 20% and not bumped) or dock"
+        ).tree
+    )
+    with pytest.raises(btlang.MissionError, match="BT164"):
+        fallback("the battery is purple", "dock").mission()
+
+
+def test_ports_are_texts_in_the_tree() -> None:
+    tree = timeout(parallel("wave", "nod", success_count=1, name="both"), msec=1500, _skipIf="x > 3")
+    assert dict(tree.ports) == {"msec": "1500", "_skipIf": "x > 3"}
+    assert plain(tree.mission().tree).splitlines()[1] == "  Parallel name=both success_count=1"
+    assert dict(whenever("bumped", "wave", "nod", once=True).ports) == {"once": "true"}
+    assert len(if_then_else("bumped", "wave").children) == 2
+
+
+def test_named_trees() -> None:
+    tree = sequence(sub_tree(ID="Greet"), "greeting means: nod\ngreeting")
+    mission = tree.mission(subtrees={"Greet": "wave"})
+    assert {name for name, _ in mission.tree.subtrees} >= {"Greet"}
+    mission.check()
+    with pytest.raises(btlang.MissionError, match="BT127"):
+        sequence("greeting means: nod\ngreeting", "greeting means: wave\ngreeting").mission()
+    with pytest.raises(btlang.MissionError, match="BT126"):
+        sub_tree(ID="Greet").run(speed="max")
+
+
+def test_a_replacing_function_without_an_id() -> None:
+    done = []
+
+    @action("go to {place}", replace=True)
+    def fake(place: str) -> None:
+        done.append(place)
+
+    assert sequence(leaf(fake, "lab"), "go to the kitchen").run(speed="max").succeeded
+    assert done == ["lab", "kitchen"]
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: repeat("wave", "nod"), "positional"),
+        (lambda: sequence(), "Sequence takes at least 1 child, not 0"),
+        (lambda: builders.recovery_node("wave"), "RecoveryNode takes 2 children, not 1"),
+        (lambda: sequence(3), "can't be a part of a tree"),
+        (lambda: sequence(print), "print can't be a part of a tree"),
+        (lambda: repeat("wave", times=3, num_cycles=1), "Repeat has no port 'times'"),
+        (lambda: repeat("wave", num_cycles=[]), "num_cycles is a text, a number or a bool, not a list"),
+        (lambda: leaf(cheer, "Bob", number=3), "CheerFor takes person, count, not 'number'"),
+        (lambda: leaf(shout, 1), "Shout takes no values, not 1 values"),
+        (lambda: leaf("GoTo", "lab"), "set by their names"),
+    ],
+)
+def test_what_does_not_fit_is_refused_at_once(call: Any, said: str) -> None:
+    with pytest.raises(TypeError, match=said):
+        call()
+
+
+def test_mistakes_in_texts_and_values() -> None:
+    with pytest.raises(btlang.MissionError, match="BT013"):
+        sequence("go to the moon").mission()
+    with pytest.raises(btlang.MissionError, match="BT130"):
+        leaf("Fly").run()
+    with pytest.raises(btlang.MissionError, match="BT132"):
+        repeat("wave", num_cycles=-7).run()
+
+
+def test_depth_does_not_matter() -> None:
+    tree: Any = "wave"
+    for _ in range(3000):
+        tree = builders.force_success(tree)
+    assert sum(1 for _ in tree.mission().tree.walk()) == 3001
+
+
+def test_each_public_name_is_listed_once_and_there() -> None:
+    listed = [name for names in PUBLIC.values() for name in names]
+    assert sorted(listed) == btlang.__all__ == sorted(set(listed))
+    assert all(getattr(btlang, name) is not None for name in listed)
+    assert set(PUBLIC["btlang.builders"]) == set(builders.__all__) == {"leaf", *map(builder_name, CATALOGUE)}
+    assert repr(sequence("wave", "nod")) == "<Behavior Sequence, 2 children>"
