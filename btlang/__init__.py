@@ -31,6 +31,9 @@ PUBLIC: dict[str, tuple[str, ...]] = {
     "btlang.run.outcome": ("Outcome",),
     "btlang.run.statuses": ("Status",),
     "btlang.session": ("Run", "Session"),
+    "btlang.slots": (
+        "Angle", "Color", "Door", "Duration", "Length", "Object", "Percent", "Person", "Place", "Speed", "Text", "Zone",
+    ),
 }  # fmt: skip
 """The public names by the modules that have them. Their types are in __init__.pyi, which is made from this."""
 _HOMES = {name: module for module, names in PUBLIC.items() for name in names}

@@ -69,6 +69,18 @@ from btlang.run.outcome import Outcome as Outcome
 from btlang.run.statuses import Status as Status
 from btlang.session import Run as Run
 from btlang.session import Session as Session
+from btlang.slots import Angle as Angle
+from btlang.slots import Color as Color
+from btlang.slots import Door as Door
+from btlang.slots import Duration as Duration
+from btlang.slots import Length as Length
+from btlang.slots import Object as Object
+from btlang.slots import Percent as Percent
+from btlang.slots import Person as Person
+from btlang.slots import Place as Place
+from btlang.slots import Speed as Speed
+from btlang.slots import Text as Text
+from btlang.slots import Zone as Zone
 
 PUBLIC: dict[str, tuple[str, ...]]
 __all__: list[str]

@@ -37,8 +37,9 @@ Value: TypeAlias = str | float | bool
 class Behavior(Record):
     """A node of a tree in Python, with its children. Immutable; `mission` checks it and finds the words of its texts.
 
-    A child is another behavior, a command or condition in English, the text of a mission, XML or JSON, a function decorated with `btlang.action` or
-    `btlang.condition`, a btlang.Mission or a tree. `call` is the decorated function of a leaf, None for others.
+    A child is another behavior, a command or condition in English, the text of a mission, XML or JSON, a function
+    decorated with `btlang.action` or `btlang.condition`, a btlang.Mission or a tree. `call` is the decorated function
+    of a leaf, None for others.
     """
 
     id: str

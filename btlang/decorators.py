@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping, Sequence
 
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.text.source import NOWHERE, Source, Span
 from btlang.vocabulary.capabilities import resources_of
 from btlang.vocabulary.entry import Entry, SlotSpec
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from types import FrameType
     from typing import Any, TypeAlias, TypeVar
 
     from btlang.vocabulary.ros_binding import RosBinding
@@ -19,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def action(
-    phrase: Phrases,
+    phrase: Phrases = "",
     *,
     id: str = "",
     slots: Slots | None = None,
@@ -38,10 +43,13 @@ def action(
 ) -> Callable[[Call], Call]:
     """Turns a function, generator function, `async def` function or class into a command: `parse_tree(keywords=[...])`.
 
-    The options are the keys of an entry in a keyword file (docs/keywords.md). `phrase` is one pattern or several.
-    `slots` gives a type, or a type and a default, to slots with a name that isn't a type. `id` is the node's name, by
-    default the name of the function in CamelCase. `help` is the docstring by default. btlang/engine/leaves/leaf.py
-    describes what a leaf can be. Raises ValueError for a `ros` table with mistakes.
+    The options are the keys of an entry in a keyword file (docs/keywords.md). `phrase` is one pattern or several, by
+    default the name of the function and a slot for each of its parameters. `id` is the node's name, by default the name
+    of the function in CamelCase. `help` is the docstring by default. btlang/engine/leaves/leaf.py describes what a leaf
+    can be. Raises ValueError for a `ros` table with mistakes, MissionError (BT061) for a phrase with mistakes.
+
+    The type of a slot is what `slots` says (a type, or a type and a default), else what its annotation says (see
+    btlang.slots), else the type with the slot's name, else "count" for an int, "number" for a float, "text" for a str.
 
     With `replace` it replaces the known word with this id, or with this phrase if there is no id: a fake for tests.
     Without it a second function for the same id is an error (BT064).
@@ -52,7 +60,7 @@ def action(
 
 
 def condition(
-    phrase: Phrases,
+    phrase: Phrases = "",
     *,
     id: str = "",
     slots: Slots | None = None,
@@ -99,20 +107,30 @@ def _word(
     resources: Sequence[str] = (),
     **keys: Any,
 ) -> Callable[[Call], Call]:
-    from btlang.vocabulary.pattern import Slot, forms
+    from btlang.vocabulary.pattern import PatternError, Slot, forms
 
-    phrases = (phrase,) if isinstance(phrase, str) else tuple(phrase)
+    if callable(phrase):
+        raise TypeError(f"write @btlang.{sort}(...) with parentheses above {phrase.__name__}")
+    given = (phrase,) if isinstance(phrase, str) else tuple(phrase)
+    span = _place(sys._getframe(2))
 
     def decorate(call: Call) -> Call:
-        names = dict.fromkeys(p.name for text in phrases for form in forms(text) for p in form if isinstance(p, Slot))
-        specs = tuple(_slot(name, slots.get(name, name)) for name in names)
+        phrases = given if any(given) else (_phrase_of(call),)
+        try:
+            parts = [part for text in phrases for form in forms(text) for part in form]
+        except PatternError as error:
+            raise MissionError([diagnostic("BT061", span or NOWHERE, reason=str(error))]) from None
+        types = _annotated(call)
+        names = dict.fromkeys(part.name for part in parts if isinstance(part, Slot))
+        specs = tuple(_slot(name, slots[name]) if name in slots else SlotSpec(name, *types.get(name, (name, None, "")))
+                      for name in names)  # fmt: skip
         made = node_id or ("" if replace else "".join(part.title() for part in call.__name__.split("_")))
         is_quantity = sort == "quantity"
         taken = tuple(dict.fromkeys((*resources, *resources_of(needs)))) if sort == "action" else ()
         entry = Entry(
             "condition" if is_quantity else sort, made, () if is_quantity else phrases, call, specs,
             quantity=phrases if is_quantity else (), ros=_ros(ros, sort), replaces=replace,
-            needs=tuple(needs), resources=taken,
+            needs=tuple(needs), resources=taken, span=span,
             **{**keys, "help": keys["help"] or call.__doc__ or ""},
         )  # fmt: skip
         call.btlang_entry = entry  # type: ignore[attr-defined]
@@ -125,6 +143,57 @@ def _slot(name: str, spec: str | Mapping[str, str]) -> SlotSpec:
     if isinstance(spec, str):
         return SlotSpec(name, spec)
     return SlotSpec(name, spec.get("type", name), spec.get("default"))
+
+
+_OF_PYTHON = {"int": "count", "float": "number", "str": "text"}
+_SERVICES = ("self", "robot", "clock", "blackboard", "wake", "wake_at", "progress", "beside", "halted", "kept")
+
+
+def _parameters(call: Any) -> dict[str, Any]:
+    """The parameters that slots may fill, of a function or of the `start` of a class."""
+    from inspect import isclass, signature
+
+    begin: Any = getattr(call, "start", None) if isclass(call) else call
+    try:
+        found = signature(begin).parameters
+    except (TypeError, ValueError):
+        return {}
+    return {name: found[name] for name in found if name not in _SERVICES}
+
+
+def _phrase_of(call: Any) -> str:
+    words = call.__name__.replace("_", " ")
+    return " ".join([words, *(f"{{{name}}}" for name in _parameters(call))])
+
+
+def _annotated(call: Any) -> dict[str, tuple[str, None, str]]:
+    """The types of slots by their names: the one to take, no default, and the one to take if it doesn't exist."""
+    from typing import Annotated, get_args, get_origin
+
+    found: dict[str, tuple[str, None, str]] = {}
+    scope = {**getattr(sys.modules.get(call.__module__), "__dict__", {}), **getattr(call, "__globals__", {})}
+    for name, parameter in _parameters(call).items():
+        kind = parameter.annotation
+        try:
+            kind = eval(kind, scope) if isinstance(kind, str) else kind  # what typing.get_type_hints does, one by one
+        except Exception:  # a name for type checkers alone
+            continue
+        named = [text for text in get_args(kind)[1:] if isinstance(text, str)] if get_origin(kind) is Annotated else []
+        found[name] = (named[0] if named else name, None, _OF_PYTHON.get(getattr(kind, "__name__", ""), ""))
+    return found
+
+
+def _place(frame: FrameType) -> Span | None:
+    """The line of a program that decorates a function; None where its text isn't known."""
+    from linecache import getlines
+
+    lines, number = getlines(frame.f_code.co_filename), frame.f_lineno
+    if not 0 < number <= len(lines):
+        return None
+    source = Source("".join(lines), frame.f_code.co_filename)
+    words = source.line(number).strip()
+    start = source.offset(number, 1 + source.line(number).find(words))
+    return Span(source, start, start + len(words))
 
 
 def _ros(table: Mapping[str, Any] | None, sort: str) -> RosBinding | None:

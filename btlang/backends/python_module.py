@@ -91,5 +91,5 @@ def _node(node: Node, children: list[Source]) -> Source:
 def _files(tree: Tree, vocabulary: Lexicon) -> list[str]:
     """The keyword files of the leaves, without those that ship."""
     ours = {shown_name(path) for name in languages() for path in keyword_files(shipped("keywords", name))}
-    found = {entry.file for node in tree.walk() for entry in vocabulary.entries.get(node.id, ())}
-    return sorted(file for file in found - ours if file != "Python")
+    entries = (entry for node in tree.walk() for entry in vocabulary.entries.get(node.id, ()))
+    return sorted({entry.file for entry in entries if isinstance(entry.call, str)} - ours)

@@ -17,11 +17,15 @@ if TYPE_CHECKING:
 
 
 class SlotSpec(Record):
-    """A slot of an entry: the name of its port, its type, and the port text that an absent value stands for."""
+    """A slot of an entry: the name of its port, its type, and the port text that an absent value stands for.
+
+    `otherwise` is the type that counts where no type is called `type`.
+    """
 
     name: str
     type: str
     default: str | None = None
+    otherwise: str = ""
 
 
 COMPARISONS = ("below", "above", "at_least", "at_most", "equal")

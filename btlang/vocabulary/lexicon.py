@@ -345,6 +345,13 @@ class Lexicon:
             entry = entry.replace(id=self._replaced_id(entry))
         if entry.measures:
             entry = self._with_comparisons(entry)
+        slots = (
+            SlotSpec(slot.name, slot.otherwise, slot.default)
+            if slot.otherwise and slot.type not in self.types
+            else slot
+            for slot in entry.slots
+        )
+        entry = entry.replace(slots=tuple(slots))
         unknown = [slot for slot in entry.slots if slot.type not in self.types]
         for slot in unknown:
             known = ", ".join(sorted(self.types))
@@ -423,7 +430,7 @@ class Lexicon:
         if other is None or entry.replaces:
             return
         span = entry.span or Span(Source(entry.id, "Python"), 0, len(entry.id))
-        fix = f'replaces = ["{entry.id}"]' if entry.span else "replace=True"
+        fix = f'replaces = ["{entry.id}"]' if isinstance(entry.call, str) else "replace=True"
         self._problems.append(diagnostic("BT064", span, id=entry.id, file=other.file, fixed=fix))
 
     def _with_comparisons(self, entry: Entry) -> Entry:

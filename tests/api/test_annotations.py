@@ -1,0 +1,77 @@
+"""Words whose slots are declared by the annotations of their functions."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import pytest
+
+import btlang
+from btlang import Length, Person
+
+DONE: list[object] = []
+
+
+@btlang.action("cheer for {name} [{times} times]")
+def cheer(name: Person, times: int = 1) -> None:
+    DONE.append((name, times))
+
+
+@btlang.action()
+def creep_by(distance: Length, clock: Any) -> None:
+    DONE.append(distance)
+
+
+@btlang.action("aim at {mark} with {share}")
+def aim(mark: Annotated[str, "object"], share: float) -> None:
+    DONE.append((mark, share))
+
+
+@btlang.action("paint it {color}")
+def paint(color: str) -> None:
+    DONE.append(color)
+
+
+@btlang.action()
+class HumOn:
+    def start(self, words: str) -> None:
+        DONE.append(words)
+
+    def tick(self) -> bool:
+        return True
+
+    def halt(self) -> None:
+        """Nothing moves."""
+
+
+def test_types_units_and_defaults() -> None:
+    DONE.clear()
+    text = 'cheer for Alice 2 times, cheer for Bob, creep by 50 cm, aim at the cup with 0.5, paint it red, HumOn "la"'
+    assert btlang.parse_tree(text, keywords=[cheer, creep_by, aim, paint, HumOn]).run(speed="max").succeeded
+    assert DONE == [("Alice", 2), ("Bob", 1), 0.5, ("cup", 0.5), "red", "la"]
+    with pytest.raises(btlang.MissionError):
+        btlang.parse_tree("cheer for the table", keywords=[cheer])
+
+
+def test_errors_show_the_line_of_the_decorator() -> None:
+    with pytest.raises(btlang.MissionError) as caught:
+
+        @btlang.action("hop {n")
+        def hop(n: int) -> None:
+            pass
+
+    assert caught.value.diagnostics[0].span.text == '@btlang.action("hop {n")'
+    assert "test_annotations.py:" in str(caught.value)
+
+    @btlang.action("skip {what}")
+    def skip(what: object) -> None:
+        pass
+
+    with pytest.raises(btlang.MissionError, match="BT061") as caught:
+        btlang.parse_tree("skip it", keywords=[skip])
+    assert caught.value.diagnostics[0].span.text == '@btlang.action("skip {what}")'
+    with pytest.raises(TypeError, match="parentheses above wave"):
+
+        @btlang.action
+        def wave() -> None:
+            pass
