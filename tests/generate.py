@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import keyword
 import re
 import runpy
 import textwrap
 from collections.abc import Callable, Iterator
+from enum import Enum
 from pathlib import Path
 from typing import Any
 
+import btlang
 from btlang import PUBLIC
 from btlang.run.events import LOGGED, Event
 from btlang.run.field_types import field_type
@@ -205,6 +208,53 @@ def public_stub() -> str:
     )
 
 
+def api_page() -> str:
+    """The page about the public names, from their docstrings."""
+    parts = [
+        "# API reference",
+        "Made from the docstrings by `python -m tests.generate`. [library.md](library.md) explains the library with "
+        "examples.",
+    ]
+    for module, names in PUBLIC.items():
+        for name in names if module not in ("btlang.builders", "btlang.slots") else ():
+            parts += _described(name, getattr(btlang, name))
+    rows = [f"| `{name}{_signature(getattr(btlang, name))}` |" for name in PUBLIC["btlang.builders"]]
+    slots = ", ".join(f"`{name}`" for name in PUBLIC["btlang.slots"])
+    about = "Functions that build trees. The keyword arguments are the ports of the node; engine.md says what it does."
+    parts += ["## Builders", about, "\n".join(["| function |", "|---|", *rows])]
+    parts += ["## Types of slots", f"For annotations of functions that are words: {slots}."]
+    return "\n\n".join(parts) + "\n"
+
+
+def _described(name: str, found: Any) -> Iterator[str]:
+    yield f"## {name}"
+    if not inspect.isclass(found):
+        yield f"`{name}{_signature(found)}`"
+    elif not issubclass(found, Enum | Exception | str):
+        fields = getattr(found, "fields", None)
+        yield f"`{name}({', '.join(fields) if fields else _signature(found)[1:-1]})`"
+    yield inspect.getdoc(found) or ""
+    if not inspect.isclass(found):
+        return
+    for own, member in vars(found).items():
+        if own.startswith("_") or not (inspect.isfunction(member) or isinstance(member, property)):
+            continue
+        text = inspect.getdoc(member)
+        if text:
+            yield f"### `{name}.{own}{'' if isinstance(member, property) else _signature(member)}`"
+            yield text
+
+
+def _signature(found: Any) -> str:
+    """The parameters with their defaults, without types, which editors show."""
+    shown = [
+        parameter.replace(annotation=inspect.Parameter.empty)
+        for name, parameter in inspect.signature(found).parameters.items()
+        if name != "self"
+    ]
+    return str(inspect.Signature(shown))
+
+
 FILES: dict[str, Callable[[], str]] = {
     "btlang/__init__.pyi": public_stub,
     "btlang/builders.py": builders_module,
@@ -212,6 +262,7 @@ FILES: dict[str, Callable[[], str]] = {
     "btlang/task/commands.schema.json": commands_schema,
     "btlang/web/src/events.ts": events_module,
     "docs/cli.md": cli_page,
+    "docs/api.md": api_page,
     "grammar/mission.tables.json": grammar_tables,
 }
 """The files, with what makes the text of each."""
