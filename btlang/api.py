@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from importlib import import_module
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
@@ -107,7 +108,7 @@ def mission_of(given: object, *, keywords: Keywords = (), world: Path | Source |
         tree = Tree(given) if isinstance(given, Node) else given
         return mission_of_tree(tree, world_vocabulary(keywords, world), world)
     if hasattr(given, "btlang_entry"):
-        return mission_of_tree(Tree(Node(given.btlang_entry.id)), world_vocabulary([*keywords, given], world), world)  # type: ignore[list-item]
+        given = import_module("btlang.behavior").leaf(given)  # which is above this module
     compile = getattr(given, "mission", None)
     if callable(compile):
         made: Mission = compile(keywords=keywords, world=world)

@@ -112,6 +112,14 @@ def test_a_replacing_function_without_an_id() -> None:
     assert sequence(leaf(fake, "lab"), "go to the kitchen").run(speed="max").succeeded
     assert done == ["lab", "kitchen"]
 
+    @action("wave", replace=True)
+    def fake_wave() -> None:
+        done.append("wave")
+
+    with btlang.Session() as session:
+        assert session.run(fake_wave, speed="max").outcome.succeeded  # type: ignore[union-attr]
+    assert done[2:] == ["wave"]
+
 
 @pytest.mark.parametrize(
     ("call", "said"),
