@@ -19,8 +19,8 @@ from btlang.run.events import LOGGED, Event
 from btlang.run.field_types import field_type
 from btlang.run.json_log import described
 from btlang.task import command_schema
-from tests.cli_page import cli_page
 from btlang.tree.catalogue import CATALOGUE, POST_CONDITIONS, PRE_CONDITIONS, NodeKind, Port
+from tests.cli_page import cli_page
 
 ROOT = Path(__file__).parent.parent
 _TYPES = {"string": "string", "integer": "number", "number": "number", "boolean": "boolean", "null": "null"}
