@@ -57,7 +57,7 @@ def parse_tree(
     gets them (`Session.prepare`). `origins` gets the nodes by their identities, each with the syntax that it was made
     of. Raises MissionError with all diagnostics.
     """
-    source = _source_of(text)
+    source = source_of(text)
     with gc_paused:
         vocabulary, chosen = mission_vocabulary(source, keywords, world_of(world), language)
         read = read_text(source, main, vocabulary=vocabulary, parser=parser, errors_of=errors_of, known=_known(values))
@@ -124,7 +124,8 @@ def mission_of_tree(
     return Mission(compilation.tree, vocabulary, world_of(world), tuple(compilation.warnings), facts=facts)
 
 
-def _source_of(text: object) -> Source:
+def source_of(text: object) -> Source:
+    """The source of a text. Raises TypeError for anything else."""
     if isinstance(text, Source):
         return text
     if isinstance(text, str):
@@ -147,7 +148,7 @@ def format_mission(
     """
     from btlang.printer.layout import laid_out
 
-    source = _source_of(text)
+    source = source_of(text)
     if frontend_of(source) != "english":
         raise MissionError([diagnostic("BT001", Span(source, 0, 1), file=source.name, reason="it isn't English")])
     with gc_paused:

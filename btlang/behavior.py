@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
-from btlang.api import Mission, mission_of_tree
+from btlang.api import Mission, mission_of_tree, source_of
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.script.values import kept
@@ -197,7 +197,7 @@ class _Assembly:
         if isinstance(child, Node):
             return child
         if isinstance(child, str | Source):
-            return self._root(self._read(Source(child) if isinstance(child, str) else child))
+            return self._root(self._read(source_of(child)))
         if isinstance(child, Mission):
             self.facts += child.facts
             return self._root(child.tree)

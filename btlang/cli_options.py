@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from itertools import takewhile
 
-from btlang.arguments import between, duration, picture, speed
+from btlang.arguments import between, duration, speed
 from btlang.cli_reading import (
     add_check_options,
     add_compile_options,
@@ -164,7 +164,7 @@ def _repl_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _run_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.recording.options import add_recording_options
+    from btlang.recording.options import add_picture_options, add_recording_options
     from btlang.ros.command import add_robot_options
 
     add_mission_options(parser)
@@ -178,15 +178,7 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, metavar="N", help="seed of random choices; the log of a run has its seed")
     parser.add_argument("--answers", metavar="FILE", help="TOML file with answers to what the robot asks")
     parser.add_argument("--log", metavar="FILE", help="write every event as a line of JSON")
-    parser.add_argument(
-        "--picture", type=picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"
-    )
-    parser.add_argument(
-        "--tree-picture",
-        type=picture(".svg", ".png"),
-        metavar="FILE",
-        help="draw the tree with the final status of every node: .svg or .png",
-    )
+    add_picture_options(parser)
     parser.add_argument("--voice", metavar="FILE", help="write what the robot says to a WAV file")
     parser.add_argument("--lines", action="store_true", help="print plain lines, even on a terminal")
     parser.add_argument("--quiet", action="store_true", help="print only errors")

@@ -14,6 +14,7 @@ from btlang.passes.compilation import Compilation, Pass
 from btlang.passes.lint.allow import silence, silence_in_xml
 from btlang.passes.lint.asked_once import asked_once
 from btlang.passes.lint.busy import busy_loops
+from btlang.passes.lint.conditional_alternative import conditional_alternative
 from btlang.passes.lint.cut_off import cut_off
 from btlang.passes.lint.half_turns import half_turns
 from btlang.passes.lint.line_end import line_ends
@@ -44,6 +45,7 @@ CHECKS = (
 PASSES = (
     *CHECKS,
     Pass("two readings", two_readings, needs_text=True),
+    Pass("conditional alternative", conditional_alternative, needs_text=True),
     Pass("asked once", asked_once, needs_text=True),
     Pass("half turns", half_turns, needs_text=True),
     Pass("next day", next_day, needs_text=True),

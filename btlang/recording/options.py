@@ -41,6 +41,19 @@ def add_recording_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_picture_options(parser: argparse.ArgumentParser) -> None:
+    """Of the verbs that show a run: pictures of it."""
+    parser.add_argument(
+        "--picture", type=picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"
+    )
+    parser.add_argument(
+        "--tree-picture",
+        type=picture(".svg", ".png"),
+        metavar="FILE",
+        help="draw the tree with the final status of every node: .svg or .png",
+    )
+
+
 def add_groot_option(parser: argparse.ArgumentParser) -> None:
     """Of the verbs that show a run to Groot2."""
     parser.add_argument(
@@ -57,15 +70,7 @@ def add_replay_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--failure", action="store_true", help="begin at the first failure")
     add_groot_option(parser)
-    parser.add_argument(
-        "--picture", type=picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"
-    )
-    parser.add_argument(
-        "--tree-picture",
-        type=picture(".svg", ".png"),
-        metavar="FILE",
-        help="draw the tree with the final status of every node: .svg or .png",
-    )
+    add_picture_options(parser)
     parser.add_argument("--why", action="store_true", help="at the end, explain what happened, as btc why does")
     parser.add_argument("--to", metavar="FILE", help="write the recording as a log file of Groot2 (.btlog)")
     parser.add_argument(

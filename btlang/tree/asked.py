@@ -6,7 +6,7 @@ would be asked where nobody has answered.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.text.source import Span
@@ -31,7 +31,7 @@ def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:
     problems: list[Diagnostic] = []
 
     def body(root: ast.Ast) -> ast.Ast:
-        if not any(map(_is_answered, ast.parents_first(root))):
+        if not _asks(root):
             return root
         return fold(root, ast.parts, lambda node, done: _gathered(ast.with_parts(node, done), problems))
 
@@ -41,13 +41,14 @@ def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:
     return program(mission), problems
 
 
-def _is_answered(node: ast.Ast) -> bool:
-    return isinstance(node, ast.Phrase) and node.entry.id in ABOUT_ANSWERS
+def _asks(node: ast.Ast, ids: Container[str] = ABOUT_ANSWERS) -> bool:
+    """Whether a condition of these, by default one about an answer, is in a node."""
+    return any(isinstance(each, ast.Phrase) and each.entry.id in ids for each in ast.parents_first(node))
 
 
 def _depends(node: ast.Ast) -> bool:
     """Whether a command is done if the answer is this or that."""
-    return isinstance(node, ast.If) and any(map(_is_answered, ast.parents_first(node.condition)))
+    return isinstance(node, ast.If) and _asks(node.condition)
 
 
 def _gathered(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
@@ -70,7 +71,7 @@ def _gathered(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
             elif form:
                 made[asking] = _with_last(form, item)
                 continue
-        made = _with_reply(made, asking, item)
+        _reply(made, asking, item)
         if _questions(item):
             asking = len(made) - 1
     return made[0] if len(made) == 1 else node.replace(items=tuple(made))
@@ -90,43 +91,34 @@ def _behind_silence(question: ast.Ast, item: ast.If) -> ast.Ast | None:
     return ast.IfWorks(first, item, silent, span) if _questions(first) else None
 
 
-def _with_reply(items: list[ast.Ast], asking: int | None, item: ast.Ast) -> list[ast.Ast]:
-    """Commands with one more, for which nobody has to answer the question among them if it says what silence does.
+def _reply(items: list[ast.Ast], asking: int | None, item: ast.Ast) -> None:
+    """Adds a command to those behind a question, if there is one."""
+    if asking is not None and isinstance(item, ast.If) and _asks(item.condition, (UNANSWERED,)):
+        items[asking:] = _with_silence(items[asking:], item)
+    else:
+        items.append(item)
+
+
+def _with_silence(items: Sequence[ast.Ast], item: ast.If) -> list[ast.Ast]:
+    """A question and what follows, with a command that says what silence does: nobody has to answer then.
 
     `If so, A. If not, B. If she says nothing, C`: silence is no `not`.
     """
-    if asking is None or not isinstance(item, ast.If) or not _may_be_unanswered(item):
-        return [*items, item]
-    question, others = _tried(items[asking]), items[asking + 1 :]
+    asked, *others = items
+    question = asked if isinstance(asked, ast.Try) else ast.Try(asked, None, asked.span)
     excludes = any(isinstance(each, ast.If) and _holds_in_silence(each) for each in others)
     is_plain = isinstance(item.condition, ast.Phrase) and not item.negated and item.otherwise is None
     if not (excludes and is_plain and all(map(_depends, others))):
-        return [*items[:asking], question, *others, item]
+        return [question, *others, item]
     span = Span(item.span.source, others[0].span.start, others[-1].span.end)
     otherwise = others[0] if len(others) == 1 else ast.Chain("sequence", tuple(others), True, span)
-    return [*items[:asking], question, item.replace(otherwise=otherwise)]
+    return [question, item.replace(otherwise=otherwise)]
 
 
 def _holds_in_silence(node: ast.If) -> bool:
     """Whether a command that depends on an answer does something where there is none."""
-    return node.negated or node.otherwise is not None or _is_denied(node.condition)
-
-
-def _is_denied(condition: ast.Ast) -> bool:
-    return any(isinstance(each, ast.Not) for each in ast.parents_first(condition))
-
-
-def _may_be_unanswered(node: ast.Ast) -> bool:
-    """Whether a command is done where nobody answers, or isn't."""
-    if not isinstance(node, ast.If):
-        return False
-    asked = (each for each in ast.parents_first(node.condition) if isinstance(each, ast.Phrase))
-    return any(each.entry.id == UNANSWERED for each in asked)
-
-
-def _tried(question: ast.Ast) -> ast.Ast:
-    """The question, which nobody has to answer."""
-    return question if isinstance(question, ast.Try) else ast.Try(question, None, question.span)
+    is_denied = any(isinstance(each, ast.Not) for each in ast.parents_first(node.condition))
+    return node.negated or node.otherwise is not None or is_denied
 
 
 def _questions(node: ast.Ast) -> list[ast.Phrase]:
@@ -156,9 +148,10 @@ def _with_last(form: Sequence[Any], item: ast.Ast) -> ast.Ast:
     """The outermost of some forms, whose innermost has one more command at its end."""
     body = form[-1][1]
     items = body.items if isinstance(body, ast.Chain) and body.operator == "sequence" else (body,)
-    asking = max(at for at, each in enumerate(items) if _questions(each))
+    made = list(items)
+    _reply(made, max(at for at, each in enumerate(items) if _questions(each)), item)
     span = Span(body.span.source, body.span.start, item.span.end)
-    changed: ast.Ast = ast.Chain("sequence", tuple(_with_reply(list(items), asking, item)), True, span)
+    changed: ast.Ast = ast.Chain("sequence", tuple(made), True, span)
     for node, part in reversed(form):
         parts = [changed if each is part else each for each in ast.parts(node)]
         changed = ast.with_parts(node, parts)

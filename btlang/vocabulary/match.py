@@ -24,6 +24,11 @@ class SlotValue(Record):
     joiner: str = ""
     group: str = ""
 
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The port texts of the value, or of all values of a list."""
+        return self.text, *self.more
+
 
 class Match(Record):
     """A phrase found in a text, up to word `last` (exclusive)."""

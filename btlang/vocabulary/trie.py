@@ -238,7 +238,7 @@ def all_names(
             return SlotValue(name, kind, "", first, _end_of_unknown(root, text, last, context))
         one = SlotValue(name, kind, value[0], last, value[1])
         listed = _listed(root, text, one, context, None, is_subject=False) or one
-        left_out, at = tuple(chain(*map(context.values.meant_by, (listed.text, *listed.more)))), listed.last
+        left_out, at = tuple(chain(*map(context.values.meant_by, listed.texts))), listed.last
     names = [one for one in context.values.likenesses.described(meant) if one not in left_out]
     return SlotValue(name, kind, names[0] if names else "", first, at, tuple(names[1:]), "and" if names[1:] else "")
 

@@ -204,6 +204,9 @@ def test_two_goals_in_a_row_show_both_readings(sentence: str, readings: list[str
         ),
         ("look for Alice for 5 minutes", "repeat (look for Alice) for 5 minutes"),
         ("if Alice is near wave, and if Bob is near nod", "if Alice is near, (wave, and if Bob is near nod)"),
+        ("wave, or nod if Alice is near", "wave, or (nod if Alice is near)"),
+        ("wave, or nod unless Alice is near", "wave, or (nod unless Alice is near)"),
+        ("try to wave, then dock", "try to (wave, then dock)"),
     ],
 )
 def test_sentences_that_exclude_one_another_and_searches_show_both_readings(sentence: str, kept: str) -> None:

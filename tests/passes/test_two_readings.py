@@ -129,6 +129,8 @@ def test_the_fix_keeps_the_tree_and_ends_the_warning(text: str) -> None:
 @example("u then v and w after x")
 @example("u and v until p, w, and x")
 @example("u then v 3 times within 9 s")
+@example("try u, then v and w")
+@example("u, or v unless p")
 @example("if p, if q, u otherwise v")
 @example("if p, u and repeat if q, v otherwise w")
 def test_brackets_give_the_other_one(text: str) -> None:

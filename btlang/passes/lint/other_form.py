@@ -38,7 +38,6 @@ def in_form(node: ast.If | ast.Try, vocabulary: Lexicon) -> Iterator[Attachment]
     body = node.body
     if isinstance(node, ast.Try) and _is_tried(node, vocabulary) and _is_joined_by_then(body, vocabulary):
         yield Attachment(TRIED, node.span.start, partial(_tried_first, node))
-        return
     joins = isinstance(body, ast.Chain) and body.operator in ("sequence", "parallel") and not body.bracketed
     if isinstance(node, ast.If) and isinstance(body, ast.Chain) and joins and len(body.items) > 1:
         before, last = body.items[-2:]

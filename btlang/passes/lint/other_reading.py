@@ -60,12 +60,9 @@ def in_chain(chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabula
         if not (wrapped or lists or _is_open(left) or _is_open(right)):
             continue
         gaps = gaps or Gaps(items, vocabulary)
-        place, start, gap = _Place(chain, gaps, at, is_part), left.span.start, gaps.text(at)
         if not gaps.is_open(at):
-            is_last = at == len(items) - 2 and gap.strip(" ,").lower() in vocabulary.roles["or"]
-            if is_last and chain.operator == "fallback" and wrapped and isinstance(wrapped[0], ast.If):
-                yield Attachment(POSTFIX, start, partial(place.instead, wrapped[0]))
             continue
+        place, start, gap = _Place(chain, gaps, at, is_part), left.span.start, gaps.text(at)
         if _is_open(right):
             yield Attachment(MIXED, start, partial(place.mixed_right, right))
         elif _is_open(left):
@@ -140,13 +137,6 @@ class _Place:
         for form in reversed(wrapped):
             group = form.replace(body=group)
         return self._readings(self.first, self.at + 1, group, self.at + 1)
-
-    def instead(self, right: ast.If) -> Readings:
-        """`A, or B if C`: if C, B, otherwise A."""
-        before = self._joined(0, self.at, {})
-        body, otherwise = (before, right.body) if right.negated else (right.body, before)
-        other = right.replace(negated=False, body=body, otherwise=otherwise)
-        return Readings(self.chain, other, balanced(self.chain.span), bracketed(right.span))
 
     def list_left(self, left: Any) -> Readings:
         """`go to A and B and wave`: go to A, and then go to B and wave."""

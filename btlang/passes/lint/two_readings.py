@@ -10,7 +10,6 @@
 - a number before a pace: `A 3 times every 10 s`;
 - two sentences that could exclude one another: `if C, A. If D, B. Otherwise E`;
 - a search for a time: `look for Alice for 5 min`;
-- `or` before a command with an `if` behind it: `A, or B if C`;
 - what follows a command that is tried: `try to A, then B`.
 """
 
@@ -50,10 +49,10 @@ def two_readings(compilation: Compilation) -> Iterator[Diagnostic]:
             if key in reported:
                 continue
             reported.add(key)
-            printer = printer or _printer(compilation)
+            printer = printer or printer_for(compilation)
             readings = found.readings()
             if readings.span not in warned and not printer.say(readings.taken).in_lines:
-                yield _warning(readings, printer)
+                yield warning_of(readings, printer)
 
 
 def _attachments(root: ast.Ast, compilation: Compilation) -> Iterator[Attachment]:
@@ -89,13 +88,15 @@ def _sentence_ends(source: Source) -> list[int]:
     return [match.start() for match in _SENTENCE_END.finditer(source.text)]
 
 
-def _printer(compilation: Compilation) -> Printer:
+def printer_for(compilation: Compilation) -> Printer:
+    """What says the readings of a mission."""
     from btlang.printer.mission import printer_of  # most missions have nothing to report
 
     return printer_of(compilation.mission, compilation.vocabulary, "all")
 
 
-def _warning(found: Readings, printer: Printer) -> Diagnostic:
+def warning_of(found: Readings, printer: Printer) -> Diagnostic:
+    """BT050 with both readings."""
     taken, other = printer.statement(found.taken), printer.statement(found.other)
     fix = None if "\n" in found.fix[0].text else found.fix
     fixed = taken if fix is None or "\n" in found.span.text else _changed(found.span, *found.fix)

@@ -202,4 +202,4 @@ class ValueTypes:
 
 
 def _holds(match: Match, key: str) -> bool:
-    return any(f"{{{key}}}" in (value.text, *value.more) and value.type != "text" for value in match.values)
+    return any(f"{{{key}}}" in value.texts and value.type != "text" for value in match.values)

@@ -45,7 +45,7 @@ class Answers(AddressedTexts):
         """
         text, last, entry = self._text, match.last, self._vocabulary.entry(UNANSWERED)
         is_joined = any(text.words[last] in self._vocabulary.roles[role] for role in ("or", "and"))
-        is_reply = self._is_asked(right_before=False) and (is_joined or not self._is_asked(right_before=True))
+        is_reply = is_joined if self._is_asked(right_before=True) else self._is_asked(right_before=False)
         if entry is None or not is_reply:
             return 0
         has_comma = text.words[last - 1] == ","

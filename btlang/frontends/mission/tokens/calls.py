@@ -78,7 +78,7 @@ class Calls:
                 self._alternatives[self._reference(listed.type)] = made, listed
             return made
         if values:
-            return Token(meaning.role, start, end, ";".join((values[0].text, *values[0].more)))
+            return Token(meaning.role, start, end, ";".join(values[0].texts))
         return Token(meaning.role, start, end, str(meaning.value) if meaning.role == "count" else None, meaning.between)
 
     def with_details(self, token: Token, at: int, names: TrieNode) -> int:
@@ -171,7 +171,7 @@ class Calls:
     def _note_values(self, match: Match) -> None:
         for value in sorted(match.values, key=lambda value: value.name == value.type):  # a theme last: `it` prefers it
             entry = match.meaning.entry
-            names = (value.text, *value.more) if value.more else ()
+            names = value.texts if value.more else ()
             is_odd = any(text[:1] in _ODD for text in names)
             if value.more and (value.joiner == "or" or (entry is not None and entry.first and value.type == PLACE)):
                 self._context.latest.pop(value.type, None)
@@ -196,7 +196,7 @@ class Calls:
         """BT177 for each owner of whom it isn't known what they own: `my cup`, but not the cup called "my cup"."""
         known = self._vocabulary.values
         named = choice_of(value.group or value.text)
-        names = [value.text, *value.more, *(text for _, text in (named.parts if named is not None else ()))]
+        names = [*value.texts, *(text for _, text in (named.parts if named is not None else ()))]
         said = {word for name in names for word in name.lower().split()}
         if value.type not in WORLD:
             return
@@ -240,7 +240,7 @@ class Calls:
                 diagnostic("BT034", self._text.span(at, match.last), words=self._text.span(at, match.last).text)
             )
         value = match.values[lists[0]]
-        each = [value.replace(text=text, more=()) for text in (value.text, *value.more)]
+        each = [value.replace(text=text, more=()) for text in value.texts]
         before, behind = match.values[: lists[0]], match.values[lists[0] + 1 :]
         joiner = "or" if entry.first and value.type == PLACE else value.joiner
         return Listed(entry, tuple(self.arguments(entry, (*before, one, *behind)) for one in each), joiner)
@@ -255,7 +255,7 @@ class Calls:
 
     def _check_choices(self, entry: Entry, match: Match, at: int) -> None:
         """BT152 where what is chosen would replace another value of the phrase, or is to be compared with."""
-        lists = [{text for text in (value.text, *value.more) if text[:1] == "{"} for value in match.values]
+        lists = [{text for text in value.texts if text[:1] == "{"} for value in match.values]
         choices = [choice for texts in lists for text in texts if (choice := choice_of(text)) is not None]
         keys = [key for texts in lists for key in {key for text in texts for key in _keys(text)}]
         double = next((choice for choice in choices if keys.count(choice.key) > 1 or entry.sort == "value"), None)

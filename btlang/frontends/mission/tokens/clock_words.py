@@ -23,7 +23,7 @@ class ClockWords(SentenceReader):
         said = {value.name: value for value in match.values}
         if entry is None or len(said) != 2:
             return 0
-        days, times = ((said[name].text, *said[name].more) for name in ("days", "time_of_day"))
+        days, times = (said[name].texts for name in ("days", "time_of_day"))
         start, end = self._text.starts[at], self._text.ends[match.last - 1]
         asked = tuple(Called(entry, ((entry.slots[0].name, day),)) for day in days)
         is_once = match.meaning.role == "on_days" and self._is_singular(said["days"])
@@ -46,13 +46,13 @@ class ClockWords(SentenceReader):
         goes_on = is_front and text.words[found[-1].last] == ","
         if len(found) < 2 or not (goes_on or self._is_end(found[-1].last)):
             return 0
-        times = [time for each in found for time in (each.values[0].text, *each.values[0].more)]
+        times = [time for each in found for time in each.values[0].texts]
         tokens.append(Token("at", text.starts[at], text.ends[found[-1].last - 1], ";".join(times)))
         return found[-1].last
 
     def _is_singular(self, days: SlotValue) -> bool:
         """Whether days are said by the names that they have, `Friday`: not `Fridays`, `weekdays`."""
-        names = {name.lower() for name in (days.text, *days.more)}
+        names = {name.lower() for name in days.texts}
         return names.issubset(self._text.words[days.first : days.last]) and names.issubset(_WEEKDAYS)
 
     def _between(self, match: Match, at: int) -> int:

@@ -200,7 +200,7 @@ class WordReader:
                 return end
         if is_first and self._remarks.is_possible and (match is None or role in ("condition", "there_are")):
             if end := self._remarks.end(at):
-                self._problems.append(diagnostic("BT158", text.span(at, end), words=text.span(at, end).text))
+                self._problems.append(diagnostic("BT158", (span := text.span(at, end)), words=span.text))
                 return end + (text.words[end] == ",")
         return 0
 
