@@ -119,11 +119,12 @@ STATEMENTS = {
     "do-that": 'lasting ". " (<do_that> " " (<count> | <again> | <more>) | <repeat_that> " " <count> | <again>)',
     "meanwhile-next": "<together . meanwhile>",
     "finally": '<ordinal> ", " unit',
-    "last": "forever | retry-forever | every-round | every-day | start-over | failing",
+    "last": "forever | retry-forever | every-round | every-day | on-days | start-over | failing",
     "forever": '<repeat> " " lasting | lasting " " <forever>',
     "retry-forever": '<retry> " " lasting',
     "every-round": '<every> ", " lasting (" " <count>)? | lasting " " <every>',
     "every-day": '<every_day> ": " unit',
+    "on-days": '<on_days> ": " unit',
     "start-over": 'lasting ". " (<start_over> | <everything> " " <count>)',
     "failing": "<fail>",
 }
