@@ -91,7 +91,7 @@ def run(arguments: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         encoding="utf-8",
-        timeout=120,
+        timeout=600,  # only against what hangs: these give way to others
         check=False,
     )
 

@@ -144,7 +144,7 @@ def start_sim(tmp_path: Path, domain: int) -> Iterator[Callable[..., Command]]:
     def start(*options: str, **environment: str | None) -> Command:
         folder = tmp_path / f"sim{len(started)}"
         folder.mkdir()
-        arguments = ["sim-ros", "--world", str(ROOM), "--speed", "20", *options]
+        arguments = ["sim-ros", "--world", str(ROOM), "--speed", "10", *options]
         command = Command(folder, domain, *arguments, **environment)
         started.append(command)
         command.wait_for("ready")
@@ -158,7 +158,7 @@ def start_sim(tmp_path: Path, domain: int) -> Iterator[Callable[..., Command]]:
 
 @pytest.fixture
 def sim(start_sim: Callable[..., Command]) -> Command:
-    """The simulated robot in the room of `room.toml`, at 20 times real time."""
+    """The simulated robot in the room of `room.toml`, at 10 times real time."""
     return start_sim()
 
 

@@ -185,7 +185,7 @@ def test_answers_that_are_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
 def test_it_belongs_to_any_robot(tmp_path: Path, over: str, start_sim: Any) -> None:
     options: dict[str, Any] = {"simulate": ["all"]} if over == "devices" else {"sim_time": True}
     if over == "ros":
-        start_sim("--speed", "5")  # at 20 a turn that btlang watches is lost where a busy machine pauses
+        start_sim("--speed", "5")  # at 10 a turn that btlang watches is lost where a busy machine pauses
     robot = connector(robot_file(tmp_path, table(STARTED, parameters="{ force = 0.1 }")), over, **options)
     text = "clench then turn left 20 degrees"
     with btlang.Session(robot) as session:

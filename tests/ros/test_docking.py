@@ -112,7 +112,7 @@ def test_a_mission_docks_by_the_docking_server(
     hall: Path, tmp_path: Path, domain: int, start_sim: Callable[..., Command]
 ) -> None:
     hall.write_text(HALL + FAULT, encoding="utf-8")
-    start_sim("--world", str(hall), "--speed", "8")
+    start_sim("--world", str(hall), "--speed", "4")
     mission = 'dock, otherwise say "broken"; dock then undock'
     options = ("--world", str(hall), "--robot", "ros", "--sim-time", "--lines")
     command = Command(tmp_path, domain, "run", "-c", mission, *options)
@@ -170,7 +170,7 @@ def test_a_halted_dock_is_cancelled(hall: Path, tmp_path: Path, domain: int, sta
 @pytest.mark.long
 def test_what_the_server_tells(hall: Path, start_sim: Callable[..., Command], client: Client) -> None:
     hall.write_text(HALL + FAULT, encoding="utf-8")
-    start_sim("--world", str(hall), "--speed", "8")
+    start_sim("--world", str(hall), "--speed", "4")
     docked = client.hear(Bool, "/docked", LATCHED)
     server = client.action(DockRobot, "/dock_robot")
 

@@ -25,7 +25,7 @@ def test_a_recogniser_elsewhere_answers_a_question(
     world = tmp_path / "hall.toml"
     world.write_text(HALL, encoding="utf-8")
     listening = client.hear(String, "/listening", LATCHED)
-    start_sim("--world", str(world), "--speed", "8")
+    start_sim("--world", str(world), "--speed", "4")
     folder = tmp_path / "run"
     folder.mkdir()
     given = ("--world", str(world), "--robot", "ros", "--sim-time", "--lines")

@@ -83,7 +83,7 @@ class Hall:
         self._file = folder / "hall.toml"
         self._count = 0
 
-    def open(self, more: str = "", speed: int = 8) -> Command:
+    def open(self, more: str = "", speed: int = 4) -> Command:
         self.change(more)
         return self._start("--world", str(self._file), "--speed", str(speed))
 
@@ -203,7 +203,7 @@ def test_without_interfaces_it_does_all_the_rest(tmp_path: Path, domain: int, na
     world = tmp_path / "hall.toml"
     world.write_text(HALL, encoding="utf-8")
     given = ("--world", str(world))
-    sim = WithoutInterfaces(tmp_path / "sim", domain, "sim-ros", *given, "--speed", "8")
+    sim = WithoutInterfaces(tmp_path / "sim", domain, "sim-ros", *given, "--speed", "4")
     sim.wait_for("ready")
     options = ("--robot", "ros", "--sim-time", "--lines", *given)
     mission = "open the lab door then check that the lab door is open"
