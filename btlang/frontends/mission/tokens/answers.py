@@ -6,6 +6,7 @@ from functools import cached_property
 
 from btlang.frontends.mission.token import Called, Listed, Token
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
+from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.tree.asked import ABOUT_ANSWERS, ANSWERED, ASK, UNANSWERED
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import PERSON, TEXT
@@ -13,6 +14,8 @@ from btlang.vocabulary.word_tree import find
 
 _PERSON_SAYS, _SOMEBODY_SAYS = "PersonSays", "SomebodySays"
 _LIMITS = frozenset(("within", "up_to"))
+_BEFORE_NAME = 3  # words: `and if Bob`
+_OF_REPLY = frozenset(("if", "unless", "not", "condition", "or", "and", "comma", "then"))
 _STOPS = frozenset(("semi", "newline"))
 
 
@@ -26,6 +29,28 @@ class Answers(AddressedTexts):
         if not is_so:
             self._tokens.append(Token("not", start, start))
         self._tokens += [condition, Token("comma", end, end)]
+
+    def with_name(self, match: Match | None, at: int) -> Match | None:
+        """The phrase at a word; `if Bob says no` behind `ask Bob "Tea?"` is `if he says no`."""
+        text, context = self._text, self._context
+        where = range(at, at + _BEFORE_NAME) if self._may_ask else ()
+        named = next(((i, read) for i in where if (read := context.read(PERSON, text, i)) is not None), None)
+        if named is None:
+            return match
+        place, (name, end) = named
+        if name != self._asked_person():
+            return match
+        pronouns = self._vocabulary.values.pronouns.items()
+        pronoun = next((word for word, kinds in pronouns if kinds == [PERSON]), "")
+        places = [*range(at, place + 1), *rest_of(text, end)]
+        found = match_of(text, places, {place - at: pronoun}, (self._vocabulary.trie,), context)
+        if found is None or found.last <= place - at:
+            return match
+        entry = found.meaning.entry
+        if entry is None and found.meaning.role == "if_unanswered":
+            text.going_on.add(at)
+            return relocated(found, places)
+        return relocated(found, places) if entry is not None and entry.id in ABOUT_ANSWERS else match
 
     def reply(self, at: int, role: str) -> int:
         """`ask Alice "Tea?". If so, A`: a command that depends on the answer, not on whether there was one."""
@@ -58,6 +83,8 @@ class Answers(AddressedTexts):
     def said(self, token: Token, at: int) -> None:
         """`wait until she says stop` where nobody is asked is what is heard; `she says nothing` is silence."""
         value = token.value
+        if isinstance(value, Called) and value.entry.id == _PERSON_SAYS and self._may_ask:
+            value = token.value = self._answer_of_asked(value)
         if not isinstance(value, Called) or value.entry.id != ANSWERED:
             return
         if self._may_ask:
@@ -70,6 +97,14 @@ class Answers(AddressedTexts):
         if heard is not None:
             by_type = {PERSON: person, TEXT: words}
             token.value = Called(heard, tuple((slot.name, by_type[slot.type]) for slot in heard.slots))
+
+    def _answer_of_asked(self, heard: Called) -> Called:
+        """`if Bob is near or says yes` behind a question to Bob is about his answer."""
+        entry = self._vocabulary.entry(ANSWERED)
+        values = {slot.type: text for slot, (_, text) in zip(heard.entry.slots, heard.arguments, strict=True)}
+        if entry is None or values[PERSON] != self._asked_person():
+            return heard
+        return Called(entry, ((entry.slots[0].name, values[TEXT]),))
 
     def _silent(self, token: Token, words: str) -> None:
         """Makes `she says nothing` and `she doesn't say anything` the condition that nobody has answered."""
@@ -92,9 +127,27 @@ class Answers(AddressedTexts):
         asking = {phrase.split()[0] for entry in self._vocabulary.entries.get(ASK, ()) for phrase in entry.phrases}
         return not asking.isdisjoint(self._text.distinct)
 
+    def _asked_person(self) -> str:
+        """Who is asked by the question that a condition may be about whose form has begun; "" if nobody alone is."""
+        last = len(self._tokens)
+        while last and self._tokens[last - 1].kind in _OF_REPLY:
+            last -= 1
+        asked = self._question(last, right_before=False)
+        if not isinstance(asked, Called):
+            return ""
+        persons = {slot.name for slot in asked.entry.slots if slot.type == PERSON}
+        return next((text for name, text in asked.arguments if name in persons), "")
+
     def _is_asked(self, right_before: bool) -> bool:
-        """Whether the statement before asks, or depends on the answer: `ask "Tea?". If so, A. If he wants none, B`."""
-        tokens, last = self._tokens, len(self._tokens)
+        """Whether the statement before asks, or depends on the answer."""
+        return self._question(len(self._tokens), right_before) is not None
+
+    def _question(self, last: int, right_before: bool) -> Called | Listed | None:
+        """What the statement asks that ends before a token, or the one whose answer it depends on.
+
+        `ask "Tea?". If so, A. If he wants none, B`
+        """
+        tokens = self._tokens
         while last:
             if tokens[last - 1].kind in _STOPS:
                 last -= 1
@@ -106,8 +159,8 @@ class Answers(AddressedTexts):
             while tokens[last - 1].kind in _LIMITS:
                 last -= 1
             if tokens[last - 1].kind == "command" and values and values[-1].entry.id == ASK:
-                return True
+                return values[-1]
             if right_before or tokens[first].kind != "if" or not values or values[0].entry.id not in ABOUT_ANSWERS:
-                return False
+                return None
             last = first
-        return False
+        return None

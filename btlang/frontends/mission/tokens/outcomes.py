@@ -10,9 +10,11 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import FORMS, JOINTS, LINES, RULES, Called, Listed, Token, go_on, texts_of
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.text.source import Span
+from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.trie import longest
+from btlang.vocabulary.value_type import PLACE
 from btlang.vocabulary.word_tree import find
 
 _HEARS = "ears"
@@ -41,6 +43,8 @@ class Outcomes(SentenceReader):
             return
         command = self._before(form)
         if command is None:
+            if denied and tokens[form].kind == "if":
+                self._join_otherwise(form)
             return
         first = self._statement(command)[0] if denied else command
         if any(_achieves(tokens[at], tokens[-1]) for at in range(command, first - 1, -1)):
@@ -137,10 +141,23 @@ class Outcomes(SentenceReader):
         if is_new:
             go_on(tokens)
             role = meaning.kind if meaning.value is None else str(meaning.value)
-            self.doubt(role, Span(self._text.source, meaning.start, end))
+            if role != (role := self.going_on(role, Span(self._text.source, meaning.start, end))):
+                meaning = Token(role, meaning.start, end)
         else:
             del tokens[behind:]
         tokens.append(meaning)
+
+    def _join_otherwise(self, form: int) -> None:
+        """`look for the cup. If it is there, A. If it isn't there, B`: the second is `otherwise`."""
+        tokens, before = self._tokens, form
+        while before and tokens[before - 1].kind in _ENDS:
+            before -= 1
+        start, end = tokens[form].start, tokens[-1].end
+        if before < form and _WORKS in self._statement(before)[1]:
+            if self._denies_what_worked(Span(self._text.source, start, end)):
+                del tokens[form:]
+                go_on(tokens)
+                tokens.append(Token("otherwise", start, end))
 
     def _meaning(self, form: Token, denied: bool, is_new: bool) -> Token | None:
         """What a form says that asks what the command has settled: that it failed, or worked, or `then`."""
@@ -151,9 +168,10 @@ class Outcomes(SentenceReader):
             return Token("then", at, at)
         return Token(_WORKS, at, at) if is_new else None
 
-    def doubt(self, role: str, words: Span) -> None:
-        """BT168 for what goes on with a failure where something stands between: `A. If that fails, B. Otherwise C`.
+    def going_on(self, role: str, words: Span) -> str:
+        """The role of words that go on with the statement before: `if you don't find it` denies `if you find it`.
 
+        BT168 for what goes on with a failure where something stands between: `A. If that fails, B. Otherwise C`.
         BT145 for silence behind what is no question: `ask "Tea?". If she says no, A. If she says nothing, B`.
         """
         word = self._vocabulary.word
@@ -161,11 +179,28 @@ class Outcomes(SentenceReader):
             example = f'ask "Tea?". {word(_WORKS).capitalize()}, wave. {word("otherwise").capitalize()} nod'
             self._calls.problems.append(diagnostic("BT145", words, words=words.text.rstrip(","), example=example))
         if role not in ("otherwise", _FAILS, _WORKS):
-            return
+            return role
         kinds = self._statement(len(self._tokens))[1]
+        if role == _FAILS and _WORKS in kinds and self._denies_what_worked(words):
+            return "otherwise"
         if _WORKS in kinds if role == _FAILS else _FAILS in kinds and _WORKS not in kinds:
             example = f"dock. {word(_WORKS)}, wave. {word('otherwise')} nod"
             self._calls.problems.append(diagnostic("BT168", words, words=words.text, example=example))
+        return role
+
+    def _denies_what_worked(self, words: Span) -> bool:
+        """Whether the words deny the latest ones by which the statement asked whether its command worked."""
+        at = next(at for at in reversed(range(len(self._tokens))) if self._tokens[at].kind == _WORKS)
+        worked, pronouns = self._tokens[at], self._vocabulary.values.pronouns
+        asked, said = _words(self._text.source.text[worked.start : worked.end]), _words(words.text)
+        if any(PLACE in pronouns.get(word, ()) for word in said) and any(map(_moves, self._tokens[at:])):
+            return False  # `if he is there, go to the lab. If he isn't there, A`: it may be about the lab
+        denied = (
+            [*asked[:at], *way.split(), *asked[at + 1 :]]
+            for at, verb in enumerate(asked)
+            for way in self._vocabulary.negations.get(verb, ())
+        )
+        return any(said[-len(each) :] == each for each in denied)
 
     def _asks(self) -> bool:
         """Whether the latest command waits for what somebody says."""
@@ -189,6 +224,14 @@ class Outcomes(SentenceReader):
         word = self._vocabulary.word(_FAILS if role == "otherwise" else role)
         one = f"... {word} {said}" if role == "then" else f"{word}, {said}"
         self._calls.problems.append(diagnostic("BT151", words, words=words.text, one=one, other=said))
+
+
+def _words(text: str) -> list[str]:
+    return text.lower().rstrip(",").split()
+
+
+def _moves(token: Token) -> bool:
+    return isinstance(token.value, Called | Listed) and MOVES in token.value.entry.resources
 
 
 def _achieves(command: Token, asked: Token) -> bool:

@@ -47,7 +47,7 @@ def _with_subject(
     first: int, verb: int, origin: Match, text: Words, at: int, vocabulary: Lexicon, context: ReadingContext
 ) -> tuple[Match, None] | None:
     """`she says no or doesn't reply`: the words at a place with the subject alone in front, if they have a verb."""
-    if verb == first or origin.meaning.role != "condition":
+    if verb == first or origin.meaning.role not in ("condition", "negated"):
         return None
     places = [*range(first, verb), *rest_of(text, at)]
     match = match_of(text, places, {}, (vocabulary.trie,), context)

@@ -133,7 +133,7 @@ class WordReader:
 
     def _phrase(self, at: int, last: int) -> int:
         """What begins at a word, known or unknown."""
-        match = self._match(at)
+        match = self._requests.with_name(self._match(at), at)
         if match is not None and match.meaning.role in NODE_ROLES:
             if end := self._node(match, at):
                 return end
@@ -271,7 +271,7 @@ class WordReader:
             return after_politeness(tokens, self._text.words, match)
         if at in self._text.going_on:
             go_on(tokens)
-            self._outcomes.doubt(role, self._text.span(at, match.last))
+            role = self._outcomes.going_on(role, self._text.span(at, match.last))
         if end := self._read_otherwise(match, role, at):
             return end
         if role in _CONDITIONS:
@@ -351,8 +351,8 @@ class WordReader:
             self._outcomes.found(match, at)
         if role == "if_works":
             self._outcomes.if_works(match.last)
-        if role in ("if_fails", "if_unanswered"):
-            tokens[-1].kind, tokens[-1].value = "or", "if_fails"
+        if role in ("if_fails", "if_unanswered", "otherwise"):
+            tokens[-1].kind, tokens[-1].value = ("or", "if_fails") if role != "otherwise" else (role, None)
         if role in _ROLES:
             tokens[-1].kind = _ROLES[role][len(tokens) > 1 and tokens[-2].kind == "stop"]
 
