@@ -6,8 +6,9 @@ Both are read as the words that they stand for would be, in a text put together 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
 
-from btlang.frontends.mission.token import LINES, Called, Listed, Token, arguments_of, constraint_of
+from btlang.frontends.mission.token import LINES, Called, Listed, Remembered, Token, arguments_of, constraint_of
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.left_out import left_out
 from btlang.frontends.mission.tokens.word_matches import (
@@ -20,7 +21,7 @@ from btlang.frontends.mission.tokens.word_matches import (
     words_of,
 )
 from btlang.text.words import Words
-from btlang.vocabulary.entry import RECIPIENT
+from btlang.vocabulary.entry import RECIPIENT, Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
@@ -145,7 +146,38 @@ class PartialCommands:
         entry = match.meaning.entry if match is not None else None
         return match if entry is not None and entry.constrains else None
 
-    def add_contracted(self, at: int) -> int:
+    def add_condition(self, at: int) -> int:
+        """A condition that isn't said as its phrases are. Returns where to go on, 0 where there is none."""
+        return self._add_quantity(at) or self._add_contracted(at)
+
+    def _add_quantity(self, at: int) -> int:
+        """`charge until it is at least 80%`: what is compared is the latest quantity, or the only one with that unit."""
+        if OBJECT not in self._vocabulary.values.pronouns.get(self._text.words[at], ()):
+            return 0
+        spoken = (token.value for token in reversed(self._tokens) if isinstance(token.value, Called | Remembered))
+        latest = next((value.entry for value in spoken if value.entry.measures), None)
+        found: dict[str, tuple[Match, Sequence[int]]] = {}
+        for entry in [latest] if latest is not None else self._measuring:
+            words = entry.quantity[0].split()
+            places = [*[at] * len(words), *rest_of(self._text, at + 1)]
+            match = match_of(self._text, places, dict(enumerate(words)), self._tries, self._context)
+            if match is not None and match.meaning.entry is not None and match.last > len(words):
+                if match.meaning.role == "condition" and match.meaning.entry.quantity == entry.quantity:
+                    found[entry.id] = match, places
+        if len(found) != 1:
+            return 0
+        match = relocated(*next(iter(found.values())))
+        self.append(match, at)
+        return match.last
+
+    @cached_property
+    def _measuring(self) -> list[Entry]:
+        """The quantities with a unit."""
+        vocabulary = self._vocabulary
+        entries = (entry for same in vocabulary.entries.values() for entry in same if entry.measures)
+        return [entry for entry in entries if vocabulary.types[entry.measures].kind == "quantity"]
+
+    def _add_contracted(self, at: int) -> int:
         """`if the battery's low`: a condition with a verb that is only an ending of the word before it."""
         words, ending = self._text.words, self._vocabulary.values.adjectives.ending
         be = self._vocabulary.asking["asking_be"][:1]

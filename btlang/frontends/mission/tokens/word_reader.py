@@ -236,7 +236,8 @@ class WordReader:
         """Words that are no phrase, or one that doesn't stand alone: they say something here, or are unknown."""
         tokens, text = self._tokens, self._text
         end = (
-            without_meaning(tokens, text, match, role, at, self._vocabulary, self._context)
+            (self._partial.add_condition(at) if tokens and tokens[-1].kind in BEFORE_CONDITIONS else 0)
+            or without_meaning(tokens, text, match, role, at, self._vocabulary, self._context)
             or self._order.start_of_leg(at)
             or self._order.pace(at)
             or self._order.journey_of_constraint(at)
@@ -244,7 +245,6 @@ class WordReader:
             or self._partial.add_left_out(at)
             or self._partial.add_without_theme(at)
             or self._requests.tell(at)
-            or (self._partial.add_contracted(at) if tokens and tokens[-1].kind in BEFORE_CONDITIONS else 0)
         )
         if end:
             return end
