@@ -25,7 +25,7 @@ GOES_ON = frozenset((
 """The roles that don't begin a new statement: what they begin continues the statement before it."""
 
 NO_PHRASES = frozenset((
-    "define_strong", "define", "fact", "facing", "set_to", "by", "remember_as", "each_in",
+    "define_strong", "define", "fact", "facing", "set_to", "by", "add_to", "subtract_from", "remember_as", "each_in",
     "called", "with", "giving", "node", "newline", "character", "main_name", "given", "here",
     "needs_world", "needs_words", "all_names", "except", "nearest", "random", "largest", "smallest", "furthest",
     "leftmost", "rightmost",
@@ -44,7 +44,7 @@ ASKING = (
     "pleading", "saying_that", "plea", "reminding", "reminder", "addressed", "informing", "informed", "staying",
     "resuming", "interrupting",
     "if_yes", "if_no", "told_of", "standing", "unable", "waiting", "apiece", "between_joint", "standing_verbs",
-    "events", "duties", "reasons",
+    "events", "duties", "reasons", "performing",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 
@@ -72,7 +72,7 @@ _NO_SLOT = (
     "repeat", "try", "retry", "if_possible", "wait_until", "wait_for", "check", "nothing", "never", "fail",
     "in_parallel", "in_order",
     "define_strong", "define", "fact", "facing",
-    "set", "set_to", "increase", "decrease", "by", "remember", "remember_as", "each", "each_in", "include",
+    "set", "set_to", "increase", "decrease", "by", "add", "add_to", "subtract", "subtract_from", "remember", "remember_as", "each", "each_in", "include",
     "do", "test", "called", "with", "giving", "node", "newline", "character", "main_name", "given",
     "needs_world", "needs_words", "all_names", "except", "nearest", "random", "largest", "smallest", "furthest",
     "leftmost", "rightmost",

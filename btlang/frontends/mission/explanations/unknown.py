@@ -100,6 +100,8 @@ def misread_head(text: Words, at: int, role: str, vocabulary: Lexicon) -> Diagno
         "set": f"{word('set')} counter {word('set_to')} 3",
         "increase": f"{word('increase')} counter {word('by')} 1",
         "decrease": f"{word('decrease')} counter {word('by')} 1",
+        "add": f"{word('add')} 1 {word('add_to')} counter",
+        "subtract": f"{word('subtract')} 1 {word('subtract_from')} counter",
         "remember": f"{word('remember')} {next(measured, 3)} {word('remember_as')} level",
         "each": f"{word('each')} place {word('each_in')} {', '.join(places[:2]) or 'a, b'}: ...",
     }
@@ -121,7 +123,7 @@ def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
 
 _NOT_OFFERED = NOT_ALONE | {
     *NODE_ROLES, "never", "called", "with", "giving", "node", "newline", "character", "main_name", "given",
-    "needs_world", "needs_words", "set_to", "by", "remember_as", "each_in", "all_names", "except", "may", "or_stay",
+    "needs_world", "needs_words", "set_to", "by", "add_to", "subtract_from", "remember_as", "each_in", "all_names", "except", "may", "or_stay",
 }  # fmt: skip
 """Roles that say nothing alone or are for texts that programs write: what is like their words was hardly meant so."""
 

@@ -16,8 +16,13 @@ from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PLACE, WORLD
 from btlang.vocabulary.values import key_of
 
-SEPARATORS = {"set": "set_to", "increase": "by", "decrease": "by", "remember": "remember_as", "each": "each_in"}
+SEPARATORS = {
+    "set": "set_to", "increase": "by", "decrease": "by", "add": "add_to", "subtract": "subtract_from",
+    "remember": "remember_as", "each": "each_in",
+}  # fmt: skip
 """The roles that begin a statement about a value, each with the role of the words between the name and the value."""
+_VALUE_FIRST = {"remember": "remember", "add": "increase", "subtract": "decrease"}
+"""The roles behind which the value stands before the name, each with the role of what it says."""
 _MOST_WORDS = 4
 BEFORE_BODY = (":", ",")
 """The marks between `for each ...` and what is done."""
@@ -27,8 +32,8 @@ _MOST_MEASURED = 40  # words of what is remembered
 class Prefix(Record):
     """The prefix of a statement about a value: its name, the word at which the value stands, and the word behind it.
 
-    `value` is -1 where none is given. Of `remember ... as name` the value stands before the name and ends before the
-    word `value_end`, and `last` is behind the name. `for each person:` goes through the names that its `noun` is for.
+    `value` is -1 where none is given. Of `remember ... as name` and `add 2 to name`, which is said as `increase`, the
+    value stands before the name and ends before the word `value_end`, and `last` is behind the name. `for each person:` goes through the names that its `noun` is for.
     """
 
     role: str
@@ -60,14 +65,14 @@ def find_prefixes(text: Words, vocabulary: Lexicon) -> dict[int, Prefix]:
 def _prefix(text: Words, role: str, at: int, vocabulary: Lexicon) -> Prefix | None:
     """None where it is not put together as such a statement is."""
     separator = _separator(
-        text, at, vocabulary.roles[SEPARATORS[role]], _MOST_MEASURED if role == "remember" else _MOST_WORDS + 2
+        text, at, vocabulary.roles[SEPARATORS[role]], _MOST_MEASURED if role in _VALUE_FIRST else _MOST_WORDS + 2
     )
-    if role == "remember":
+    if role in _VALUE_FIRST:
         if separator is None:
             return None
         last = _end_of_name(text, separator[1], vocabulary)
         words = _name(text, separator[1], last, vocabulary)
-        return Prefix(role, key_of(words), words, at, last, separator[0]) if words else None
+        return Prefix(_VALUE_FIRST[role], key_of(words), words, at, last, separator[0]) if words else None
     if role == "each":
         if separator is not None and separator[0] == at:
             return _each_of(text, separator[1], vocabulary)

@@ -37,7 +37,7 @@ def read_statement(
             end = max(prefix.last, quantity.last)
             return Token("command", start, text.ends[end - 1], made), end
     found = _value(prefix, known, text, vocabulary, context)
-    if found is None or (prefix.role == "remember" and found.last != prefix.value_end):
+    if found is None or prefix.value_end not in (-1, found.last):
         return None
     operation = "set" if prefix.role == "remember" else prefix.role
     end = max(prefix.last, found.last)

@@ -81,7 +81,7 @@ class OrderWords(ClockWords):
         before = self._tokens[statement_start(self._tokens, at) : at]
         return is_earlier and any(token.kind in FORMS for token in before)
 
-    def pace(self, at: int) -> int:
+    def _pace(self, at: int) -> int:
         """`drive slowly` before all journeys: how they are made."""
         words = self._text.words
         manner = find(self._context.manners, words, at + 1) if words[at] in self._vocabulary.journey_verbs else None
@@ -108,7 +108,11 @@ class OrderWords(ClockWords):
         tokens.append(Token("then", self._text.ends[journey.last - 1], self._text.ends[journey.last - 1]))
         return joint.last if joint is not None and joint.meaning.role in ("and", "then") else behind
 
-    def start_of_leg(self, at: int) -> int:
+    def no_phrase(self, at: int) -> int:
+        """What begins with words that are no phrase."""
+        return self._start_of_leg(at) or self._pace(at) or self._journey_of_constraint(at) or self._wait_for(at)
+
+    def _start_of_leg(self, at: int) -> int:
         """`go from the lab to the hall`, by the verb at a word."""
         if self._text.words[at] not in self._vocabulary.journey_verbs:
             return 0
@@ -159,7 +163,7 @@ class OrderWords(ClockWords):
                 tokens[-1].kind = WAITING[role]
                 tokens.insert(-1, Token("then", tokens[-1].start, tokens[-1].start))
 
-    def wait_for(self, at: int) -> int:
+    def _wait_for(self, at: int) -> int:
         """`wait for Bob`: until he comes."""
         tokens, entry = self._tokens, self._vocabulary.entry(_COMES)
         found = self._context.read(PERSON, self._text, at) if tokens and tokens[-1].kind == "wait_for" else None
@@ -271,7 +275,7 @@ class OrderWords(ClockWords):
         self._calls.problems.append(diagnostic("BT166", span, words=span.text, otherwise=otherwise))
         return match.last
 
-    def journey_of_constraint(self, at: int) -> int:
+    def _journey_of_constraint(self, at: int) -> int:
         """`avoid the hall until the lab`, `until you have been in the lab`: a constraint that a journey ends.
 
         `don't go through the hall towards the lab` is one for a journey.

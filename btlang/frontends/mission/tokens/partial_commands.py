@@ -151,7 +151,7 @@ class PartialCommands:
         return self._add_quantity(at) or self._add_contracted(at)
 
     def _add_quantity(self, at: int) -> int:
-        """`charge until it is at least 80%`: what is compared is the latest quantity, or the only one with that unit."""
+        """`charge until it is at least 80%`: the latest quantity is compared, or the only one with that unit."""
         if OBJECT not in self._vocabulary.values.pronouns.get(self._text.words[at], ()):
             return 0
         spoken = (token.value for token in reversed(self._tokens) if isinstance(token.value, Called | Remembered))
@@ -223,6 +223,12 @@ class PartialCommands:
                 token.value = value.replace(arguments=both[0] if isinstance(value, Called) else both)
             elif token.kind not in ("and", "comma") and token.role != "list":
                 return
+
+    def performed(self, at: int) -> int:
+        """`run the tour`: says nothing before the name of a definition. Returns where that begins, 0 for other words."""
+        if self._text.words[at] not in self._vocabulary.asking["performing"]:
+            return 0
+        return at + 1 if longest(self._tries[1], self._text, at + 1, self._context) is not None else 0
 
     def add_without_theme(self, at: int) -> int:
         """A command about the thing of the one before, which it leaves out: `pick up the cup and put in the box`."""

@@ -5,11 +5,12 @@ Each becomes the commands that answer it: what is asked is measured, and said.
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import Called, Remembered, Token
+from btlang.frontends.mission.token import Called, Listed, Remembered, Token
 from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.answers import Answers
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
-from btlang.vocabulary.entry import COUNT, SAY, Entry
+from btlang.tree.sums import COUNTING
+from btlang.vocabulary.entry import COUNT, SAY, Entry, Meaning
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import free_key
 from btlang.vocabulary.trie import longest
@@ -133,13 +134,19 @@ class Questions(Answers):
         return self._say_count(at, counted, command, slot) if self._ends(counted.last) else 0
 
     def _say_last_count(self, at: int, end: int, command: Token | None, slot: str) -> int:
-        """`count the boxes, then tell me how many there are`: what was counted."""
+        """`count the boxes, then tell me how many there are`, `then say how many`: what was counted."""
         behind, count = longest(self._vocabulary.trie, self._text, end, self._context), self._vocabulary.entry(COUNT)
-        if behind is None or behind.meaning.role != "there_are" or count is None or not self._ends(behind.last):
+        is_there = behind is not None and behind.meaning.role == "there_are"
+        last = behind.last if behind is not None and is_there else end
+        if count is None or not self._ends(last) or not (is_there or self._has_counted()):
             return 0
-        measured = Match(behind.meaning.replace(role="quantity", entry=count), behind.last)
-        self._say(at, measured, command, slot)
-        return behind.last
+        self._say(at, Match(Meaning("quantity", count), last), command, slot)
+        return last
+
+    def _has_counted(self) -> bool:
+        """Whether something has been counted before."""
+        said = (token.value for token in self._tokens)
+        return any(isinstance(value, Called | Listed) and value.entry.id in COUNTING for value in said)
 
     def _counted(self, at: int) -> Match | None:
         """The command that counts what words name, with the words that may stand behind that."""

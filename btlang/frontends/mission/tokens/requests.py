@@ -61,8 +61,7 @@ class Requests(Questions):
         text, first = self._text, value.first
         asked = longest(self._vocabulary.trie, text, first, self._context)
         if asked is not None and asked.meaning.role == "ask_how_many":
-            counted = self._counted(asked.last)
-            return self._say_count(at, counted, command, value.name) if counted is not None else 0
+            return self._how_many(at, asked.last, command, value.name)
         if entry.id == TELL and text.words[first] in self._vocabulary.roles["and"]:
             return self._inform(at)  # `tell Bob and wave`
         if entry.id == TELL and text.words[first - 1] in self._vocabulary.asking["pleading"]:

@@ -16,6 +16,8 @@ _JOINTS = JOINTS | {"stop"}
 _BLOCKED = frozenset(("WallInFront", "SomethingInTheWay", "SomeoneInTheWay"))
 _STATEMENT_ENDS = (END_OF_STATEMENT, END_OF_TEXT)
 _OPERANDS = frozenset(("command", "name", "close", "wait", "nothing", "fail", "node"))
+_ENDS = frozenset(("semi", "newline", "stop"))
+_IN_ALL = frozenset(("count", "at_most", "up_to_times", "tries"))
 _TWICE = "2"
 
 
@@ -64,7 +66,7 @@ class Tries(SentenceReader):
         form = self._condition(end)
         last = self._behind(form)
         if not form or not last or tokens[last - 1].kind not in _OPERANDS:
-            return 0
+            return self._try_that(match, at)
         first = _first_of_form(tokens, statement_start(tokens, last), last)
         start, stop, number = self._text.starts[at], self._text.ends[match.last - 1], _TWICE
         behind = match.last + (self._text.words[match.last] == ",")
@@ -91,6 +93,26 @@ class Tries(SentenceReader):
         end = amount.last if amount is not None else match.last
         self._doubt(end)
         return end
+
+    def _try_that(self, match: Match, at: int) -> int:
+        """`pick up the cup. Try it 3 times`: tries what the statement before does, so many times in all."""
+        tokens, last = self._tokens, len(self._tokens)
+        while last and tokens[last - 1].kind in _ENDS:
+            last -= 1
+        first = statement_start(tokens, last)
+        kinds = {token.kind for token in tokens[first:last]}
+        amount = longest(self._vocabulary.trie, self._text, match.last, self._context)
+        if amount is None or amount.meaning.role not in _IN_ALL or not last or last == len(tokens):
+            return 0
+        if not kinds <= {*_OPERANDS, *_JOINTS, "open"} or kinds.isdisjoint(_OPERANDS):
+            return 0
+        start, end = tokens[first].start, tokens[last - 1].end
+        count = Token("count", self._text.starts[at], self._text.ends[amount.last - 1])
+        count.value = self._calls.token(amount, match.last).value
+        tokens[first:] = [
+            Token("retry", start, start), Token("open", start, start), *tokens[first:last], Token("close", end, end), count,
+        ]  # fmt: skip
+        return amount.last
 
     def _doubt(self, at: int) -> None:
         """`..., try again, at most 3 times. Then B`: B in any case, or only if all tries fail (BT151)."""

@@ -238,10 +238,8 @@ class WordReader:
         end = (
             (self._partial.add_condition(at) if tokens and tokens[-1].kind in BEFORE_CONDITIONS else 0)
             or without_meaning(tokens, text, match, role, at, self._vocabulary, self._context)
-            or self._order.start_of_leg(at)
-            or self._order.pace(at)
-            or self._order.journey_of_constraint(at)
-            or self._order.wait_for(at)
+            or self._order.no_phrase(at)
+            or self._partial.performed(at)
             or self._partial.add_left_out(at)
             or self._partial.add_without_theme(at)
             or self._requests.tell(at)

@@ -1,0 +1,138 @@
+"""Counts over several places: `count the people in the lab and the hall, then say the number` says how many in all.
+
+Where somebody asks for the number behind several counts of one command, these are summed in a value of the mission.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.tree import ast
+from btlang.tree.visit import fold
+from btlang.vocabulary.entry import COUNT, Entry
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.value_type import number_type
+
+COUNTING = frozenset(("CountPeople", "CountObjects", "CountKind"))
+"""The ids of commands that count."""
+_COMPARED = "Counted"
+"""The id of the condition about what was counted last."""
+_IN_TURN = ("sequence", "and")
+"""Operators of chains whose commands run one after another: one that counts goes with nothing else."""
+_TOTAL, _LAST = "counted_in_all", "counted_there"
+
+
+def with_sums(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
+    """The mission with the sums that it asks for."""
+    count, number = vocabulary.entry(COUNT), number_type(vocabulary.types)
+    if count is None or number is None:
+        return mission
+    sums = _Sums(count, number)
+
+    def body(root: ast.Ast) -> ast.Ast:
+        if not any(map(_is_count, ast.parents_first(root))):
+            return root
+        return fold(root, ast.parts, lambda node, done: sums.summed(ast.with_parts(node, done)))
+
+    def program(part: ast.Program) -> ast.Program:
+        return ast.with_bodies(part, body, program)
+
+    return program(mission)
+
+
+class _Sums:
+    """Puts sums into missions, in numbers of a type, with the quantity that was counted last."""
+
+    def __init__(self, count: Entry, number: str) -> None:
+        self._count, self._number = count, number
+
+    def summed(self, node: ast.Ast) -> ast.Ast:
+        """A sequence in which each command that counts several times is summed, if what follows asks for the number."""
+        if not isinstance(node, ast.Chain) or node.operator not in _IN_TURN:
+            return node
+        made: list[ast.Ast] = []
+        keys: set[str] | None = None  # the values that hold the number, behind such a command
+        for at, item in enumerate(node.items):
+            if _counts(item):
+                keys = _keys(item) if _counts_several(item) else None
+                if keys is not None and not _is_asked(node.items[at + 1 :], keys):
+                    keys = None
+                made += [item] if keys is None else self._sum(item, keys)
+            else:
+                made.append(item if keys is None else fold(item, ast.parts, self._asking_sum))
+        return ast.Chain(node.operator, tuple(made), node.bracketed, node.span)
+
+    def _sum(self, item: ast.Ast, keys: set[str]) -> list[ast.Ast]:
+        """A command that counts several times, between what begins the sum and what tells it."""
+        span = item.span
+        begun = ast.Assign(_TOTAL, "set", self._number, "0", span)
+        told = [ast.Assign(key, "set", self._number, f"{{{_TOTAL}}}", span) for key in sorted(keys)]
+        return [begun, fold(item, ast.parts, self._adding), *told]
+
+    def _adding(self, node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+        """A command that counts, with the number that it adds; numbers that were kept in each place are told later."""
+        if isinstance(node, ast.Chain) and node.operator in _IN_TURN:
+            kept = (item for item in done if not _is_number(item))
+            items = tuple(part for item in kept for part in _spliced(item))
+            return ast.Chain(node.operator, items, node.bracketed, node.span)
+        if not _is_count(node):
+            return ast.with_parts(node, done)
+        number = ast.Remember(_LAST, self._count, (), node.span)
+        more = ast.Assign(_TOTAL, "increase", self._number, f"{{{_LAST}}}", node.span)
+        return ast.Chain("sequence", (node, number, more), False, node.span)
+
+    def _asking_sum(self, node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+        if isinstance(node, ast.Remember) and _is_number(node):
+            return ast.Assign(node.key, "set", self._number, f"{{{_TOTAL}}}", node.span)
+        if isinstance(node, ast.Phrase) and node.entry.id == _COMPARED:
+            return ast.Compared(_TOTAL, self._number, node.arguments, node.span)
+        return ast.with_parts(node, done)
+
+
+def _is_count(node: ast.Ast) -> bool:
+    """Whether a node counts."""
+    return isinstance(node, ast.Phrase) and node.entry.id in COUNTING
+
+
+def _is_number(node: ast.Ast) -> bool:
+    """Whether a node keeps the number that was counted last."""
+    return isinstance(node, ast.Remember) and node.entry.id == COUNT
+
+
+def _spliced(node: ast.Ast) -> tuple[ast.Ast, ...]:
+    """The commands of a node that counts and adds to the sum, or the node itself."""
+    last = node.items[-1] if isinstance(node, ast.Chain) else None
+    return (
+        node.items if isinstance(node, ast.Chain) and isinstance(last, ast.Assign) and last.key == _TOTAL else (node,)
+    )
+
+
+def _counts(node: ast.Ast) -> bool:
+    return any(map(_is_count, ast.parents_first(node)))
+
+
+def _counts_several(node: ast.Ast) -> bool:
+    """Whether a command counts in each place of a list or set."""
+    if isinstance(node, ast.ForEach):
+        return True
+    items = node.items if isinstance(node, ast.Chain) and node.operator in _IN_TURN else ()
+    ids = {each.entry.id if isinstance(each, ast.Phrase) else "" for each in items}
+    return len(items) > 1 and len(ids) == 1 and ids <= COUNTING
+
+
+def _keys(node: ast.Ast) -> set[str]:
+    """The values in which a command keeps numbers."""
+    return {each.key for each in ast.parents_first(node) if isinstance(each, ast.Remember) and _is_number(each)}
+
+
+def _is_asked(items: Sequence[ast.Ast], keys: set[str]) -> bool:
+    """Whether commands, up to the next that counts, ask for the number or use one of these values."""
+    for item in items:
+        if _counts(item):
+            return False
+        for node in ast.parents_first(item):
+            if _is_number(node) or (isinstance(node, ast.Phrase) and node.entry.id == _COMPARED):
+                return True
+            if not keys.isdisjoint(ast.keys_of(node)):
+                return True
+    return False
