@@ -6,7 +6,7 @@ has a pronoun for a person, which whoever hears it would take for somebody else.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.pattern import ways
@@ -98,30 +98,38 @@ class Texts:
         """Whether a clause stands behind a word."""
         return word in self._openers
 
+    def is_owned(self, text: Words, at: int) -> bool:
+        """Whether an article, or a word for whose thing it is, stands before what begins at a word."""
+        return at in text.articles or text.words[at] in self._owners
+
     def doubt(self, text: Words, first: int, last: int) -> int:
         """The word of a text without quotes that may end it, or be understood as somebody else; 0 if there is none."""
         return next((at for at in range(first, last) if text.words[at] in self._doubtful), 0)
 
-    def direct(self, text: Words, first: int, last: int) -> str | None:
-        """The question that a clause stands for: `he is hungry` as "Are you hungry?"; None where that can't be told."""
+    def direct(self, text: Words, first: int, last: int, sure: Set[str]) -> str | None:
+        """The question that a clause stands for: `he is hungry` as "Are you hungry?"; None where that can't be told.
+
+        The `sure` words belong to it, though they may end others.
+        """
+        doubtful = self._doubtful - sure
         opener = text.words[first - 1]
         asks = opener in self._question_words
         for at in range(first, last) if asks else (first,):  # `what tea he wants`
             front = find(self._direct, text.words, at)
             if front is not None and (front[1] < last or asks):
-                if not self._doubtful.isdisjoint(text.words[first:at]):
+                if not doubtful.isdisjoint(text.words[first:at]):
                     break  # `when she comes if she wants tea`
                 parts = [*([opener] if asks else []), *self._said(text, first, at), front[0]]
-                return self._question(parts, self._said(text, front[1], last))
+                return self._question(parts, self._said(text, front[1], last), doubtful)
         verb = next((at for at in range(first, last) if text.words[at] in self.inverting), first)
         if verb == first or not self._relatives.isdisjoint(text.words[first:verb]):
             return None
         parts = [*([opener] if asks else []), text.words[verb], *self._said(text, first, verb)]
-        return self._question(parts, self._said(text, verb + 1, last))
+        return self._question(parts, self._said(text, verb + 1, last), doubtful)
 
-    def _question(self, front: Sequence[str], behind: Sequence[str]) -> str | None:
+    def _question(self, front: Sequence[str], behind: Sequence[str], doubtful: Set[str]) -> str | None:
         """A question of words, None where one of them is somebody else for whoever hears it."""
-        if any(word != self._addressed and word.lower() in self._doubtful for word in behind):
+        if any(word != self._addressed and word.lower() in doubtful for word in behind):
             return None
         asked = " ".join((*front, *behind))
         return f"{asked[0].upper()}{asked[1:]}?"

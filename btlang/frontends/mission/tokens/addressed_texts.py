@@ -9,7 +9,7 @@ from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import DOOR, OBJECT
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, ZONE
 from btlang.vocabulary.word_tree import find
 
 TELL = "TellPerson"
@@ -105,7 +105,7 @@ class AddressedTexts(SentenceReader):
             elif at not in text.articles and find(values.names_tree("person"), text.words, at) is not None:
                 self._doubt(entry, at, _PERSON)
             return
-        question = values.texts.direct(text, at, value.last)
+        question = values.texts.direct(text, at, value.last, self._joining_things(at, value.last))
         for place in range(at, value.last):  # `ask Bob if he wants the cup. If so, bring it`
             for kind in (OBJECT, DOOR):
                 named = find(values.names_tree(kind), text.words, place)
@@ -115,6 +115,25 @@ class AddressedTexts(SentenceReader):
             self._set_text(command, value.name, question)
         elif not self._doubt(entry, values.texts.doubt(text, at + 1, value.last)):
             self._doubt(entry, at, _NO_QUESTION)
+
+    def _joining_things(self, first: int, last: int) -> set[str]:
+        """The words that only join things there: `if she'd like the newspaper or her book`."""
+        text, values, sure = self._text, self._vocabulary.values, set[str]()
+        for word in (*self._vocabulary.roles["or"], *self._vocabulary.roles["and"]):
+            places = [place + 1 for place in range(first, last - 1) if text.words[place] == word]
+            if places and all(
+                find(values.names_tree(OBJECT), text.words, place) is not None
+                or (values.texts.is_owned(text, place) and self._is_no_name(place))
+                for place in places
+            ):
+                sure.add(word)
+        return sure
+
+    def _is_no_name(self, at: int) -> bool:
+        """Whether no name of somebody or of a place, and no phrase, begins at a word."""
+        kinds = (PERSON, PLACE, ZONE, DOOR)
+        named = any(find(self._vocabulary.values.names_tree(kind), self._text.words, at) is not None for kind in kinds)
+        return not named and longest(self._vocabulary.trie, self._text, at, self._context) is None
 
     def _opens_clause(self, at: int) -> bool:
         """`tell me that ...`, `remind me to ...`, but not `report to Alice`."""
