@@ -51,23 +51,32 @@ class _Sums:
         if not isinstance(node, ast.Chain) or node.operator not in _IN_TURN:
             return node
         made: list[ast.Ast] = []
-        keys: set[str] | None = None  # the values that hold the number, behind such a command
+        sums = False
         for at, item in enumerate(node.items):
-            if _counts(item):
-                keys = _keys(item) if _counts_several(item) else None
-                if keys is not None and not _is_asked(node.items[at + 1 :], keys):
-                    keys = None
-                made += [item] if keys is None else self._sum(item, keys)
+            if not _counts(item):
+                made.append(fold(item, ast.parts, self._asking_sum) if sums else item)
+                continue
+            chains, counting = _last_count(item)
+            sums = counting is not None and any(map(_is_of_sum, ast.parents_first(counting)))
+            if counting is not None and not sums and _is_asked(node.items[at + 1 :], _keys(counting)):
+                made += self._sum(chains, counting)
+                sums = True
             else:
-                made.append(item if keys is None else fold(item, ast.parts, self._asking_sum))
+                made.append(item)
         return ast.Chain(node.operator, tuple(made), node.bracketed, node.span)
 
-    def _sum(self, item: ast.Ast, keys: set[str]) -> list[ast.Ast]:
-        """A command that counts several times, between what begins the sum and what tells it."""
-        span = item.span
-        begun = ast.Assign(_TOTAL, "set", self._number, "0", span)
-        told = [ast.Assign(key, "set", self._number, f"{{{_TOTAL}}}", span) for key in sorted(keys)]
-        return [begun, fold(item, ast.parts, self._adding), *told]
+    def _sum(self, chains: Sequence[ast.Chain], counting: ast.Ast) -> list[ast.Ast]:
+        """The outermost of some chains, with what begins the sum and tells it around what counts in the innermost."""
+        begun = ast.Assign(_TOTAL, "set", self._number, "0", counting.span)
+        keys = sorted(_keys(counting))
+        told = [ast.Assign(key, "set", self._number, f"{{{_TOTAL}}}", counting.span) for key in keys]
+        made: list[ast.Ast] = [begun, fold(counting, ast.parts, self._adding), *told]
+        for chain, part in zip(reversed(chains), reversed([*chains, counting][1:]), strict=True):
+            at = next(at for at, item in enumerate(chain.items) if item is part)
+            behind = (fold(item, ast.parts, self._asking_sum) for item in chain.items[at + 1 :])
+            items = (*chain.items[:at], *made, *behind)
+            made = [ast.Chain(chain.operator, items, chain.bracketed, chain.span)]
+        return made
 
     def _adding(self, node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
         """A command that counts, with the number that it adds; numbers that were kept in each place are told later."""
@@ -111,13 +120,29 @@ def _counts(node: ast.Ast) -> bool:
     return any(map(_is_count, ast.parents_first(node)))
 
 
+def _last_count(node: ast.Ast) -> tuple[list[ast.Chain], ast.Ast | None]:
+    """What counts last in a command, if that counts in each place of a list or set, with the chains around it."""
+    chains: list[ast.Chain] = []
+    while not _counts_several(node):
+        if not isinstance(node, ast.Chain) or node.operator not in _IN_TURN:
+            return [], None
+        chains.append(node)
+        node = next(item for item in reversed(node.items) if _counts(item))
+    return chains, node
+
+
 def _counts_several(node: ast.Ast) -> bool:
     """Whether a command counts in each place of a list or set."""
     if isinstance(node, ast.ForEach):
         return True
     items = node.items if isinstance(node, ast.Chain) and node.operator in _IN_TURN else ()
-    ids = {each.entry.id if isinstance(each, ast.Phrase) else "" for each in items}
+    ids = {each.entry.id if isinstance(each, ast.Phrase) else "" for each in items if not _is_of_sum(each)}
     return len(items) > 1 and len(ids) == 1 and ids <= COUNTING
+
+
+def _is_of_sum(node: ast.Ast) -> bool:
+    """Whether a node keeps what is added to the sum, or adds it."""
+    return isinstance(node, ast.Remember | ast.Assign) and node.key in (_TOTAL, _LAST)
 
 
 def _keys(node: ast.Ast) -> set[str]:

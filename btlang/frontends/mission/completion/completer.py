@@ -38,7 +38,8 @@ _ALIKE = {
     "if_possible": "within", "if_it_works": "within", "once": "within", "stop_when": "provided", "as_soon_as": "if",
     "first_time": "whenever",  "retry": "try", "one_of": "try", "wait_until": "check",
     **dict.fromkeys(("delay", "at", "every_day"), "every"), "in_order": "in_parallel",
-    **dict.fromkeys(("set", "increase", "decrease", "add", "subtract", "remember", "include"), "command"), "each": "every",
+    **dict.fromkeys(("set", "increase", "decrease", "add", "subtract", "remember", "include"), "command"),
+    "each": "every",
 }  # fmt: skip
 """Roles that stand where others stand: the grouping stage is asked for one of them."""
 _LOOK_AHEAD = frozenset(("and", "or", "nor"))  # whether these are in their place depends on what follows

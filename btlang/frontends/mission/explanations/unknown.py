@@ -123,7 +123,8 @@ def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
 
 _NOT_OFFERED = NOT_ALONE | {
     *NODE_ROLES, "never", "called", "with", "giving", "node", "newline", "character", "main_name", "given",
-    "needs_world", "needs_words", "set_to", "by", "add_to", "subtract_from", "remember_as", "each_in", "all_names", "except", "may", "or_stay",
+    "needs_world", "needs_words", "set_to", "by", "add_to", "subtract_from", "remember_as", "each_in",
+    "all_names", "except", "may", "or_stay",
 }  # fmt: skip
 """Roles that say nothing alone or are for texts that programs write: what is like their words was hardly meant so."""
 

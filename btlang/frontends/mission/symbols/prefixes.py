@@ -33,7 +33,8 @@ class Prefix(Record):
     """The prefix of a statement about a value: its name, the word at which the value stands, and the word behind it.
 
     `value` is -1 where none is given. Of `remember ... as name` and `add 2 to name`, which is said as `increase`, the
-    value stands before the name and ends before the word `value_end`, and `last` is behind the name. `for each person:` goes through the names that its `noun` is for.
+    value stands before the name and ends before the word `value_end`, and `last` is behind the name. `for each person:`
+    goes through the names that its `noun` is for.
     """
 
     role: str

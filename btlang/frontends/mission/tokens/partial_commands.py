@@ -225,7 +225,7 @@ class PartialCommands:
                 return
 
     def performed(self, at: int) -> int:
-        """`run the tour`: says nothing before the name of a definition. Returns where that begins, 0 for other words."""
+        """`run the tour`: the name of a definition, before which it says nothing. Returns where that begins."""
         if self._text.words[at] not in self._vocabulary.asking["performing"]:
             return 0
         return at + 1 if longest(self._tries[1], self._text, at + 1, self._context) is not None else 0

@@ -110,7 +110,8 @@ class Tries(SentenceReader):
         count = Token("count", self._text.starts[at], self._text.ends[amount.last - 1])
         count.value = self._calls.token(amount, match.last).value
         tokens[first:] = [
-            Token("retry", start, start), Token("open", start, start), *tokens[first:last], Token("close", end, end), count,
+            Token("retry", start, start), Token("open", start, start), *tokens[first:last],
+            Token("close", end, end), count,
         ]  # fmt: skip
         return amount.last
 
