@@ -9,7 +9,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.nouns import Description
-from btlang.vocabulary.references import ALL, LATEST, SELF, Choice, Parts, choice_of, is_one
+from btlang.vocabulary.references import ALL, COUNT, LATEST, NAMES, SELF, Choice, Parts, choice_of, is_one
 from btlang.vocabulary.value_type import DOOR, OBJECT, PLACE, WORLD, format_number
 from btlang.vocabulary.values import Values, key_of
 from btlang.vocabulary.word_tree import find
@@ -38,8 +38,8 @@ class ReadingContext:
 
     __slots__ = (
         "_most_words", "before", "deniable", "denials", "joiners", "keys", "known", "lacked", "latest", "listed",
-        "manners", "met", "modifiers", "openers", "pronouns", "same", "set_starts", "starts", "types", "untyped",
-        "values",
+        "manners", "met", "modifiers", "openers", "pronouns", "reached", "same", "set_starts", "starts", "types",
+        "untyped", "values",
     )  # fmt: skip
 
     def __init__(self, values: Values, known: Mapping[str, Known] | None = None) -> None:
@@ -54,6 +54,8 @@ class ReadingContext:
         self.before = values.adjective_starts | values.names_tree("color").keys()
         self.manners = values.names_tree(MANNER) if MANNER in values.types else {}
         self.latest: dict[str, str] = {}
+        self.reached: list[tuple[int, str, str]] = []
+        """The names to which journeys led, each with the word at which it stands and its type."""
         self.same: dict[int, int] = {}
         """Where what is read is the latest of its type once more, with the words that it ends at."""
         self.listed: dict[str, str] = {}
@@ -118,8 +120,29 @@ class ReadingContext:
         """
         for meant, end in self.values.groups(text, at, kind) if kind in WORLD else ():
             if meant.type == kind:
-                choice = Choice(ALL, kind, self.keys.get(kind, kind), self._settled(kind, meant.parts))
+                parts = self._spoken_of(meant, text, at) or self._settled(kind, meant.parts)
+                choice = Choice(ALL, kind, self.keys.get(kind, kind), parts)
                 yield "" if self.values.likenesses.members(choice) == () else choice.text, meant, end
+
+    def _spoken_of(self, meant: Description, text: Words, at: int) -> Parts:
+        """`in each room`, `in both rooms` behind journeys: the names to which the statement or the one before led.
+
+        () where all are meant. `both` of more or fewer than two is nothing that could be chosen.
+        """
+        here, place = (text, at) if text.picked is None else (text.picked[0], text.picked[1][at])
+        is_both = text.words[at] in self.values.both
+        if not is_both and (text.words[at] not in self.values.each or here.words[place - 1] not in self.values.located):
+            return ()
+        self.lacked = True
+        first = here.earlier(place)[1]
+        first = here.earlier(first - 1)[1] if first else 0
+        every = meant.replace(parts=tuple(part for part in meant.parts if part[0] != COUNT))
+        names = self.values.likenesses.described(every)
+        led = [name for where, kind, name in self.reached if where >= first and kind == meant.type and name in names]
+        spoken = tuple(dict.fromkeys(led))
+        if len(spoken) == 2 or (not is_both and len(spoken) > 2):
+            return ((NAMES, ";".join(spoken)),)
+        return ((NAMES, ""),) if is_both and len(names) != 2 else ()
 
     def without(self, group: str, text: Words, at: int) -> tuple[str, int] | None:
         """The choice of a set without what is left out at a word, `except the red one`, and where that ends."""
@@ -197,6 +220,7 @@ class ReadingContext:
         """Pronouns stand for nothing any more."""
         self.latest.clear()
         self.listed.clear()
+        self.reached.clear()
 
     def choice(self, text: Words, at: int, kind: str = "") -> tuple[Description, int] | None:
         """See `Values.choice`."""

@@ -48,11 +48,8 @@ class Values(Measures):
         self.plural_pronouns = frozenset(language["plural_pronouns"])
         """Those that stand for a list, too."""
         self.pronoun_words = tree_of((words, words) for words in self.pronouns)
-        self._names: dict[str, WordTree] = {}
+        self._names: dict[str, WordTree] = {kind.name: {} for kind in types.values() if kind.kind == "names"}
         self._listed: dict[str, dict[str, None]] = {}
-        for kind in types.values():
-            if kind.kind == "names":
-                self._names[kind.name] = {}
         self.modifiers = Modifiers(language)
         self.adjectives = self.modifiers.adjectives
         self.phrases = noun_phrases(self._names, language, nouns, self.adjectives)
@@ -69,8 +66,10 @@ class Values(Measures):
         self._choice_starts: frozenset[str] | None
         self._group_starts: frozenset[str] | None
         self._forget()
-        self._both, self._every = (frozenset(language["roles"].get(role, ())) for role in ("both", "all_names"))
-        self._joining = frozenset((*language["roles"].get("and", ()), *language["roles"].get("or", ())))
+        roles, asking = language["roles"], language.get("asking", {})
+        self.both, self._every, joined = (frozenset(roles.get(role, ())) for role in ("both", "all_names", "and"))
+        self._joining = joined | frozenset(roles.get("or", ()))
+        self.each, self.located = (frozenset(asking.get(name, ())) for name in ("apiece", "located"))
 
     def add_name(self, kind: str, words: str, name: str) -> None:
         """Lets the words stand for a name of a type."""
@@ -267,7 +266,7 @@ class Values(Measures):
         """The words at which a set of several may begin: numbers, `both`, plurals."""
         if self._group_starts is None:
             self._group_starts = (
-                self.phrases.plural_starts(self.names_tree) | self.adjective_starts | self._numbers.keys() | self._both
+                self.phrases.plural_starts(self.names_tree) | self.adjective_starts | self._numbers.keys() | self.both
             )
         return self._group_starts
 
@@ -283,7 +282,7 @@ class Values(Measures):
         count = ""
         if found is None or found[0].how != ALL:
             start = at
-            if text.words[at] in self._both:
+            if text.words[at] in self.both:
                 count, start = "2", at + 1
             elif (number := self.number(text, at)) is not None and number[0] >= 1 and number[0] == int(number[0]):
                 count, start = str(int(number[0])), number[1]

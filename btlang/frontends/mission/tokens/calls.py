@@ -11,6 +11,7 @@ from btlang.frontends.mission.tokens.two_goals import two_goals
 from btlang.text.source import Span
 from btlang.text.words import END_OF_TEXT, Words
 from btlang.vocabulary.adjectives import OWNER
+from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.entry import MANNER, Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match, SlotValue
@@ -172,6 +173,9 @@ class Calls:
         for value in sorted(match.values, key=lambda value: value.name == value.type):  # a theme last: `it` prefers it
             entry = match.meaning.entry
             names = value.texts if value.more else ()
+            if entry is not None and MOVES in entry.resources and value.type in WORLD:
+                plain = (text for text in value.texts if text[:1] not in _ODD)
+                self._context.reached += [(value.first, value.type, text) for text in plain]
             is_odd = any(text[:1] in _ODD for text in names)
             if value.more and (value.joiner == "or" or (entry is not None and entry.first and value.type == PLACE)):
                 self._context.latest.pop(value.type, None)

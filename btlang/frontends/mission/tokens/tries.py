@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import JOINTS, Called, Listed, Token, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
+from btlang.tree.asked import ASK
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
@@ -65,8 +67,10 @@ class Tries(SentenceReader):
         end = self._behind(end - 1) if pause is not None else end
         form = self._condition(end)
         last = self._behind(form)
-        if not form or not last or tokens[last - 1].kind not in _OPERANDS:
-            return self._try_that(match, at)
+        asks = self._text.words[at] in self._asking_verbs
+        tried = tokens[last - 1] if form and last else None
+        if tried is None or tried.kind not in _OPERANDS or (asks and not _is_question(tried)):
+            return self._ask_again(match, at) if asks else self._try_that(match, at)
         first = _first_of_form(tokens, statement_start(tokens, last), last)
         start, stop, number = self._text.starts[at], self._text.ends[match.last - 1], _TWICE
         behind = match.last + (self._text.words[match.last] == ",")
@@ -93,6 +97,19 @@ class Tries(SentenceReader):
         end = amount.last if amount is not None else match.last
         self._doubt(end)
         return end
+
+    def _ask_again(self, match: Match, at: int) -> int:
+        """`ask Bob "Tea?". If he says no, ask again`: what was asked before."""
+        asked = next((token for token in reversed(self._tokens) if _is_question(token)), None)
+        if asked is None:
+            return 0
+        self._tokens.append(Token("command", self._text.starts[at], self._text.ends[match.last - 1], asked.value))
+        return match.last
+
+    @cached_property
+    def _asking_verbs(self) -> set[str]:
+        """The words with which somebody is asked."""
+        return {phrase.split()[0] for entry in self._vocabulary.entries.get(ASK, ()) for phrase in entry.phrases}
 
     def _try_that(self, match: Match, at: int) -> int:
         """`pick up the cup. Try it 3 times`: tries what the statement before does, so many times in all."""
@@ -143,6 +160,10 @@ class Tries(SentenceReader):
         if not isinstance(asked, Called) or asked.entry.id not in _BLOCKED or not isinstance(journey, Called | Listed):
             return 0
         return end - 2 if MOVES in journey.entry.resources else 0
+
+
+def _is_question(token: Token) -> bool:
+    return isinstance(token.value, Called | Listed) and token.value.entry.id == ASK
 
 
 def _first_of_form(tokens: Sequence[Token], first: int, last: int) -> int:
