@@ -80,7 +80,7 @@ class Likenesses:
         """The names of a set where what is known of the world decides; None where only the robot can tell."""
         parts = dict(choice.parts)
         if NAMES in parts:
-            return tuple(name for name in parts[NAMES].split(";") if name)
+            return tuple(parts[NAMES].split(";"))
         denied = {part: parts.pop(part).split("; ") for part in DENIED if part in parts}
         if COUNT in parts or parts.keys() & RELATIONS.keys() or choice.type not in self.features:
             return None

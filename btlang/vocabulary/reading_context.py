@@ -119,15 +119,16 @@ class ReadingContext:
         Without a choice where what is known of the world leaves none.
         """
         for meant, end in self.values.groups(text, at, kind) if kind in WORLD else ():
-            if meant.type == kind:
-                parts = self._spoken_of(meant, text, at) or self._settled(kind, meant.parts)
+            spoken = self._spoken_of(meant, text, at) if meant.type == kind else None
+            if spoken is not None:
+                parts = spoken or self._settled(kind, meant.parts)
                 choice = Choice(ALL, kind, self.keys.get(kind, kind), parts)
                 yield "" if self.values.likenesses.members(choice) == () else choice.text, meant, end
 
-    def _spoken_of(self, meant: Description, text: Words, at: int) -> Parts:
+    def _spoken_of(self, meant: Description, text: Words, at: int) -> Parts | None:
         """`in each room`, `in both rooms` behind journeys: the names to which the statement or the one before led.
 
-        () where all are meant. `both` of more or fewer than two is nothing that could be chosen.
+        () where all are meant, None for `both` of more or fewer than two.
         """
         here, place = (text, at) if text.picked is None else (text.picked[0], text.picked[1][at])
         is_both = text.words[at] in self.values.both
@@ -142,7 +143,7 @@ class ReadingContext:
         spoken = tuple(dict.fromkeys(led))
         if len(spoken) == 2 or (not is_both and len(spoken) > 2):
             return ((NAMES, ";".join(spoken)),)
-        return ((NAMES, ""),) if is_both and len(names) != 2 else ()
+        return None if is_both and len(names) != 2 else ()
 
     def without(self, group: str, text: Words, at: int) -> tuple[str, int] | None:
         """The choice of a set without what is left out at a word, `except the red one`, and where that ends."""

@@ -227,7 +227,7 @@ def test_all_can_run(text: str) -> None:
         ("keep trying (print hello then fail)", True),
         ("keep trying to check that bumped", False),
         ("wait until bumped", False),
-        ("as soon as both people are near, wave", False),
+        ("as soon as two people are near, wave", False),
         ("repeat (wait until bumped then print ouch)", False),
         ("repeat (print hello then wait 1 s)", False),
         ("print hello every 1 s", False),

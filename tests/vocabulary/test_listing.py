@@ -176,6 +176,7 @@ charge [to {percent}]
           charge/recharge [fully] until you are full/charged
           charge/recharge [fully] until robot is full/charged
           charge/recharge fully
+          charge/recharge completely
     {percent}: a number and one of %; 100% if left out
     needs: base
     node: Charge

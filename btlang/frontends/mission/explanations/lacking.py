@@ -6,7 +6,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.references import DENIED
+from btlang.vocabulary.references import COUNT, DENIED
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import OBJECT, PLACE, ValueType
 from btlang.vocabulary.word_tree import find
@@ -27,6 +27,22 @@ def untold(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic | 
                 part, span = DENIED.get(said, said), text.span(i, last)
                 line = f'{part} = ["{value}"]' if part == "state" else f'{part} = "{value}"'
                 return diagnostic("BT178", span, words=span.text, part=part, type=kinds[0], line=line)
+    return None
+
+
+def not_two(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic | None:
+    """BT152 for `both rooms` where it is open which two are meant, up to the word that ends what isn't known."""
+    values = vocabulary.values
+    for i in (i for i in range(at, end + 1) if text.words[i] in values.both):
+        for meant, last in values.groups(text, i):
+            every = meant.replace(parts=tuple(part for part in meant.parts if part[0] != COUNT))
+            names, span = values.likenesses.described(every), text.span(i, last)
+            if names and len(names) != 2:
+                reason = f"this world has {len(names)} of them" if len(names) > 1 else f"there is only '{names[0]}'"
+                named = f" {vocabulary.word('and')} ".join(names[:2])
+                return diagnostic(
+                    "BT152", span, words=span.text, reason=reason, advice=f"Name them, for example: {named}"
+                )
     return None
 
 

@@ -10,7 +10,7 @@ from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.explanations.fragments import explain_fragment
-from btlang.frontends.mission.explanations.lacking import unreferred, untold, value_example
+from btlang.frontends.mission.explanations.lacking import not_two, unreferred, untold, value_example
 from btlang.frontends.mission.explanations.misfits import Misfit, misfits_of
 from btlang.frontends.mission.explanations.roles import explain_role
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
@@ -61,7 +61,8 @@ def explain_unknown(
         last = next((i for i in range(unnamed, end) if text.words[i] == "}"), unnamed)
         name = " ".join(text.words[unnamed + 1 : last])
         return unknown_value(text.span(unnamed, last + 1), name, context.known or ())
-    lacking = untold(text, at, end, vocabulary) or unreferred(text, at, vocabulary, context)
+    lacking = untold(text, at, end, vocabulary) or not_two(text, at, end, vocabulary)
+    lacking = lacking or unreferred(text, at, vocabulary, context)
     if lacking is not None:
         return lacking
     roots = (vocabulary.trie, definitions.trie)

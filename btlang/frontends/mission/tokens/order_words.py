@@ -30,7 +30,7 @@ from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PERSON
 from btlang.vocabulary.word_tree import find
 
-_COMES = "WaitForPerson"
+_COMES, _DURATION = "WaitForPerson", "duration"
 
 
 class OrderWords(ClockWords):
@@ -164,15 +164,19 @@ class OrderWords(ClockWords):
                 tokens.insert(-1, Token("then", tokens[-1].start, tokens[-1].start))
 
     def _wait_for(self, at: int) -> int:
-        """`wait for Bob`: until he comes."""
+        """`wait for Bob`, `wait up to 5 min for Bob`: until he comes."""
         tokens, entry = self._tokens, self._vocabulary.entry(_COMES)
-        found = self._context.read(PERSON, self._text, at) if tokens and tokens[-1].kind == "wait_for" else None
+        waits = bool(tokens) and tokens[-1].kind in ("wait_for", "wait_up_to")
+        found = self._context.read(PERSON, self._text, at) if waits else None
         if found is None or entry is None or not found[0]:
             return 0
-        start = tokens.pop().start
-        value = SlotValue(entry.slots[0].name, PERSON, found[0], at, found[1])
-        self._partial.append(Match(Meaning("command", entry), found[1], (value,)), at)
-        tokens[-1].start = start
+        wait = tokens.pop()
+        said = {PERSON: found[0], **({_DURATION: wait.value} if isinstance(wait.value, str) else {})}
+        values = [
+            SlotValue(slot.name, slot.type, said[slot.type], at, found[1]) for slot in entry.slots if slot.type in said
+        ]
+        self._partial.append(Match(Meaning("command", entry), found[1], tuple(values)), at)
+        tokens[-1].start = wait.start
         return found[1]
 
     def _start_over(self) -> None:
