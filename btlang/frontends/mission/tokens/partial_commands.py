@@ -155,20 +155,29 @@ class PartialCommands:
         if OBJECT not in self._vocabulary.values.pronouns.get(self._text.words[at], ()):
             return 0
         spoken = (token.value for token in reversed(self._tokens) if isinstance(token.value, Called | Remembered))
-        latest = next((value.entry for value in spoken if value.entry.measures), None)
+        latest = next((entry for value in spoken if (entry := self._measured_by(value.entry)) is not None), None)
         found: dict[str, tuple[Match, Sequence[int]]] = {}
         for entry in [latest] if latest is not None else self._measuring:
             words = entry.quantity[0].split()
             places = [*[at] * len(words), *rest_of(self._text, at + 1)]
             match = match_of(self._text, places, dict(enumerate(words)), self._tries, self._context)
             if match is not None and match.meaning.entry is not None and match.last > len(words):
-                if match.meaning.role == "condition" and match.meaning.entry.quantity == entry.quantity:
+                is_about = latest is not None or match.meaning.entry.quantity == entry.quantity
+                if match.meaning.role == "condition" and is_about:
                     found[entry.id] = match, places
         if len(found) != 1:
             return 0
         match = relocated(*next(iter(found.values())))
         self.append(match, at)
         return match.last
+
+    def _measured_by(self, entry: Entry) -> Entry | None:
+        """The quantity that a command or condition is about: `the battery is low`."""
+        if entry.measures:
+            return entry
+        said = entry.phrases[0].split() if entry.sort == "condition" and entry.phrases else []
+        begun = (each for each in self._measuring if (words := each.quantity[0].split()) == said[: len(words)])
+        return next(begun, None)
 
     @cached_property
     def _measuring(self) -> list[Entry]:

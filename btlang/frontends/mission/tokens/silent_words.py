@@ -91,7 +91,8 @@ def without_meaning(
         follows = longest(vocabulary.trie, text, match.last, context)
         is_behind = len(tokens) > 2 and tokens[-2].kind in JOINTS and tokens[-3].kind in _OPERANDS
         is_last = text.words[match.last] in (",", ";", END_OF_TEXT, END_OF_STATEMENT) and not is_behind
-        goes_on = follows is not None and follows.meaning.role in ("then", "and")
+        role = follows.meaning.role if follows is not None and follows.meaning.entry is None else ""
+        goes_on = role in ("then", "and") or (bool(role) and not is_behind)
         return match.last if start.kind == "but" or is_last or goes_on else 0
     purpose = find(vocabulary.purpose, text.words, at) if before.kind == "command" else None
     if purpose is not None and longest(vocabulary.trie, text, purpose[1], context) is not None:

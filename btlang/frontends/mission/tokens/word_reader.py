@@ -46,6 +46,7 @@ _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parall
 _NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
 _CONDITIONS = frozenset(("condition", *NEGATED))
 _JOINING = ("and", "or")
+_ASKING = BEFORE_CONDITIONS | {"wait_until", "wait_for", "wait_up_to", "check"}
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -236,7 +237,7 @@ class WordReader:
         """Words that are no phrase, or one that doesn't stand alone: they say something here, or are unknown."""
         tokens, text = self._tokens, self._text
         end = (
-            (self._partial.add_condition(at) if tokens and tokens[-1].kind in BEFORE_CONDITIONS else 0)
+            (self._partial.add_condition(at) if tokens and tokens[-1].kind in _ASKING else 0)
             or without_meaning(tokens, text, match, role, at, self._vocabulary, self._context)
             or self._order.no_phrase(at)
             or self._partial.performed(at)
