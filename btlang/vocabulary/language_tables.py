@@ -44,7 +44,7 @@ ASKING = (
     "pleading", "saying_that", "plea", "reminding", "reminder", "addressed", "informing", "informed", "staying",
     "resuming", "interrupting",
     "if_yes", "if_no", "told_of", "standing", "unable", "waiting", "apiece", "between_joint", "standing_verbs",
-    "events", "duties", "reasons", "performing",
+    "events", "duties", "reasons", "performing", "naming", "named_as",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 

@@ -70,14 +70,14 @@ def find_definitions(
     for definition in included:
         if not definition.is_quoted:
             _add(found.trie, definition.name, dict(definition.parameters))
-    defining = {word for role in DEFINING for word in vocabulary.roles[role]}
+    defining = {word for role in DEFINING for word in vocabulary.roles[role]} | set(vocabulary.asking["naming"])
     if defining.isdisjoint(text.distinct):
         return found
     margin = text.lines[0].indent if text.lines else 0
     for indent, first, last in statements(text, defining):
         if first in ends or defining.isdisjoint(text.words[first:last]):
             continue
-        header = _header(phrases, first, last, variables, found.problems)
+        header = _fronted(phrases, first, last) or _header(phrases, first, last, variables, found.problems)
         if header is None:
             continue
         if indent > margin:
@@ -148,6 +148,22 @@ def _begins_question(phrases: Phrases, at: int, defining: int) -> bool:
     """
     match = phrases.at(at)
     return match is not None and match.meaning.role in QUESTIONS and match.last != defining
+
+
+def _fronted(phrases: Phrases, first: int, last: int) -> Header | None:
+    """`define tour as: A`, `let tour be: A`, with a block or a command behind the name."""
+    text, asking = phrases.text, phrases.vocabulary.asking
+    if text.words[first] not in asking["naming"]:
+        return None
+    at = next((i for i in range(first + 2, last) if text.words[i] in asking["named_as"]), None)
+    body = phrases.at(at + 1) if at is not None else None
+    if at is None or _joining_word(phrases, first + 1, at) is not None:
+        return None
+    if text.words[at + 1] != ":" and (body is None or body.meaning.role != "command"):
+        return None
+    parts, parameters = _pattern(text.words[first + 1 : at])
+    name = " ".join(parts)
+    return Header(name, text.span(first + 1, at), at + 1, reach(text, at), parameters) if parts else None
 
 
 def _header(
