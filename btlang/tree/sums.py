@@ -19,6 +19,8 @@ _COMPARED = "Counted"
 """The id of the condition about what was counted last."""
 _IN_TURN = ("sequence", "and")
 """Operators of chains whose commands run one after another: one that counts goes with nothing else."""
+_Made = tuple[ast.Ast, bool]
+"""A node, and whether it counts."""
 _TOTAL, _LAST = "counted_in_all", "counted_there"
 
 
@@ -30,9 +32,8 @@ def with_sums(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
     sums = _Sums(count, number)
 
     def body(root: ast.Ast) -> ast.Ast:
-        if not any(map(_is_count, ast.parents_first(root))):
-            return root
-        return fold(root, ast.parts, lambda node, done: sums.summed(ast.with_parts(node, done)))
+        is_asked = any(map(_asks, ast.parents_first(root)))
+        return fold(root, ast.parts, sums.summed)[0] if is_asked else root
 
     def program(part: ast.Program) -> ast.Program:
         return ast.with_bodies(part, body, program)
@@ -46,24 +47,29 @@ class _Sums:
     def __init__(self, count: Entry, number: str) -> None:
         self._count, self._number = count, number
 
-    def summed(self, node: ast.Ast) -> ast.Ast:
-        """A sequence in which each command that counts several times is summed, if what follows asks for the number."""
-        if not isinstance(node, ast.Chain) or node.operator not in _IN_TURN:
-            return node
+    def summed(self, node: ast.Ast, done: Sequence[_Made]) -> _Made:
+        """A node with its parts, and whether it counts.
+
+        In a sequence each command that counts several times is summed, if what follows asks for the number.
+        """
+        whole = ast.with_parts(node, [part for part, _ in done])
+        counts = _is_count(node) or any(counting for _, counting in done)
+        if not counts or not isinstance(whole, ast.Chain) or whole.operator not in _IN_TURN:
+            return whole, counts
         made: list[ast.Ast] = []
         sums = False
-        for at, item in enumerate(node.items):
-            if not _counts(item):
+        for at, (item, counting) in enumerate(done):
+            if not counting:
                 made.append(fold(item, ast.parts, self._asking_sum) if sums else item)
                 continue
-            chains, counting = _last_count(item)
-            sums = counting is not None and any(map(_is_of_sum, ast.parents_first(counting)))
-            if counting is not None and not sums and _is_asked(node.items[at + 1 :], _keys(counting)):
-                made += self._sum(chains, counting)
+            chains, last = _last_count(item)
+            sums = last is not None and any(map(_is_of_sum, ast.parents_first(last)))
+            if last is not None and not sums and _is_asked(done, at + 1, _keys(last)):
+                made += self._sum(chains, last)
                 sums = True
             else:
                 made.append(item)
-        return ast.Chain(node.operator, tuple(made), node.bracketed, node.span)
+        return ast.Chain(whole.operator, tuple(made), whole.bracketed, whole.span), True
 
     def _sum(self, chains: Sequence[ast.Chain], counting: ast.Ast) -> list[ast.Ast]:
         """The outermost of some chains, with what begins the sum and tells it around what counts in the innermost."""
@@ -131,6 +137,11 @@ def _last_count(node: ast.Ast) -> tuple[list[ast.Chain], ast.Ast | None]:
     return chains, node
 
 
+def _asks(node: ast.Ast) -> bool:
+    """Whether a node asks for the number that was counted last."""
+    return _is_number(node) or (isinstance(node, ast.Phrase) and node.entry.id == _COMPARED)
+
+
 def _counts_several(node: ast.Ast) -> bool:
     """Whether a command counts in each place of a list or set."""
     if isinstance(node, ast.ForEach):
@@ -150,14 +161,13 @@ def _keys(node: ast.Ast) -> set[str]:
     return {each.key for each in ast.parents_first(node) if isinstance(each, ast.Remember) and _is_number(each)}
 
 
-def _is_asked(items: Sequence[ast.Ast], keys: set[str]) -> bool:
-    """Whether commands, up to the next that counts, ask for the number or use one of these values."""
-    for item in items:
-        if _counts(item):
+def _is_asked(made: Sequence[_Made], first: int, keys: set[str]) -> bool:
+    """Whether commands from one on, up to the next that counts, ask for the number or use one of these values."""
+    for at in range(first, len(made)):
+        item, counting = made[at]
+        if counting:
             return False
         for node in ast.parents_first(item):
-            if _is_number(node) or (isinstance(node, ast.Phrase) and node.entry.id == _COMPARED):
-                return True
-            if not keys.isdisjoint(ast.keys_of(node)):
+            if _asks(node) or not keys.isdisjoint(ast.keys_of(node)):
                 return True
     return False

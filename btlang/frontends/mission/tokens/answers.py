@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.token import BEFORE_CONDITIONS, Called, Listed, Token
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.tree.asked import ABOUT_ANSWERS, ANSWERED, ASK, UNANSWERED
@@ -15,6 +15,7 @@ from btlang.vocabulary.word_tree import find
 _PERSON_SAYS, _SOMEBODY_SAYS = "PersonSays", "SomebodySays"
 _LIMITS = frozenset(("within", "up_to"))
 _BEFORE_NAME = 3  # words: `and if Bob`
+_BEFORE_REPLY = BEFORE_CONDITIONS | {"semi", "newline", "stop", "comma", "and", "then", "or"}
 _OF_REPLY = frozenset(("if", "unless", "not", "condition", "or", "and", "comma", "then"))
 _STOPS = frozenset(("semi", "newline"))
 
@@ -32,8 +33,11 @@ class Answers(AddressedTexts):
 
     def with_name(self, match: Match | None, at: int) -> Match | None:
         """The phrase at a word; `if Bob says no` behind `ask Bob "Tea?"` is `if he says no`."""
+        if not self._may_ask or not self._tokens or self._tokens[-1].kind not in _BEFORE_REPLY:
+            return match
         text, context = self._text, self._context
-        where = range(at, at + _BEFORE_NAME) if self._may_ask else ()
+        names = self._vocabulary.values.names_tree(PERSON)
+        where = (i for i in range(at, at + _BEFORE_NAME) if text.words[i] in names)
         named = next(((i, read) for i in where if (read := context.read(PERSON, text, i)) is not None), None)
         if named is None:
             return match
