@@ -166,9 +166,6 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
         patch.setattr("btlang.vocabulary.listing.overview", _buggy)
     patch.setitem(sys.modules, "matplotlib", None)  # BT081
     patch.setitem(sys.modules, "mcp", None)  # BT082
-    if code == "BT083":
-        patch.setitem(sys.modules, "mcap", None)
-        patch.setitem(sys.modules, "mcap.writer", None)
     if code == "BT085":
         patch.setitem(sys.modules, "msgpack", None)
     if code == "BT087":

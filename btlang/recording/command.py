@@ -48,7 +48,7 @@ _MOVE = 10.0  # seconds of the mission that an arrow key goes on or back
 
 @contextmanager
 def recorded(mission: Mission, options: argparse.Namespace) -> Iterator[list[Sink]]:
-    """The sinks of a run that is recorded, as the options say, with a seed. Raises MissionError (BT009, BT083)."""
+    """The sinks of a run that is recorded, as the options say, with a seed. Raises MissionError (BT009)."""
     import btlang
 
     if options.seed is None:

@@ -110,12 +110,10 @@ class Recording(Record):
 
 def read_recording(path: str) -> Recording:
     """Raises MissionError if it isn't a recording of btlang (BT084), or can't be read (BT001)."""
-    try:
-        from mcap.exceptions import McapError
-        from mcap.records import Attachment, Channel, Message, Metadata
-        from mcap.stream_reader import StreamReader
-    except ImportError:
-        raise MissionError([diagnostic("BT083", NOWHERE)]) from None
+    from mcap.exceptions import McapError
+    from mcap.records import Attachment, Channel, Message, Metadata
+    from mcap.stream_reader import StreamReader
+
     about: dict[str, str] = {}
     files: dict[str, bytes] = {}
     topics: dict[int, str] = {}

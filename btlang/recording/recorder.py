@@ -10,7 +10,6 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 
 from btlang.api import Mission
-from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
 from btlang.recording.bundle import files_of
@@ -18,7 +17,6 @@ from btlang.recording.channels import Channel, messages
 from btlang.run.bus import BLOCK
 from btlang.run.events import Ended, Event, PeriodPassed
 from btlang.run.robot_state import Movements
-from btlang.text.source import NOWHERE
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -37,8 +35,7 @@ class Recorder:
 
     What happens is in the file at the end of each period, also if the process is killed. From `most_bytes` on there is
     a next file (`run.2.mcap`), which has all of that too. A file that cannot be written to ends the recording, and the
-    bus drops this sink. `label` gives the words of a node. Raises MissionError (BT009) if the file can't be opened,
-    and BT083 if the package mcap is missing.
+    bus drops this sink. `label` gives the words of a node. Raises MissionError (BT009) if the file can't be opened.
     """
 
     policy = BLOCK
@@ -105,10 +102,8 @@ class Recorder:
             self._file.close()
 
     def _open(self) -> None:
-        try:
-            from mcap.writer import CompressionType, Writer
-        except ImportError:
-            raise MissionError([diagnostic("BT083", NOWHERE)]) from None
+        from mcap.writer import CompressionType, Writer
+
         self._count += 1
         stem, ending = os.path.splitext(self.path)
         path = self.path if self._count == 1 else f"{stem}.{self._count}{ending}"

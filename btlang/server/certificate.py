@@ -15,6 +15,7 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from btlang.record import Record
+from btlang.server.private_files import write_private
 
 _DAYS, _RENEWED = 365, 30  # days that one is valid, and before its end when it is renewed
 
@@ -85,18 +86,6 @@ def _key(path: str) -> ec.EllipticCurvePrivateKey:
     encoding, form = serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8
     write_private(path, made.private_bytes(encoding, form, serialization.NoEncryption()))
     return made
-
-
-def write_private(path: str, data: bytes) -> None:
-    """For its owner alone, and whole or not at all. Raises OSError."""
-    part = f"{path}.{os.getpid()}"
-    descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-    try:
-        os.write(descriptor, data)
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
-    os.replace(part, path)
 
 
 def _is_old(certificate: x509.Certificate, now: datetime) -> bool:

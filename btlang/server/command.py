@@ -133,7 +133,8 @@ def door_path() -> str:
 
 def _keep_door(certificate: Certificate | None, port: int) -> None:
     """For `btc robot invite`, which is another process."""
-    from btlang.server.certificate import pin_of, write_private
+    from btlang.server.certificate import pin_of
+    from btlang.server.private_files import write_private
 
     with suppress(FileNotFoundError):
         os.unlink(door_path())

@@ -23,8 +23,9 @@ from websockets.exceptions import ConnectionClosed, WebSocketException
 from btlang.diagnostics.reading import reason_of
 from btlang.record import Record
 from btlang.server.access import AccessError
-from btlang.server.certificate import pin, write_private
+from btlang.server.certificate import pin
 from btlang.server.fleet import pin_in
+from btlang.server.private_files import write_private
 from btlang.server.reach import STREAM, LocalSockets
 from btlang.server.recordings import listed, piece
 from btlang.text.escaping import one_line

@@ -18,12 +18,14 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import reason_of
 from btlang.server.app import MOST_HEAD, Api
-from btlang.server.certificate import Certificate, write_private
+from btlang.server.private_files import write_private
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+    from btlang.server.certificate import Certificate
 
 _HEAD = 10.0  # seconds for the head of the first request
 _MOST_CONNECTIONS = 4000

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from btlang.task.companion import require_server
-
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     import argparse
@@ -15,7 +13,6 @@ def serve(options: argparse.Namespace) -> int:
         from btlang.editing.in_editor import edit_xml
 
         return edit_xml(options)
-    require_server("edit")
     from btlang.server.editor import edit
 
     return edit(options)

@@ -26,12 +26,12 @@ from btlang.server.access import AccessError, address_of, is_same_site
 from btlang.server.accounts import Accounts
 from btlang.server.app import Api
 from btlang.server.bodies import JsonResponse, json_object, text_in
-from btlang.server.certificate import write_private
 from btlang.server.door import listening
 from btlang.server.door import serve as serve_door
 from btlang.server.files import Files, TreeFiles, XmlFiles, english_beside, tree_sort
 from btlang.server.links import Robots
 from btlang.server.pages import BUILT
+from btlang.server.private_files import write_private
 from btlang.server.roles import Role
 from btlang.task.keepable import is_whole
 from btlang.task.messages import Answer

@@ -5,26 +5,43 @@ from __future__ import annotations
 import asyncio
 import secrets
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 
-from argon2 import PasswordHasher
-from argon2.exceptions import InvalidHashError, VerificationError
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from argon2 import PasswordHasher
 
 SHORTEST, LONGEST = 8, 4096
 """Characters; the first is that of NIST SP 800-63B."""
 _AT_ONCE = 2
 _MOST_WAITING = 32
-_HASHER = PasswordHasher(time_cost=2, memory_cost=19 * 1024, parallelism=1)  # of OWASP's Password Storage Cheat Sheet
+
+
+@cache
+def _hasher() -> PasswordHasher:
+    """Return the hasher, with the parameters of OWASP's Password Storage Cheat Sheet."""
+    from argon2 import PasswordHasher  # pages without a log-in need no passwords
+
+    return PasswordHasher(time_cost=2, memory_cost=19 * 1024, parallelism=1)
+
+
+@cache
+def _nobody() -> str:
+    """Return the hash of a password that nobody knows."""
+    return hashed(random_password())
 
 
 def hashed(password: str) -> str:
     """The hash to keep. Takes some hundredths of a second."""
-    return _HASHER.hash(password.encode("utf-8", "surrogatepass"))
+    return _hasher().hash(password.encode("utf-8", "surrogatepass"))
 
 
 def fits(password: str, kept: str) -> bool:
     """Whether it is the password of a hash."""
+    from argon2.exceptions import InvalidHashError, VerificationError
+
     try:
-        return _HASHER.verify(kept, password.encode("utf-8", "surrogatepass"))
+        return _hasher().verify(kept, password.encode("utf-8", "surrogatepass"))
     except (VerificationError, InvalidHashError):
         return False
 
@@ -52,7 +69,6 @@ class Verifier:
     def __init__(self) -> None:
         self._threads = ThreadPoolExecutor(_AT_ONCE, "btlang passwords")
         self._waiting = 0
-        self._nobody = hashed(random_password())
 
     async def fits(self, password: str, kept: str | None) -> bool:
         """Whether it is the password of a hash; None for a user who isn't there. Raises BusyError."""
@@ -61,7 +77,8 @@ class Verifier:
         self._waiting += 1
         try:
             loop = asyncio.get_running_loop()
-            same = await loop.run_in_executor(self._threads, fits, password[: LONGEST + 1], kept or self._nobody)
+            nobody = await loop.run_in_executor(self._threads, _nobody)
+            same = await loop.run_in_executor(self._threads, fits, password[: LONGEST + 1], kept or nobody)
         finally:
             self._waiting -= 1
         return same and kept is not None and len(password) <= LONGEST
