@@ -26,6 +26,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.robots.registry import Connector
+
 SUCCESS, FAILED, UNFORMATTED, BAD_INPUT, CRASHED, INTERRUPTED = 0, 1, 1, 2, 70, 130
 
 
@@ -72,20 +74,32 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from btlang.pictures.command import pictures_of
-    from btlang.recording.options import recording
-    from btlang.robots.answers_file import read_answers
-    from btlang.robots.voice_track import voice_track
     from btlang.robots.world_problem import read_world
     from btlang.ros.command import chosen_robot, print_preflight
-    from btlang.run.command import run_mission
-    from btlang.session import Session
 
     robot = chosen_robot(options)
     mission = mission_of(options)
     if options.preflight:
         ready = print_preflight(mission.tree, mission.vocabulary, read_world(mission.world, robot.body), robot)
         return SUCCESS if ready else FAILED
+    if not options.watch:
+        return _run_shown(options, mission, robot)
+    from btlang.server.watching import watched
+
+    name = "mission" if options.text is not None or options.file == "-" else os.path.basename(options.file)
+    with watched(mission, name, robot.body, robot.over == "simulated", options.browser) as monitor:
+        return monitor.stay(_run_shown(options, mission, robot, monitor.opened))
+
+
+def _run_shown(options: argparse.Namespace, mission: Mission, robot: Connector, *monitors: Callable[..., Any]) -> int:
+    """Runs a mission with its pictures and its recording; `monitors` show it elsewhere."""
+    from btlang.pictures.command import pictures_of
+    from btlang.recording.options import recording
+    from btlang.robots.answers_file import read_answers
+    from btlang.robots.voice_track import voice_track
+    from btlang.run.command import run_mission
+    from btlang.session import Session
+
     with (
         pictures_of(mission, options.picture, options.tree_picture, options.quiet) as sinks,
         recording(mission, options) as recorders,
@@ -104,17 +118,17 @@ def _run(options: argparse.Namespace) -> int:
             lines=options.lines,
             sinks=[*sinks, *recorders, *voices],
             scans=options.record_scans if recorders else None,
-            open_monitor=_groot(options.groot),
+            open_monitors=[*_groot(options.groot), *monitors],
         )
 
 
-def _groot(port: int | None) -> Callable[..., Any] | None:
+def _groot(port: int | None) -> list[Callable[..., Any]]:
     """What shows a run to Groot2, if the options ask for that."""
     if port is None:
-        return None
+        return []
     from btlang.monitor.command import groot_monitor
 
-    return partial(groot_monitor, port)
+    return [partial(groot_monitor, port)]
 
 
 def _show_tree(options: argparse.Namespace) -> int:
@@ -295,6 +309,7 @@ _ELSEWHERE = {
     "serve": "btlang.server.command",
     "user": "btlang.server.user_command",
     "edit": "btlang.server.edit_command",
+    "watch": "btlang.server.watching",
     "sim-ros": "btlang.ros.simulator.command",
     "ros-node": "btlang.ros.mission.command",
     "ros-devices": "btlang.ros.devices.command",

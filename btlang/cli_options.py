@@ -164,7 +164,7 @@ def _repl_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _run_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.recording.options import add_picture_options, add_recording_options
+    from btlang.recording.options import add_browser_option, add_picture_options, add_recording_options
     from btlang.ros.command import add_robot_options
 
     add_mission_options(parser)
@@ -180,6 +180,8 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--log", metavar="FILE", help="write every event as a line of JSON")
     add_picture_options(parser)
     parser.add_argument("--voice", metavar="FILE", help="write what the robot says to a WAV file")
+    parser.add_argument("--watch", action="store_true", help="show map, text, tree and speech in the browser")
+    add_browser_option(parser)
     parser.add_argument("--lines", action="store_true", help="print plain lines, even on a terminal")
     parser.add_argument("--quiet", action="store_true", help="print only errors")
     add_recording_options(parser)
@@ -226,6 +228,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "repl": ("start the prompt, as `btc` alone does", _repl_options),
     "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
     "replay": ("replay a recorded run", _replay_options),
+    "watch": ("show a recorded run in the browser", _elsewhere("btlang.server.options", "add_watch_options")),
     "why": ("explain what happened in a recorded run, and why it failed", _elsewhere(_RECORDING, "add_recording_file")),
     "test": ("run tests of missions, written in English", _elsewhere("btlang.testing.options", "add_test_options")),
     "diff": ("show what differs between two missions, trees or recorded runs", add_diff_options),
@@ -285,7 +288,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
 
 
 GROUPS = {
-    "run and see": ("repl", "run", "examples", "replay", "why"),
+    "run and see": ("repl", "run", "examples", "replay", "watch", "why"),
     "write and check": ("check", "tree", "explain", "words", "format", "test", "diff", "edit"),
     "keep a robot up": ("robot", "task", "components", "serve", "user"),
     "build": ("world", "gesture", "new"),

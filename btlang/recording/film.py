@@ -14,7 +14,7 @@ from btlang.robots.world_problem import read_world
 from btlang.run.bus import BLOCK
 from btlang.run.events import LOGGED, Event, PeriodPassed, Sampled, StatusesChanged
 from btlang.run.json_log import as_json
-from btlang.run.known_nodes import KnownNodes
+from btlang.run.known_nodes import KnownNodes, text_and_places
 from btlang.run.robot_state import Movements, rounded_scan
 from btlang.run.shape import Shape
 from btlang.run.snapshot import State
@@ -121,14 +121,12 @@ class Film:
         - `seconds`: how long it is; `is_cut`: whether more happened than is kept; `map`: see World.as_map.
         """
         nodes, mission = self._nodes, self._mission
+        text, places = text_and_places(mission.syntax, nodes)
         if self._latest is not None:
             self._take_things(self._latest)
-        text = "" if mission.syntax is None else mission.syntax.span.source.text
         listed = []
         for index in range(nodes.size):
-            node, span = nodes.node(index), nodes.span(index)
-            is_here = span is not None and mission.syntax is not None and span.source is mission.syntax.span.source
-            start, end = (span.start, span.end) if span is not None and is_here else (None, None)
+            node, (start, end) = nodes.node(index), places[index] or (None, None)
             listed.append(
                 {
                     "parent": nodes.parent(index), "id": node.id, "label": mission.label(node), "ports": node.ports,

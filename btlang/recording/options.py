@@ -62,6 +62,13 @@ def add_groot_option(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def add_browser_option(parser: argparse.ArgumentParser) -> None:
+    """Of the verbs that have a page."""
+    parser.add_argument(
+        "--no-browser", action="store_false", dest="browser", help="print the address without opening the browser"
+    )
+
+
 def add_replay_options(parser: argparse.ArgumentParser) -> None:
     """Those of `btc replay`, but for its speed."""
     parser.add_argument("--lines", action="store_true", help="print plain lines, even on a terminal")

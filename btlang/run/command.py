@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
@@ -97,7 +97,7 @@ def run_mission(
     seed: int | None = None,
     answers: Mapping[str, list[str]] | None = None,
     scans: float | None = None,
-    open_monitor: Callable[[Controls], AbstractContextManager[Monitor]] | None = None,
+    open_monitors: Iterable[Callable[[Controls], AbstractContextManager[Monitor]]] = (),
 ) -> int:
     """Runs and reports; returns the exit code. Raises MissionError where the log cannot be opened (BT009).
 
@@ -105,8 +105,8 @@ def run_mission(
     succeeded has the exit code 2. On a terminal it shows the live view, whose tree stays at the end or not and which
     puts keys that aren't for it into `type_ahead`, if given; elsewhere and where `lines` is true plain lines; and
     nothing when `quiet`. `sinks` get all events too, with `scans` also samples of the blackboard and so many scans a
-    second; `open_session` gives the session to run in, `values` and `seed` are as for Session.prepare. `open_monitor`
-    gives what shows the run to another program, such as Groot2. `answers` are those of WorldInput.
+    second; `open_session` gives the session to run in, `values` and `seed` are as for Session.prepare. `open_monitors`
+    give what shows the run to other programs, such as Groot2 and a browser. `answers` are those of WorldInput.
     """
     controls, world_input = Controls(), WorldInput(answers)
     view = None if quiet or lines else live_view(mission, controls, type_ahead, tree_stays, world_input=world_input)
@@ -117,21 +117,20 @@ def run_mission(
     options["seed"] = seed
     try:
         with (
-            _interrupted_by_signals() as came,
+            interrupted_by_signals() as came,
             emergency_signal(controls.emergency_stop, controls.disable, PATIENCE, quits=True),
             _opened(log) as file,
             view if view is not None else nullcontext(),
-            open_monitor(controls) if open_monitor is not None else nullcontext() as monitor,
+            _opened_monitors(open_monitors, controls) as monitors,
             open_session() as session,
         ):
             if file is not None:
                 sinks.append(JsonLog(file, mission.label))
-            if monitor is not None:
-                options["hooks"] = monitor.hooks
+            options["hooks"] = next((monitor.hooks for monitor in monitors if monitor.hooks is not None), None)
             if view is not None:
                 view.show_map(session.map(view.unicode))
             run = session.prepare(mission, sinks=sinks, **options)
-            if monitor is not None:
+            for monitor in monitors:
                 monitor.watch_run(run, mission)
             if scans is not None:
                 run.bus.add(Sampler(run.bus, values, scans))
@@ -168,7 +167,7 @@ def warn_of_motion(standstill: Standstill) -> bool:
 
 
 @contextmanager
-def _interrupted_by_signals() -> Iterator[list[int]]:
+def interrupted_by_signals() -> Iterator[list[int]]:
     """A signal to end, or that the terminal is gone, halts the robot as Ctrl-C does; a caller's own handler stays.
 
     The list keeps those that came.
@@ -215,6 +214,14 @@ def live_view(
         return LiveView(mission, controls, output, sys.stdin, tree_stays, type_ahead, shown, world_input)
     except EngineError:
         return None  # the run itself reports what is wrong
+
+
+@contextmanager
+def _opened_monitors(
+    open_monitors: Iterable[Callable[[Controls], AbstractContextManager[Monitor]]], controls: Controls
+) -> Iterator[list[Monitor]]:
+    with ExitStack() as stack:
+        yield [stack.enter_context(open_monitor(controls)) for open_monitor in open_monitors]
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""What somebody knows of the nodes of a run: so that they need to be sent only what is new."""
+"""What a page knows of the nodes of a run: so that only what is new has to be sent; and where the text says them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,19 @@ from btlang.run.snapshot import HALTED, SUSPENDED
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any, Protocol
+
+    from btlang.text.source import Span
     from btlang.tree.node import Node
+
+    class Spans(Protocol):
+        """The nodes of a run by their numbers: a btlang.engine.engine.Engine, or those of a recording."""
+
+        @property
+        def size(self) -> int: ...
+
+        def span(self, index: int) -> Span | None: ...
+
 
 _SHOWN = bytes.maketrans(bytes([HALTED, SUSPENDED]), bytes([IDLE, IDLE]))
 
@@ -36,6 +48,17 @@ class KnownNodes:
                 if known is None or known.ports != node.ports:
                     found.append((index, label(node)))
         return found
+
+
+def text_and_places(syntax: Any, nodes: Spans) -> tuple[str, list[tuple[int, int] | None]]:
+    """Return the text that a mission was read from, and the characters of it that say each node.
+
+    `syntax` is that of a btlang.api.Mission, None for one without a text. A node that another file says has no place.
+    """
+    source = None if syntax is None else syntax.span.source
+    spans = [nodes.span(index) for index in range(nodes.size)]
+    places = [(span.start, span.end) if span is not None and span.source is source else None for span in spans]
+    return "" if source is None else source.text, places
 
 
 def _differing(before: bytes, after: bytes) -> Iterator[int]:

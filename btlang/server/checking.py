@@ -31,9 +31,10 @@ from btlang.record import Record
 from btlang.recording.trial import tried
 from btlang.server.access import AccessError
 from btlang.server.bodies import text_in
-from btlang.server.utf16 import Units, in_units
+from btlang.server.utf16 import in_units
 from btlang.testing.trial import results_of
 from btlang.text.source import Source
+from btlang.text.utf16 import Units
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

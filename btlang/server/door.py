@@ -70,6 +70,11 @@ def serve(
     api: Api, door: socket.socket, certificate: Certificate | None, control: str, ready: Callable[[], object]
 ) -> None:
     """Until SIGINT or SIGTERM. Whoever connects to the Unix socket `control` says that the accounts have changed."""
+    asyncio.run(_serve(api, web_server(api, certificate), door, control, ready))
+
+
+def web_server(api: Api, certificate: Certificate | None) -> uvicorn.Server:
+    """Make the server of an API, with the limits that strangers need."""
     config = uvicorn.Config(
         api.app(), http=_Protocol, ws="websockets-sansio", lifespan="on", access_log=False, log_level="error",
         server_header=False, proxy_headers=False, limit_concurrency=_MOST_CONNECTIONS, timeout_keep_alive=10,
@@ -80,8 +85,7 @@ def serve(
     # each write to a client that vanished while its questions are answered is a warning otherwise: a full log, or a
     # pipe that nobody reads, which holds up the end of the server
     logging.getLogger("asyncio").setLevel(logging.ERROR)
-    server = uvicorn.Server(config)
-    asyncio.run(_serve(api, server, door, control, ready))
+    return uvicorn.Server(config)
 
 
 async def _serve(

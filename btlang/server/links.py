@@ -214,13 +214,17 @@ class Robots:
         self._following.pop(name).cancel()
         self.links.pop(name).leave()
 
+    def look(self) -> None:
+        """Adds the robots that are up on this computer."""
+        for name in names_up():
+            if name not in self.links:
+                self.add(RobotLink(name))
+
     async def follow(self) -> None:
-        """Looks for robots of this computer, until it is cancelled."""
+        """Looks for robots again and again, until it is cancelled."""
         try:
             while True:
-                for name in names_up():
-                    if name not in self.links:
-                        self.add(RobotLink(name))
+                self.look()
                 await asyncio.sleep(_AGAIN)
         finally:
             for task in self._following.values():

@@ -1,4 +1,4 @@
-"""The options of `btc serve`, `btc user` and `btc edit`."""
+"""The options of `btc serve`, `btc user`, `btc edit` and `btc watch`."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import argparse
 
 from btlang.arguments import ros_name
 from btlang.option_parser import add_acts
+from btlang.recording.options import add_browser_option, add_recording_file
 from btlang.task.options import add_address_options
 
 USER_ACTS = {
@@ -47,9 +48,7 @@ def add_serve_options(parser: argparse.ArgumentParser) -> None:
 def add_edit_options(parser: argparse.ArgumentParser) -> None:
     """Those of `btc edit` that are not those of all words and worlds."""
     parser.add_argument("--port", type=int, default=0, metavar="PORT", help="port to listen on (default: a free one)")
-    parser.add_argument(
-        "--no-browser", action="store_false", dest="browser", help="print the address without opening the browser"
-    )
+    add_browser_option(parser)
     parser.add_argument("--main", default="", metavar="ID", help="which tree to edit if the file holds several")
     parser.add_argument(
         "--editor", action="store_true", help="open the editor that the variable EDITOR names, not the browser"
@@ -57,6 +56,12 @@ def add_edit_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "file", metavar="FILE", help="mission, which may be new, or a tree in XML or JSON; of JSON, a copy is saved"
     )
+
+
+def add_watch_options(parser: argparse.ArgumentParser) -> None:
+    """Those of `btc watch`."""
+    add_browser_option(parser)
+    add_recording_file(parser)
 
 
 def add_user_options(parser: argparse.ArgumentParser) -> None:

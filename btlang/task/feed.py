@@ -14,7 +14,7 @@ from btlang.passes.scripts import is_prepared
 from btlang.run.bus import INLINE
 from btlang.run.events import LOGGED, Arrived, DoorMoved, Ended, Event, PeriodPassed, StatusesChanged, Stopped
 from btlang.run.json_log import as_json
-from btlang.run.known_nodes import KnownNodes
+from btlang.run.known_nodes import KnownNodes, text_and_places
 from btlang.run.robot_state import RobotState, asked, rounded_scan
 from btlang.run.snapshot import Doing
 from btlang.session import Run
@@ -22,17 +22,27 @@ from btlang.task.allowance import Allowance
 from btlang.task.body_now import BodyNow
 from btlang.task.database import StoreError
 from btlang.task.map_now import MapNow
-from btlang.task.store import Store
-from btlang.task.task import Task
+from btlang.text.utf16 import Units
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, Protocol
 
     from btlang.robots.geometry import Point
     from btlang.robots.world import World
     from btlang.run.events import Sink
+    from btlang.task.task import Change
     from btlang.tree.node import Node
+
+    class Changes(Protocol):
+        """What became of tasks; see btlang.task.store.Store."""
+
+        listeners: list[Callable[[], object]]
+
+        def latest_change(self) -> int: ...
+
+        def changes(self, *, after: int, limit: int) -> Sequence[tuple[int, Change]]: ...
+
 
 RATES = 0.1, 100.0
 """The least and the most messages of one kind in a second."""
@@ -70,7 +80,7 @@ class Feed:
 
     def __init__(
         self,
-        store: Store,
+        store: Changes,
         robot: Callable[[], dict[str, Any]],
         words: dict[str, Any],
         world: World | None = None,
@@ -94,9 +104,9 @@ class Feed:
         self._doing = Doing()
         store.listeners.append(self.wake)
 
-    def sinks(self, task: Task | None, mission: Mission, run: Run) -> list[Sink]:
-        """Those of a run that is about to begin."""
-        watched = _Watched(0 if task is None else task.id, mission, run)
+    def sinks(self, task: int, mission: Mission, run: Run) -> list[Sink]:
+        """Make the sinks of a run that is about to begin: of the task with a number, 0 for the house rules."""
+        watched = _Watched(task, mission, run)
         self._current = watched
         self._doing = Doing(watched.task) if watched.task else self._doing
         for watcher in tuple(self._watchers):
@@ -265,7 +275,11 @@ def _tree(watched: _Watched) -> dict[str, Any]:
     nodes, label = watched.run.nodes, watched.mission.label
     filled = [nodes.filled(index) for index in range(nodes.size)]
     listed = [[nodes.path(index), node.id, label(node), dict(node.ports)] for index, node in enumerate(filled)]
-    return {"nodes": listed, "prepared": [index for index, node in enumerate(filled) if is_prepared(node)]}
+    text, places = text_and_places(watched.mission.syntax, nodes)
+    unit = Units(text).unit
+    spans = [place and [unit(place[0]), unit(place[1])] for place in places]
+    prepared = [index for index, node in enumerate(filled) if is_prepared(node)]
+    return {"nodes": listed, "prepared": prepared, "text": text, "spans": spans}
 
 
 def _state(state: RobotState | None) -> dict[str, Any]:

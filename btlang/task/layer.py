@@ -107,7 +107,10 @@ class TaskLayer:
             missions=self.reader.read, now=self.now, trouble=trouble,
             recordings=None if recordings is None else Recordings(recordings, trouble),
             speed=speed, idle_rate=20.0 if self._real else _SLOW,
-            sinks=lambda *run: [self.world_input, *self.feed.sinks(*run), *sinks(*run)],
+            sinks=lambda task, mission, run: [
+                self.world_input, *self.feed.sinks(0 if task is None else task.id, mission, run),
+                *sinks(task, mission, run),
+            ],
         )  # fmt: skip
         self.handler = Handler(
             self.store,

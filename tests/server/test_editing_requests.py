@@ -17,7 +17,8 @@ from btlang.editing.words import Words
 from btlang.server import checking
 from btlang.server.access import AccessError
 from btlang.server.checking import DOES, Checker, answer, arguments_of
-from btlang.server.utf16 import Units, in_units
+from btlang.server.utf16 import in_units
+from btlang.text.utf16 import Units
 from tests.profiles import amount, searches
 from tests.server.doors import Door
 

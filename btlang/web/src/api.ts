@@ -12,6 +12,8 @@ export interface Answer {
 export interface Me {
   user: string;
   role: Role;
+  /** The address of the only screen of this server, [] where it has all. */
+  screen: string[];
 }
 
 const ROLES = ["viewer", "operator", "editor", "administrator"] as const;
@@ -75,7 +77,7 @@ export async function logIn(name: string, password: string): Promise<Me> {
   return known(await post("/api/login", { name, password }));
 }
 
-/** Begins the session of `btc edit`, whose address has a token that is good once. Throws RequestError. */
+/** Begins the session of `btc edit` or `btc watch`, whose address has a token that is good once. Throws RequestError. */
 export async function enter(token: string): Promise<Me> {
   return known(await post("/api/login", { token }));
 }
@@ -87,5 +89,5 @@ export async function logOut(): Promise<void> {
 
 function known(data: any): Me {
   csrf = data.csrf ?? "";
-  return { user: data.user, role: data.role };
+  return { user: data.user, role: data.role, screen: data.screen ?? [] };
 }

@@ -1,6 +1,7 @@
 // What is known of the robots, from the messages of the server alone.
 import { whole, type RunEvent } from "./events";
 import type { News } from "./socket";
+import type { Place } from "./watch/words";
 
 export const STATUSES = ["IDLE", "RUNNING", "SUCCESS", "FAILURE", "SKIPPED"] as const;
 export type Status = (typeof STATUSES)[number];
@@ -46,6 +47,9 @@ export interface Run {
   leaves: boolean[];
   /** Those whose children but the last only compute values for that one. */
   prepared: Set<number>;
+  /** What the mission was read from, "" for nothing, and where it says each node. */
+  text: string;
+  places: Place[];
 }
 
 /** A line of the log: an event, or a command or condition with a new status. */
@@ -142,7 +146,7 @@ export class Robot {
   private begin(news: News): void {
     const nodes: Run["nodes"] = news["nodes"];
     const prepared = new Set<number>(news["prepared"]);
-    const run: Run = { id: news["run"], task: news["task"], nodes, statuses: nodes.map(() => "IDLE"), leaves: leavesOf(nodes, prepared), prepared };
+    const run: Run = { id: news["run"], task: news["task"], nodes, statuses: nodes.map(() => "IDLE"), leaves: leavesOf(nodes, prepared), prepared, text: news["text"] ?? "", places: news["spans"] ?? [] };
     if (run.task && run.id !== this.run?.id) this.path = this.path.slice(-1);
     this[run.task ? "run" : "rules"] = run;
   }

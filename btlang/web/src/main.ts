@@ -1,6 +1,6 @@
 // Start: who is logged in sees the shell, everybody else the log-in.
 import { address } from "./address";
-import { enter as enterByToken, request, whoAmI } from "./api";
+import { enter as enterByToken, whoAmI } from "./api";
 import { fill, h } from "./dom";
 import { showLogin } from "./login";
 import { Shell } from "./shell";
@@ -11,7 +11,7 @@ async function start(): Promise<void> {
   document.documentElement.lang = language();
   applyTheme();
   const token = /^#token=([\w-]+)$/.exec(location.hash)?.[1];
-  if (token) return openFile(token);
+  if (token) return openScreen(token);
   if (location.pathname === "/login") return showLogin(enter);
   let me;
   try {
@@ -25,12 +25,11 @@ async function start(): Promise<void> {
   else showLogin(enter);
 }
 
-/** The file of `btc edit`. */
-async function openFile(token: string): Promise<void> {
+/** The only screen of `btc edit` or `btc watch`. */
+async function openScreen(token: string): Promise<void> {
   try {
-    await enterByToken(token);
-    const { data } = await request("GET", "/api/files");
-    history.replaceState(null, "", `/${address("write", "file", data.files[0].name)}`);
+    const { screen } = await enterByToken(token);
+    history.replaceState(null, "", `/${address(...screen)}`);
     await start();
   } catch (error) {
     fill(document.body, h("main", { class: "alone" }, h("p", { role: "alert", lang: "en" }, (error as Error).message)));

@@ -42,6 +42,7 @@ export class Shell {
     private me: Me,
     private again: () => void,
   ) {
+    if (me.screen[0]) document.body.dataset["only"] = me.screen[0];
     this.presence = new Presence(me.user, () => this.link);
     this.link = new Link(
       (news) => this.fleet.take(news),
@@ -88,7 +89,6 @@ export class Shell {
     else this.robot ||= sessionStorage.getItem(LATEST) || ([...this.fleet.robots.keys()][0] ?? "");
     sessionStorage.setItem(LATEST, this.robot);
     const tab: Tab | null = first === "write" || first === "runs" ? first : !this.robot ? null : rest[0] === "tasks" ? "tasks" : "watch";
-    document.body.classList.toggle("file", first === "write" && rest[0] === "file"); // of `btc edit`, which has no robots
     this.listen(tab);
     this.showTabs(tab);
     this.stop.show();
@@ -127,7 +127,7 @@ export class Shell {
     openMenu(left, bottom + 4, this.me.user, [
       ...languages.filter(([name]) => name !== language()).map(([name, label]) => ({ label, run: () => { setLanguage(name); this.leave(); } })),
       ...THEMES.filter((name) => name !== theme()).map((name) => ({ label: t(`theme.${name}`), run: () => setTheme(name) })),
-      { label: t("logout"), run: () => void logOut().finally(() => this.leave()) },
+      ...(this.me.screen.length ? [] : [{ label: t("logout"), run: () => void logOut().finally(() => this.leave()) }]),
     ]);
   }
 }

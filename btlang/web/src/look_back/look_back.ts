@@ -25,7 +25,7 @@ const WITH = "with";
 export function openLookBack(context: Context): View {
   const [robot, name, third, other, moment] = context.path;
   if (!robot || !name) return openList(context, "");
-  if (third !== WITH) return openFilm(robot, name, Number(third) || 0);
+  if (third !== WITH) return openFilm(context, robot, name, Number(third) || 0);
   return other ? openComparison(robot, name, other, moment === undefined ? null : Number(moment) || 0) : openList({ ...context, robot }, name);
 }
 
@@ -50,7 +50,7 @@ function openAnswer<T>(path: string, make: (answer: T) => { title: HTMLElement; 
   return { element, close: () => { closed = true; close(); } };
 }
 
-function openFilm(robot: string, name: string, at: number): View {
+function openFilm({ me }: Context, robot: string, name: string, at: number): View {
   return openAnswer(`/api/films/${encodeURIComponent(name)}?${query(robot)}`, (film: Film) => {
     const player = new Player(film, at, (seconds) => history.replaceState(null, "", address("runs", robot, name, seconds.toFixed(1))));
     const of = `/${encodeURIComponent(name)}?${query(robot)}`;
@@ -69,7 +69,8 @@ function openFilm(robot: string, name: string, at: number): View {
     const began = Number(film.about["wall"]) || 0;
     const download = downloads(() => [titleOf(film.text), began], offers, (text) => fill(problem, text));
     const compare = h("a", { class: "button", href: address("runs", robot, name, WITH) }, t("compare.with"));
-    const title = h("div", { class: "title" }, h("h1", { dir: "auto" }, titleOf(film.text)), h("div", { class: "controls" }, compare, share(), download), problem);
+    const others = me.screen.length ? [] : [compare, share()];
+    const title = h("div", { class: "title" }, h("h1", { dir: "auto" }, titleOf(film.text)), h("div", { class: "controls" }, ...others, download), problem);
     return { title, element: player.element, close: () => player.close() };
   });
 }

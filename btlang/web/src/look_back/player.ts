@@ -25,7 +25,7 @@ export class Player {
       "section",
       { class: "film" },
       scene.outcome,
-      h("div", { class: "panes" }, h("div", { class: "stage card" }, scene.tree.element), h("div", { class: "side" }, scene.place, scene.log, film.text && h("div", { class: "card" }, scene.words))),
+      h("div", { class: "panes" }, h("div", { class: "stage card" }, scene.tree.element), h("div", { class: "side" }, scene.place, scene.log, film.text && h("div", { class: "card" }, scene.words.element))),
       this.timeline.element,
     );
     this.timeline.seek(at || (film.failed >= 0 ? scene.timeOf(film.failed) : 0));

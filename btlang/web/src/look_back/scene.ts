@@ -5,6 +5,7 @@ import { Robot, STATUSES, type Status, type Thing, type WorldMap } from "../flee
 import { t } from "../texts";
 import { TreeView, joined, type TreeNode } from "../tree/tree_view";
 import { MapView } from "../watch/map";
+import { Words } from "../watch/words";
 import { clock } from "./timeline";
 
 /** See Film.data in btlang/recording/film.py. */
@@ -47,7 +48,7 @@ export class Scene {
   readonly tree: TreeView;
   readonly place: HTMLElement;
   readonly log: HTMLElement;
-  readonly words = h("pre", { class: "film-text", tabindex: 0, dir: "auto", lang: "en", "aria-label": t("write.text") });
+  readonly words = new Words();
   /** How it ended, and why. */
   readonly outcome: HTMLElement;
   private robot!: Robot;
@@ -158,9 +159,6 @@ export class Scene {
   private showWords(node: number): void {
     const { text, nodes } = this.film;
     const said = nodes[node];
-    if (!said || said.start === null || said.end === null) return fill(this.words, text);
-    const mark = h("mark", {}, text.slice(said.start, said.end));
-    fill(this.words, text.slice(0, said.start), mark, text.slice(said.end));
-    mark.scrollIntoView({ block: "nearest" });
+    this.words.show(text, [said && said.start !== null && said.end !== null ? [said.start, said.end] : null]);
   }
 }

@@ -18,6 +18,7 @@ import { Question } from "./question";
 import { Speech } from "./speech";
 import { Talk } from "./talk";
 import { Voice } from "./voice";
+import { Words } from "./words";
 
 const MOST_RUNNING = 12; // that are listed
 const RESTING = 2; // nodes of the tree of a robot that has nothing to do
@@ -41,6 +42,8 @@ class Watch implements View {
   private controls = h("div", { class: "controls", role: "group", "aria-label": t("watch.controls") });
   private tree = new TreeView({ label: t("watch.tree") });
   private empty = h("p", { class: "empty" }, t("watch.nothing"));
+  private words = new Words();
+  private text = h("div", { class: "card", hidden: true }, this.words.element);
   private map = new MapView(() => this.robot);
   private log = new LogView();
   private visitor = h("button", { type: "button", class: "visitor", hidden: true, onclick: () => void this.act("visitor", {}) }, t("visitor"));
@@ -77,6 +80,7 @@ class Watch implements View {
         { class: "side" },
         h("div", { class: "card place" }, this.body.element, this.map.canvas, h("div", { class: "beside" }, this.voice.element, this.visitor), this.speech.element, this.question.element, this.talk.element),
         operates && h("details", { class: "card" }, h("summary", {}, t("submit.title")), submitForm(context)),
+        this.text,
         this.parts.element,
         h("div", { class: "card events" }, h("h2", {}, t("log")), this.log.element),
       ),
@@ -141,6 +145,8 @@ class Watch implements View {
     }
     this.run = run;
     const leaves = run && this.robot.up ? running(run) : [];
+    this.text.hidden = !run?.text;
+    this.words.show(run?.text ?? "", leaves.map((leaf) => run!.places[leaf] ?? null));
     const words = leaves.slice(0, MOST_RUNNING).map((leaf) => run!.nodes[leaf]![2]);
     const shown = JSON.stringify([run?.id, leaves, words]);
     if (this.running.dataset["shown"] === shown) return;

@@ -1,0 +1,28 @@
+// The text of a mission, with the words of nodes marked.
+import { fill, h } from "../dom";
+import { t } from "../texts";
+
+/** Where the text says a node: from a character to another one, null where it doesn't. */
+export type Place = [start: number, end: number] | null;
+
+export class Words {
+  readonly element = h("pre", { class: "film-text", tabindex: 0, dir: "auto", lang: "en", "aria-label": t("write.text") });
+  private shown = "";
+
+  /** Shows a text with some places marked; brings the first of them into view. */
+  show(text: string, places: Place[]): void {
+    const sorted = places.filter((place) => place !== null).sort(([one], [other]) => one - other);
+    const shown = JSON.stringify([text, sorted]);
+    if (this.shown === shown) return;
+    this.shown = shown;
+    const parts: (string | HTMLElement)[] = [];
+    let done = 0;
+    for (const [start, end] of sorted) {
+      if (start < done) continue;
+      parts.push(text.slice(done, start), h("mark", {}, text.slice(start, end)));
+      done = end;
+    }
+    fill(this.element, ...parts, text.slice(done));
+    this.element.querySelector("mark")?.scrollIntoView({ block: "nearest" });
+  }
+}
