@@ -5,6 +5,7 @@ from __future__ import annotations
 import http.client
 import json
 import os
+import re
 import socket
 import ssl
 import subprocess
@@ -22,6 +23,14 @@ from websockets.sync.client import ClientConnection, connect
 from btlang.task.layer import TaskLayer
 from tests.task.layers import LONG, robot_up
 
+_WITH_PAGE = """
+import sys
+from pathlib import Path
+from btlang.server import local_page
+local_page.PAGE = Path(__import__("btlang").__file__)
+from btlang.cli import main
+sys.exit(main(sys.argv[1:]))
+"""  # whether the page is built or not
 PASSWORD = "correct horse battery"
 
 
@@ -116,6 +125,25 @@ class Door(Program):
         scheme = "ws" if self.tls is None else "wss"
         address = f"{scheme}://127.0.0.1:{self.port}{path}"
         return connect(address, ssl=self.tls, additional_headers=headers, proxy=None, open_timeout=LONG)
+
+
+class LocalDoor(Door):
+    """A command with a page for its user, whose `token` lets a browser in, once; "" where the browser was opened."""
+
+    def __init__(self, folder: Path, *words: str, **environment: str) -> None:
+        self.folder, self.tls = folder, None
+        self.environment = {**os.environ, "XDG_RUNTIME_DIR": str(folder), "TMPDIR": str(folder), **environment}
+        self._command = [sys.executable, "-c", _WITH_PAGE, *words]
+        self.start("")
+        address = re.search(r"http://127\.0\.0\.1:(\d+)(?:/login#token=(\S+))?", self.lines[0])
+        assert address is not None, self.lines
+        self.port, self.token = int(address[1]), address[2] or ""
+
+    def enter(self) -> dict[str, str]:
+        """The headers of the page."""
+        reply = self.ask("POST", "/api/login", {"token": self.token})
+        assert reply.status == 200, reply.body
+        return {"cookie": reply.headers["set-cookie"].partition(";")[0], "x_csrf_token": reply.data["csrf"]}
 
 
 class Reply:

@@ -5,6 +5,7 @@ import { Robot, STATUSES, type Status, type Thing, type WorldMap } from "../flee
 import { t } from "../texts";
 import { TreeView, joined, type TreeNode } from "../tree/tree_view";
 import { MapView } from "../watch/map";
+import { Speech } from "../watch/speech";
 import { Words } from "../watch/words";
 import { clock } from "./timeline";
 
@@ -53,6 +54,7 @@ export class Scene {
   readonly outcome: HTMLElement;
   private robot!: Robot;
   private map = new MapView(() => this.robot);
+  private speech = new Speech();
   private story = h("ol", { class: "log story", lang: "en", tabindex: 0 });
   private now = 0;
   private shown = 0; // the moment that is shown
@@ -72,7 +74,7 @@ export class Scene {
       h("li", {}, h("time", {}, clock(seconds)), h("button", { type: "button", class: "plain", onclick: () => jump(seconds, node) }, words)),
     );
     fill(this.story, ...items);
-    this.place = h("div", { class: "card place" }, this.map.canvas);
+    this.place = h("div", { class: "card place" }, this.map.canvas, this.speech.element);
     this.log = h("div", { class: "card events" }, h("h2", {}, t("log")), this.story);
     const words = [film.stopped && `${t("film.stopped")} ${film.stopped}.`, film.why, film.is_cut && t("film.cut")].filter(Boolean).join("\n");
     this.outcome = h("p", { class: film.failed >= 0 || film.stopped ? "outcome bad" : "outcome", lang: "en", tabindex: 0 }, words);
@@ -129,6 +131,7 @@ export class Scene {
     this.tree.setStatuses(changes);
     this.tree.setWords(new Map([...this.rows.words.upTo(now)].map(([, node, words]) => [node, words])));
     this.tell();
+    this.speech.show(this.robot);
     this.map.redraw();
     const current = film.story.findLastIndex(([seconds]) => seconds <= now + 1e-6);
     [...this.story.children].forEach((item, index) => item.classList.toggle("now", index === current));

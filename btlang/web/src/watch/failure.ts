@@ -1,9 +1,7 @@
 // Why a mission failed, with the node and the words that did.
 import { fill, h } from "../dom";
 import type { Entry } from "../fleet";
-import { command } from "../tasks/queue";
 import { t } from "../texts";
-import type { Context } from "../view";
 
 const AROUND = 2; // lines of the mission before and after the one that failed
 
@@ -11,17 +9,14 @@ export class Failure {
   readonly element = h("div", { class: "failure", role: "status", hidden: true });
 
   /** `select` shows the node at a path. */
-  constructor(
-    private context: Context,
-    private select: (path: string) => void,
-  ) {}
+  constructor(private select: (path: string) => void) {}
 
   clear(): void {
     this.element.hidden = true;
   }
 
-  /** Shows a failed end. */
-  note({ task, event }: Entry): void {
+  /** Shows a failed end, with the lines of the mission around it. */
+  note({ task, event }: Entry, text: string): void {
     if (event.event !== "end" || event.outcome !== "FAILURE" || event.stopped || !task) return;
     const words = h("pre", { class: "words", dir: "auto" });
     fill(
@@ -33,12 +28,8 @@ export class Failure {
     this.element.hidden = false;
     if (event.path) this.select(event.path);
     const line = Number(/(\d+)(?::\d+)?$/.exec(event.place)?.[1] ?? 0);
-    if (line) void this.showWords(task, line, words);
-  }
-
-  private async showWords(task: number, line: number, words: HTMLElement): Promise<void> {
-    const { task: found } = await command(this.context, "show", { task }).catch(() => ({ task: { text: "" } }));
-    const lines = String(found["text"]).split("\n");
+    if (!line) return;
+    const lines = text.split("\n");
     const first = Math.max(1, line - AROUND);
     const near = lines.slice(first - 1, line + AROUND);
     fill(words, ...near.map((text, index) => h(first + index === line ? "mark" : "span", {}, `${String(first + index).padStart(4)}  ${text}\n`)));

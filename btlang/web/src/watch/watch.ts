@@ -67,7 +67,7 @@ class Watch implements View {
     this.talk = new Talk(context);
     this.voice = new Voice(context);
     this.parts = new Parts(context);
-    this.failure = new Failure(context, (path) => this.select(path));
+    this.failure = new Failure((path) => this.select(path));
     this.queue = new Queue(context, () => this.refresh());
     const operates = may(context.me, "operator");
     this.element = h(
@@ -93,7 +93,7 @@ class Watch implements View {
       }
       if (kind === "event") {
         const entry = entryOf(news!);
-        this.failure.note(entry);
+        this.failure.note(entry, this.robot.run?.text ?? "");
         this.voice.note(entry);
       }
       if (kind === "up") this.body.close(); // it may have another body by now
