@@ -78,9 +78,10 @@ def test_the_end_stays_until_somebody_ends_it(mission: Path, number: signal.Sign
         page = up.enter()
         with up.socket(cookie=page["cookie"]) as socket:
             socket.send(json.dumps({"type": "subscribe", "id": 1}))
+            while received(socket, type="event")["event"]["event"] != "end":
+                pass
             time.sleep(4.0)  # longer than it waits for a page that is loaded again
             assert up.process.poll() is None
-            socket.ping().wait(LONG)
             up.process.send_signal(number)
             up.process.wait(LONG)
     assert up.process.returncode == 0, up.lines
