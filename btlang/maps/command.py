@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from shutil import get_terminal_size
 
 from btlang.backends.files import write_file
 from btlang.diagnostics.errors import MissionError
@@ -13,8 +14,9 @@ from btlang.maps.summary import summary
 from btlang.robots.registry import body_of
 from btlang.robots.world_problem import read_world
 from btlang.robots.world_writing import to_toml
+from btlang.run.robot_state import RobotState
 from btlang.text.escaping import one_line
-from btlang.text.output import show
+from btlang.text.output import WIDEST, can_draw, is_unicode, show
 from btlang.text.source import Source
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from btlang.robots.world import World
 
 _BAD_INPUT = 2
+_ROWS = 10  # that the map leaves for the names
 _GIVEN = {"picture": "--picture", "out": "-o", "to": "--to", "start": "--start", "resolution": "--resolution"}
 _TAKES = {"": {"picture"}, "check": set[str](), "import": {"out", "start"}, "export": {"out", "to", "resolution"}}
 
@@ -48,10 +51,22 @@ def serve(options: argparse.Namespace) -> int:
     if act == "export":
         return _export(options, world, body)
     if options.picture is None:
+        if can_draw(sys.stdout):
+            show(_on_terminal(world))
         show("\n".join(summary(world)))
     else:
         _draw(world, options.picture, files[0])
     return 0
+
+
+def _on_terminal(world: World) -> object:
+    from btlang.pictures.terminal_map import TerminalMap
+
+    size = get_terminal_size()
+    drawn = TerminalMap(world, is_unicode(sys.stdout)).text(
+        RobotState(world.start), min(size.columns, WIDEST), size.lines - _ROWS
+    )
+    return drawn or ""
 
 
 def _check_words(options: argparse.Namespace, act: str, files: list[str]) -> None:

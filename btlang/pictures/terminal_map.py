@@ -20,6 +20,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rich.text import Text
+
     from btlang.run.live.frame import Line
 
 _ACROSS, _DOWN = 2, 4  # dots of a cell
@@ -94,6 +96,14 @@ class TerminalMap:
             sign = (_ARROWS if self._unicode else _PLAIN_ARROWS)[turn]
             letters.mark(*at(robot.pose.x, robot.pose.y), sign, _ROBOT)
         return [self._line(dots, letters, row) for row in range(height)]
+
+    def text(self, robot: RobotState | None, width: int, height: int) -> Text | None:
+        """Return the map as a text of at most so many cells, None where these are too few."""
+        from rich.text import Text
+
+        columns, rows = self.size(width, height)
+        drawn = [Text.assemble(*line) for line in self.lines(robot, columns, rows)] if columns else []
+        return Text("\n").join(drawn) if drawn else None
 
     def _scale(self, width: int, height: int) -> float:
         """Dots a metre."""

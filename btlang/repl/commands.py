@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable
+from shutil import get_terminal_size
 
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, unwritable
@@ -14,7 +16,7 @@ from btlang.repl.draft import Entry, MissionDraft
 from btlang.repl.store import Store
 from btlang.robots.robot import Robot, RobotError
 from btlang.robots.world import said
-from btlang.text.output import listing_width
+from btlang.text.output import can_draw, listing_width
 from btlang.text.source import Source
 from btlang.text.table import Table
 from btlang.text.words import split
@@ -284,11 +286,23 @@ class Commands:
                 draft.world, draft.vocabulary, draft.session = before
                 raise
             before[2].close()
+        self.show_map()
         names = draft.session.world.names
         kinds = (("places", names.places), ("people", names.people), ("objects", names.objects))
         known = ((kind, ", ".join(those)) for kind, those in kinds if those)
         self._write(Table((("world", draft.world or "the one that ships"), *known), widths=(7,), gap=1))
         self._write(robot_line(draft))
+
+    def show_map(self) -> None:
+        """Draws the world and the robot in it, if the output is a terminal with room for it."""
+        if not can_draw(sys.stdout):
+            return
+        from btlang.repl.welcome import world_map
+
+        size = get_terminal_size()
+        drawn = world_map(self._draft, size.columns, size.lines)
+        if drawn is not None:
+            self._write(drawn)
 
     def _reset(self, rest: str) -> None:
         self._draft.reset()

@@ -27,7 +27,7 @@ from btlang.tree.visit import used_subtrees
 from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.shipped import ENGLISH
 
-ENTRY = "<entry>"
+ENTRY = "prompt"
 """What messages call the source of an entry."""
 
 
@@ -70,7 +70,7 @@ class MissionDraft:
         self._keywords = keywords
         self.file: str | None = None
         """The file that the mission was loaded from or saved to last."""
-        self._language = language
+        self.language = language
         self._include_root = include_root
         self._parser = parser
         self._undone: list[tuple[Entry, ...]] = []
@@ -82,7 +82,7 @@ class MissionDraft:
 
     def use_world(self, world: str | None) -> None:
         """Puts the robot into a world of its own file, None for the one that ships. Raises MissionError."""
-        vocabulary, world = mission_vocabulary(self._source(self.text), self._keywords, world, self._language)
+        vocabulary, world = mission_vocabulary(self._source(self.text), self._keywords, world, self.language)
         self.session = Session(self._robot, world=world, over=self._over)
         self.vocabulary = vocabulary
         self.world = world
@@ -93,7 +93,7 @@ class MissionDraft:
         A world that the user has chosen stays.
         """
         before = self.vocabulary, self.world
-        self.vocabulary, self.world = mission_vocabulary(source, self._keywords, self.world, self._language)
+        self.vocabulary, self.world = mission_vocabulary(source, self._keywords, self.world, self.language)
         try:
             entries = self.entries_of(source.text, source.name)
             if self.world != before[1]:

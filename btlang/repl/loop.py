@@ -15,6 +15,7 @@ from btlang.repl.commands import Commands, Leave, command_of
 from btlang.repl.draft import MissionDraft
 from btlang.repl.entering import entries
 from btlang.repl.store import Kept, Store, state_folder
+from btlang.repl.welcome import welcome
 from btlang.run.command import ENDING_SIGNALS, run_mission
 from btlang.text.output import can_draw, has_colour, show
 from btlang.vocabulary.shipped import ENGLISH
@@ -71,7 +72,9 @@ class Repl:
 
         screen = Screen(self._draft, self._store)
         self._commands.clear_screen = screen.clear
-        show("btlang: type what the robot should do. 'help' explains; Ctrl-D twice leaves.")
+        show("btlang: type what the robot should do.")
+        self._commands.show_map()
+        show(welcome(self._draft))
         if self._store.problem:
             show(f"What you type isn't saved: {self._store.problem}")
         left = self._store.left()

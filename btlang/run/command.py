@@ -238,5 +238,5 @@ def _opened(log: str | None) -> Iterator[TextIO | None]:
 
 
 def _too_slow(outcome: Outcome, node: Node, seconds: float, label: Callable[[Node], str]) -> str:
-    ticks = f"{outcome.overruns} of {outcome.ticks} tick{'s' * (outcome.ticks > 1)} took too long"
+    ticks = f"{outcome.overruns} of {outcome.ticks} ticks took too long"
     return f'{ticks}; the slowest leaf was "{label(node)}" with {brief(seconds)} s.'

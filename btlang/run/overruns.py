@@ -15,8 +15,8 @@ _NOISE = 0.02  # seconds that anything may take on a busy computer
 
 
 def are_many(overruns: int, ticks: int) -> bool:
-    """Whether more than one tick in a hundred took too long: fewer are of no interest to people."""
-    return overruns * 100 > ticks
+    """Whether several ticks took too long, and more than one in a hundred: fewer are of no interest to people."""
+    return overruns > 1 and overruns * 100 > ticks
 
 
 class Overruns:

@@ -50,6 +50,11 @@ def can_draw(output: TextIO | None) -> bool:
     return output is not None and output.isatty() and os.environ.get("TERM", "dumb") not in ("", "dumb", "unknown")
 
 
+def is_unicode(output: TextIO | None) -> bool:
+    """Whether an output shows all characters."""
+    return output is not None and (output.encoding or "").lower().startswith("utf")
+
+
 def has_colour(stream: TextIO | None) -> bool:
     """Whether a stream shows colours: a terminal does. NO_COLOR forbids them, FORCE_COLOR and CLICOLOR_FORCE ask for
     them anywhere, CLICOLOR=0 turns them off on a terminal. The first of these that is set decides.

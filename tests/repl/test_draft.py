@@ -62,7 +62,7 @@ def test_places_in_messages_are_those_of_the_entry() -> None:
     draft = entered("patrol is wave")
     with pytest.raises(MissionError) as caught:
         draft.compile("patrol then go to the ktichen")
-    assert caught.value.diagnostics[0].span.place == "<entry>:1:23"
+    assert caught.value.diagnostics[0].span.place == "prompt:1:23"
 
 
 def test_undo_and_redo() -> None:

@@ -20,7 +20,7 @@ def test_a_line_that_fails(capsys: pytest.CaptureFixture[str]) -> None:
     lines = told(capsys, fetch, "wait 1 s", "wait 1 s then fetch the cup")
     assert lines == [
         "The mission failed after 1.0 s.",
-        "<entry>:2:54: holding cup",
+        "prompt:2:54: holding cup",
         f"  {fetch}",
         f"  {'':53}{'^' * 27}",
         "  Holding: it is not true",

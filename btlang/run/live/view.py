@@ -18,6 +18,7 @@ from btlang.run.live.capture import captured
 from btlang.run.live.keys import GONE, Keys
 from btlang.run.live.screen import Screen
 from btlang.run.live.stopping import stoppable
+from btlang.text.output import is_unicode
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -86,8 +87,7 @@ class LiveView:
         keys: Sequence[ViewKey] | None = None,
         world_input: WorldInput | None = None,
     ) -> None:
-        unicode = (output.encoding or "").lower().startswith("utf")
-        self._board = Board(mission, frame.UNICODE if unicode else frame.ASCII)
+        self._board = Board(mission, frame.UNICODE if is_unicode(output) else frame.ASCII)
         self._tree_stays = tree_stays
         self._type_ahead = type_ahead
         self._controls = controls

@@ -318,8 +318,13 @@ def _examples(vocabulary: Lexicon, sort: str = "command") -> str:
         asking = (entry for entries in vocabulary.entries.values() for entry in entries if entry.sort == "condition")
         said = next((way for entry in asking for way in entry.phrases[:1] if re.findall(r"{(\w+)}", way) == [kind]), "")
         found += [re.sub(r"\{\w+\}", names[0], said)] if said and names else []
-    if found:
-        return f"I understand for example: {'; '.join(found)}"
+    found = found or example_commands(vocabulary)
+    return f"I understand for example: {'; '.join(found)}" if found else "'btc words' lists what I know."
+
+
+def example_commands(vocabulary: Lexicon) -> list[str]:
+    """Up to three commands about what there is in the world, in the words of a vocabulary."""
+    found: list[str] = []
     for kind in (PLACE, OBJECT, "person"):
         names = vocabulary.values.said_names(kind) if kind in vocabulary.types else []
         entries = (entry for entries in vocabulary.entries.values() for entry in entries if entry.verbs)
@@ -327,7 +332,7 @@ def _examples(vocabulary: Lexicon, sort: str = "command") -> str:
                 if roles and roles[0].type == kind and not any(role.is_needed for role in roles[1:]))  # fmt: skip
         said = next((spelled(way[0]) for way in ways), "") if names else ""
         found += [re.sub(r"\{\w+\}", names[0], said)] if said else []
-    return f"I understand for example: {'; '.join(found)}" if found else "'btc words' lists what I know."
+    return found
 
 
 def nearest_known(words: Iterable[str]) -> str:
