@@ -146,7 +146,7 @@ def _draw_tree(mission: Mission, path: str, apart: bool) -> None:
     from btlang.pictures.files import check_picture
     from btlang.pictures.tree_picture import draw_tree
 
-    check_picture(path, of_run=False)
+    check_picture(path)
     draw_tree(mission.tree, mission.label, mission.is_action, path, apart=apart)
     show(f"Wrote {path}.")
 

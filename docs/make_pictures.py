@@ -7,6 +7,7 @@ from __future__ import annotations
 import re
 import sys
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 
 from btlang.cli import main
@@ -16,6 +17,8 @@ DOCS = Path(__file__).parent
 
 def make_pictures(folder: Path) -> None:
     """Runs the mission of the README and draws its run and its tree, the guide of the museum, and the layers."""
+    if find_spec("matplotlib") is None:
+        sys.exit("The GIF needs matplotlib. Install it: pip install '.[pictures]'")
     sys.path.insert(0, str(DOCS))
     from framework_figure import draw_layers
     from moving_picture import moving_picture

@@ -128,7 +128,7 @@ def _draw(path: str, body: Body, gesture: Gesture) -> int:
     from btlang.pictures.figure import draw_gesture
 
     kind = ending(path, STILL + MOVING)
-    check_picture(path, of_run=True)
+    check_picture(path)
     rehearsal = rehearse(body, gesture)
     if rehearsal.problem:
         where = Span(Source(gesture.name, gesture.file or body.name), 0, 0)

@@ -63,10 +63,8 @@ def _on_terminal(world: World) -> object:
     from btlang.pictures.terminal_map import TerminalMap
 
     size = get_terminal_size()
-    drawn = TerminalMap(world, is_unicode(sys.stdout)).text(
-        RobotState(world.start), min(size.columns, WIDEST), size.lines - _ROWS
-    )
-    return drawn or ""
+    map = TerminalMap(world, is_unicode(sys.stdout))
+    return map.text(RobotState(world.start), min(size.columns, WIDEST), size.lines - _ROWS) or ""
 
 
 def _check_words(options: argparse.Namespace, act: str, files: list[str]) -> None:
@@ -143,6 +141,6 @@ def _draw(world: World, path: str, name: str) -> None:
     from btlang.pictures.files import check_picture
     from btlang.pictures.world_picture import draw_world
 
-    check_picture(path, of_run=True)
+    check_picture(path)
     draw_world(world, path, os.path.splitext(os.path.basename(name))[0])
     show(f"Wrote {path}.")

@@ -1,12 +1,13 @@
-"""A surface for pictures of trees and of runs. All use of matplotlib's figures and fonts is here."""
+"""A surface for pictures as PNG and GIF. All use of matplotlib's figures and fonts is here."""
 
 from __future__ import annotations
 
 import io
 import logging
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from functools import cache
+from itertools import pairwise
 from math import sqrt
 
 from btlang.pictures.files import missing
@@ -42,7 +43,7 @@ def _known() -> frozenset[str]:
 
 
 @contextmanager
-def drawing(path: str) -> Iterator[None]:
+def with_matplotlib(path: str) -> Iterator[None]:
     """Matplotlib with its own defaults, whatever the user's settings, and without its messages.
 
     Raises MissionError (BT081) where it cannot be imported.
@@ -56,8 +57,7 @@ def drawing(path: str) -> Iterator[None]:
         except ImportError:
             raise missing(path) from None
         assert font_manager.fontManager
-        ours: dict[str, Any] = {"svg.fonttype": "path", "svg.hashsalt": "btlang", "path.simplify": False}
-        with style.context(ours, after_reset=True):
+        with style.context({"path.simplify": False}, after_reset=True):
             yield
     finally:
         logger.setLevel(level)
@@ -146,6 +146,13 @@ class Canvas:
         artist.set_linestyle((0, (2, 2)) if dashed else "solid")
         return self.add(artist, z)
 
+    def shaded(self, points: Points, colours: Sequence[str], *, line: float = 1, z: float = 0) -> Artist:
+        """A line through the points whose pieces have a colour each."""
+        from matplotlib.collections import LineCollection
+
+        pieces = [list(piece) for piece in pairwise(points)]
+        return self.add(LineCollection(pieces, colors=list(colours), linewidths=line, capstyle="round"), z)
+
     def group(self, title: str) -> AbstractContextManager[object]:
         """Shapes have no names here."""
         return nullcontext()
@@ -177,13 +184,10 @@ class Canvas:
         return self._agg.get_width_height(), bytes(self._agg.buffer_rgba())
 
     def encoded(self, kind: str) -> bytes:
-        """The bytes of a file, `kind` is ".svg" or ".png"; the same picture gives the same bytes."""
+        """The bytes of a file, `kind` is ".png"; the same picture gives the same bytes."""
         out = io.BytesIO()
-        if kind == ".svg":
-            options: dict[str, Any] = {"metadata": {"Title": self._title, "Creator": "btlang", "Date": None}}
-        else:
-            options = {"metadata": {"Title": self._title, "Software": "btlang"}, "dpi": self._dpi()}
-        self.figure.savefig(out, format=kind[1:], **options)
+        about = {"Title": self._title, "Software": "btlang"}
+        self.figure.savefig(out, format=kind[1:], metadata=about, dpi=self._dpi())
         return out.getvalue()
 
     def _dpi(self) -> float:

@@ -39,7 +39,7 @@ def pictures_of(mission: Mission, run: str | None, tree: str | None, quiet: bool
     """
     for path in (run, tree):
         if path is not None:
-            check_picture(path, of_run=path is run)
+            check_picture(path)
     sinks: list[Sink] = []
     written: list[str] = []
     if tree is not None:

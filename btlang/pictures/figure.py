@@ -7,12 +7,17 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from btlang.pictures.canvas import Canvas, drawing
+from btlang.pictures.canvas import Canvas
+from btlang.pictures.drawing import drawing
 from btlang.robots.body import Body
 from btlang.robots.gesture import Gesture
 from btlang.robots.joint_tables import BASE
 from btlang.robots.motion.kinematics import Kinematics
 from btlang.robots.rehearsal import STEP, Rehearsal
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.pictures.surface import Surface
 
 _SCALE = 85.0  # points a metre
 _WIDE, _HIGH = 1.5, 2.05  # metres of a view
@@ -25,15 +30,15 @@ _PAUSE = 0.8  # seconds that its last one stays
 
 
 def draw_gesture(body: Body, gesture: Gesture, rehearsal: Rehearsal, path: str, kind: str) -> bytes:
-    """The bytes of a file of a kind, ".svg", ".png" or ".gif". Raises MissionError (BT081) without matplotlib."""
-    with drawing(path):
+    """The bytes of a file of a kind, ".svg", ".png" or ".gif". Raises MissionError (BT081)."""
+    with drawing(path, kind) as sheet:
         if kind == ".gif":
             return _film(body, gesture, rehearsal)
         times = _moments(gesture, rehearsal)
         columns = min(_COLUMNS, len(times))
         rows = -(-len(times) // columns)
         width, height = _MARGIN + columns * (2 * _WIDE * _SCALE + _MARGIN), _MARGIN + rows * (_HIGH * _SCALE + 26)
-        canvas = Canvas(width, height, f"The gesture {gesture.name}")
+        canvas = sheet(width, height, f"The gesture {gesture.name}")
         for number, (seconds, says) in enumerate(times):
             row, column = divmod(number, columns)
             left = _MARGIN + column * (2 * _WIDE * _SCALE + _MARGIN)
@@ -55,7 +60,7 @@ def _index(rehearsal: Rehearsal, seconds: float) -> int:
     return min(len(rehearsal.angles) - 1, round(seconds / STEP))
 
 
-def _draw(canvas: Canvas, body: Body, angles: Mapping[str, float], left: float, top: float) -> None:
+def _draw(canvas: Surface, body: Body, angles: Mapping[str, float], left: float, top: float) -> None:
     """The side that it turns its right arm to, and the front."""
     rows = np.array([[angles[joint.name] for joint in body.joints]])
     frames = Kinematics(body).frames(rows)

@@ -23,9 +23,9 @@ def ending(path: str, allowed: tuple[str, ...]) -> str:
     return found
 
 
-def check_picture(path: str, *, of_run: bool) -> None:
+def check_picture(path: str) -> None:
     """Raises MissionError where the picture cannot be drawn (BT081) or the file cannot be written (BT009)."""
-    if (of_run or ending(path, STILL) != ".svg") and find_spec("matplotlib") is None:
+    if ending(path, STILL + MOVING) != ".svg" and find_spec("matplotlib") is None:
         raise missing(path)
     is_new = not os.path.lexists(path)
     try:

@@ -8,13 +8,16 @@ from itertools import pairwise
 from math import dist
 
 from btlang.pictures import letters
-from btlang.pictures.canvas import Canvas
 from btlang.pictures.placing import Area, Placer, along
 from btlang.pictures.run_record import RunRecord, Sighting
 from btlang.pictures.style import SMALL
 from btlang.pictures.world_map import OBJECT, WorldMap
 from btlang.robots.geometry import Point
 from btlang.robots.world import PERSON_RADIUS, World
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.pictures.surface import Surface
 
 WALKED, PERSON = "#9c3f74", "#cc79a7"
 """The colours of ways, and of people whom the robot sees."""
@@ -55,7 +58,7 @@ def place_of(world: World, record: RunRecord, name: str, t: float) -> Point | No
     return next(((person.x, person.y) for person in world.people if person.name == name), None)
 
 
-def draw_walks(canvas: Canvas, map: WorldMap, record: RunRecord, world: World, placer: Placer) -> None:
+def draw_walks(canvas: Surface, map: WorldMap, record: RunRecord, world: World, placer: Placer) -> None:
     """Thin dotted lines along the ways of people, with a disc where they are in the end, or a cross where they left."""
     for name, sightings in record.sightings.items():
         if name in world.names.objects:
@@ -75,7 +78,7 @@ def draw_walks(canvas: Canvas, map: WorldMap, record: RunRecord, world: World, p
             placer.taken.append(Area(x - 4, y - 4, 8, 8))
 
 
-def name_walks(canvas: Canvas, map: WorldMap, record: RunRecord, world: World, placer: Placer) -> None:
+def name_walks(canvas: Surface, map: WorldMap, record: RunRecord, world: World, placer: Placer) -> None:
     """The names of those who walked, at the ends of their ways."""
     for name, sightings in record.sightings.items():
         walked = [] if name in world.names.objects else ways(sightings)
@@ -86,7 +89,7 @@ def name_walks(canvas: Canvas, map: WorldMap, record: RunRecord, world: World, p
             canvas.text(*area.middle, text, size=SMALL, colour=WALKED, align="center", halo=True, z=3)
 
 
-def draw_standing(canvas: Canvas, map: WorldMap, world: World, name: str, sighting: Sighting) -> None:
+def draw_standing(canvas: Surface, map: WorldMap, world: World, name: str, sighting: Sighting) -> None:
     """Somebody or something with its name: a disc where the robot sees it, else a ring."""
     if sighting.point is None:
         return

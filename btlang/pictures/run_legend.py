@@ -7,9 +7,12 @@ from itertools import pairwise
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.pictures import letters
-from btlang.pictures.canvas import Canvas
 from btlang.pictures.run_record import Command, RunRecord
 from btlang.pictures.style import HALTED, LOOKS, SMALL, SOFT, TEXT, TITLE, Look
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.pictures.surface import Surface
 
 WIDTH = 270.0
 FIRST, LAST = 20, 6  # of many commands, so many are listed
@@ -38,7 +41,7 @@ class Legend:
         self._hidden = len(record.commands) - len(self._rows)
         self.height = 62.0 + sum(_height(text, why) for _, text, why in self._rows) + (_ROW if self._hidden else 0)
 
-    def draw(self, canvas: Canvas, x: float, y: float) -> None:
+    def draw(self, canvas: Surface, x: float, y: float) -> None:
         """Draws it with its upper left corner there."""
         record = self._record
         look, heading = outcome(record)
@@ -60,7 +63,7 @@ class Legend:
             self._row(canvas, x, y, command, text, why)
             y += _height(text, why)
 
-    def _row(self, canvas: Canvas, x: float, y: float, command: Command, text: list[str], why: list[str]) -> None:
+    def _row(self, canvas: Surface, x: float, y: float, command: Command, text: list[str], why: list[str]) -> None:
         look, y = LOOKS[command.status], y + _ROW / 2
         canvas.text(x + 22, y, str(command.number), bold=True, align="right")
         canvas.text(x + 32, y, look.sign, bold=True, colour=look.strong, align="center")

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from btlang.backends.files import write_file
 from btlang.engine.status import FAILURE
 from btlang.pictures import letters
-from btlang.pictures.canvas import Canvas, drawing
+from btlang.pictures.drawing import drawing
 from btlang.pictures.files import MOVING, STILL, ending
 from btlang.pictures.people import WALKED, draw_walks, name_walks, place_of, ways
 from btlang.pictures.placing import Area, Placer, along
@@ -20,6 +20,10 @@ from btlang.robots.geometry import Point
 from btlang.robots.world import World
 from btlang.run.bus import INLINE
 from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.pictures.surface import Surface
 
 _MARGIN, _GUTTER, _STRIP = 16.0, 22.0, 26.0
 _TOP = _MARGIN + HEADING
@@ -60,18 +64,20 @@ class RunPicture:
         kind = ending(path, STILL + MOVING)
         if not self.record.begun:
             return
-        with drawing(path):
+        with drawing(path, kind) as sheet:
             if kind == ".gif":
                 from btlang.pictures.animation import animated
 
                 data = animated(self._world, self.record, self._title)
             else:
-                data = _Still(self._world, self.record, self._title).canvas.encoded(kind)
+                data = _Still(sheet, self._world, self.record, self._title).canvas.encoded(kind)
         write_file(path, data)
 
 
 class _Still:
-    def __init__(self, world: World, record: RunRecord, title: str) -> None:
+    def __init__(
+        self, sheet: Callable[[float, float, str], Surface], world: World, record: RunRecord, title: str
+    ) -> None:
         self._record, self._world = record, world
         self._way, self._walked = way(record), _walked(record, world)
         self._map = WorldMap(_in_the_end(world, record), _ROOM, (*self._way, *self._walked))
@@ -79,7 +85,7 @@ class _Still:
         self._key = self._key_items()
         wide = max(area.width, _LEAST_WIDE)
         height = max(area.height + _STRIP, legend.height)
-        self.canvas = Canvas(_MARGIN + wide + _GUTTER + WIDTH + _MARGIN, _TOP + height + _MARGIN, title)
+        self.canvas = sheet(_MARGIN + wide + _GUTTER + WIDTH + _MARGIN, _TOP + height + _MARGIN, title)
         text = letters.clipped(title, wide + _GUTTER + WIDTH, TITLE, True)
         self.canvas.text(_MARGIN, _MARGIN + 4, text, size=TITLE, bold=True)
         self._placer = Placer(area)

@@ -1,4 +1,4 @@
-"""What a picture of a tree is drawn on. `SvgSurface` writes SVG itself; `Canvas` is matplotlib's, for PNG."""
+"""What a picture is drawn on. `SvgSurface` writes SVG itself; `Canvas` is matplotlib's, for PNG and GIF."""
 
 from __future__ import annotations
 
@@ -13,25 +13,41 @@ if TYPE_CHECKING:
     Points = Sequence[tuple[float, float]]
 
     class Surface(Protocol):
-        """A sheet, in points from the upper left corner. What is drawn later lies above."""
+        """A sheet, in points from the upper left corner. What is drawn later lies above, unless `z` says otherwise."""
 
         def text(
-            self, x: float, y: float, text: str, *,
-            size: float = TEXT, colour: str = INK, bold: bool = False, align: str = "left",
+            self, x: float, y: float, text: str, *, size: float = TEXT,
+            colour: str = INK, bold: bool = False, align: str = "left", z: float = 0, halo: bool = False,
         ) -> object:  # fmt: skip
-            """One line whose capitals are centred on `y`. `align` says whether it is left, center or right of `x`."""
+            """One line whose capitals are centred on `y`. `align` says whether it is left, center or right of `x`. A
+            halo keeps it legible above lines.
+            """
 
         def box(
-            self, x: float, y: float, width: float, height: float, *,
-            round: float = 0, fill: str = "none", edge: str = "none", line: float = 1, dashed: bool = False,
+            self, x: float, y: float, width: float, height: float, *, round: float = 0,
+            fill: str = "none", edge: str = "none", line: float = 1, dashed: bool = False, z: float = 0,
         ) -> object:  # fmt: skip
             """A rectangle with corners rounded to a radius."""
 
-        def polygon(self, points: Points, *, fill: str = "none", edge: str = "none") -> object:
+        def polygon(
+            self, points: Points, *, fill: str = "none", edge: str = "none", line: float = 1, z: float = 0
+        ) -> object:
             """A closed shape."""
 
-        def line(self, points: Points, *, colour: str = INK) -> object:
+        def circle(
+            self, x: float, y: float, radius: float, *,
+            fill: str = "none", edge: str = "none", line: float = 1, dashed: bool = False, z: float = 0,
+        ) -> object:  # fmt: skip
+            """A disc or a ring."""
+
+        def line(
+            self, points: Points, *,
+            colour: str = INK, line: float = 1, dashed: bool = False, round: bool = True, z: float = 0,
+        ) -> object:  # fmt: skip
             """A line through the points."""
+
+        def shaded(self, points: Points, colours: Sequence[str], *, line: float = 1, z: float = 0) -> object:
+            """A line through the points whose pieces have a colour each."""
 
         def group(self, title: str) -> AbstractContextManager[object]:
             """What is drawn within is one thing, which a viewer that can do so names."""

@@ -5,10 +5,13 @@ from __future__ import annotations
 from itertools import pairwise
 from math import atan2, cos, hypot, pi, sin
 
-from btlang.pictures.canvas import Canvas
 from btlang.pictures.run_record import RunRecord
 from btlang.pictures.world_map import WorldMap
 from btlang.robots.geometry import Point, Pose
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.pictures.surface import Surface
 
 START, END = ("white", "#1f4e79"), ("#f2b134", "#5c3d00")
 """Fill and edge of the robot's body."""
@@ -27,10 +30,8 @@ def way(record: RunRecord) -> list[Point]:
     return points
 
 
-def draw_track(canvas: Canvas, map: WorldMap, record: RunRecord) -> list[tuple[float, float]]:
+def draw_track(canvas: Surface, map: WorldMap, record: RunRecord) -> list[tuple[float, float]]:
     """Draws the way with arrow heads; returns its points on the canvas."""
-    from matplotlib.collections import LineCollection
-
     points: list[tuple[float, float]] = []
     for place in way(record):
         x, y = map.at(*place)
@@ -41,7 +42,7 @@ def draw_track(canvas: Canvas, map: WorldMap, record: RunRecord) -> list[tuple[f
     pieces = list(pairwise(points))
     shades = [shade(i / max(1, len(pieces) - 1)) for i in range(len(pieces))]
     canvas.line(points, colour="white", line=3.6, z=1.1)
-    canvas.add(LineCollection([list(piece) for piece in pieces], colors=shades, linewidths=2, capstyle="round"), 1.2)
+    canvas.shaded(points, shades, line=2, z=1.2)
     gone = _ARROWS / 2
     for ((ax, ay), (bx, by)), colour in zip(pieces, shades, strict=True):
         gone += hypot(bx - ax, by - ay)
@@ -51,7 +52,7 @@ def draw_track(canvas: Canvas, map: WorldMap, record: RunRecord) -> list[tuple[f
     return points
 
 
-def draw_body(canvas: Canvas, map: WorldMap, pose: Pose, radius: float, look: tuple[str, str], z: float) -> None:
+def draw_body(canvas: Surface, map: WorldMap, pose: Pose, radius: float, look: tuple[str, str], z: float) -> None:
     """The round robot with a line to where it looks."""
     x, y = map.at(pose.x, pose.y)
     fill, edge = look
@@ -68,8 +69,6 @@ def shade(share: float) -> str:
     return "#" + "".join(f"{round(part * 255):02x}" for part in mixed)
 
 
-def _arrow(canvas: Canvas, x: float, y: float, angle: float, colour: str) -> None:
-    from matplotlib.patches import Polygon
-
+def _arrow(canvas: Surface, x: float, y: float, angle: float, colour: str) -> None:
     corners = [(x + 5.6 * cos(angle + turn), y + 5.6 * sin(angle + turn)) for turn in (0.0, 2.45, -2.45)]
-    canvas.add(Polygon(corners, closed=True, fc=colour, ec="white", lw=0.7, joinstyle="round"), 1.3)
+    canvas.polygon(corners, fill=colour, edge="white", line=0.7, z=1.3)

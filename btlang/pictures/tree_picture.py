@@ -7,6 +7,7 @@ from math import sqrt
 
 from btlang.backends.files import write_file
 from btlang.pictures import letters
+from btlang.pictures.drawing import drawing
 from btlang.pictures.files import STILL, ending
 from btlang.pictures.style import HEADING, INK, LINE, LOOKS, NEVER, PAPER, SMALL, SOFT, TEXT, TITLE, Look
 from btlang.pictures.tree_block import FRAME_TITLE, LINE_HEIGHT, SIGN, SYMBOL, side
@@ -67,14 +68,8 @@ def draw_tree(
 
 def picture_of(sheets: list[Sheet], title: str, kind: str, path: str = "", *, has_run: bool = False) -> bytes:
     """The content of a file of the `kind` ".svg" or ".png"; errors name its `path`. After a run, nodes have signs."""
-    if kind == ".svg":
-        from btlang.pictures.svg import SvgSurface
-
-        return _TreePicture(sheets, title, has_run, SvgSurface).surface.encoded(kind)
-    from btlang.pictures.canvas import Canvas, drawing
-
-    with drawing(path):
-        return _TreePicture(sheets, title, has_run, Canvas).surface.encoded(kind)
+    with drawing(path, kind) as sheet:
+        return _TreePicture(sheets, title, has_run, sheet).surface.encoded(kind)
 
 
 class _TreePicture:

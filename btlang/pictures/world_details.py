@@ -6,9 +6,12 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 from math import hypot
 
-from btlang.pictures.canvas import Canvas
 from btlang.robots.geometry import Point, edges
 from btlang.robots.world import Door, Person, World, Zone
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.pictures.surface import Surface
 
 _CLOSED_ZONE, _SLOW_ZONE = "#c0440c", "#9a6a00"
 DOOR_COLOUR, _ROUTE = "#2f6f8f", "#cc79a7"
@@ -18,7 +21,7 @@ At = Callable[[float, float], tuple[float, float]]
 """Points of the canvas, of metres."""
 
 
-def draw_zones(canvas: Canvas, world: World, at: At) -> None:
+def draw_zones(canvas: Surface, world: World, at: At) -> None:
     """Slow zones in yellow; those to keep out of in red and hatched."""
     for zone in world.zones:
         corners = [at(*point) for point in zone.points]
@@ -59,7 +62,7 @@ def hatching(corners: Sequence[Point], step: float) -> list[list[Point]]:
     return found
 
 
-def draw_door(canvas: Canvas, door: Door, at: At, middle: Point) -> None:
+def draw_door(canvas: Surface, door: Door, at: At, middle: Point) -> None:
     """Closed a bar in the wall; open its leaf, at a right angle to the wall, towards the middle of the canvas."""
     start, end = at(*door.start), at(*door.end)
     if not door.open:
@@ -73,7 +76,7 @@ def draw_door(canvas: Canvas, door: Door, at: At, middle: Point) -> None:
     canvas.line([start, leaf], colour=DOOR_COLOUR, line=2.0, round=False)
 
 
-def draw_route(canvas: Canvas, person: Person, at: At) -> None:
+def draw_route(canvas: Surface, person: Person, at: At) -> None:
     """Dots from where somebody begins to each stop, and back to the first one where the route is walked again."""
     stops = [(person.x, person.y), *((stop.x, stop.y) for stop in person.walks)]
     if person.again and len(stops) > 2:

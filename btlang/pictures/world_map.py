@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Mapping
 
 from btlang.pictures import letters
-from btlang.pictures.canvas import Canvas
 from btlang.pictures.placing import Area, Placer, along
 from btlang.pictures.style import INK, SMALL, SOFT
 from btlang.pictures.world_details import (
@@ -18,6 +17,10 @@ from btlang.pictures.world_details import (
 )
 from btlang.robots.geometry import Point
 from btlang.robots.world import Thing, World
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.pictures.surface import Surface
 
 _WALL, _FURNITURE, _FLOOR = "#3d4750", "#d9d2c5", "#fafaf7"
 _PLACE, _PERSON, OBJECT = "#5b6b7a", "#cc79a7", "#7a4f9e"
@@ -54,7 +57,7 @@ class WorldMap:
         """Points of the canvas, of metres."""
         return self.area.x + (x - self._left) * self.scale, self.area.y + (self._top - y) * self.scale
 
-    def draw(self, canvas: Canvas, walked: Container[str] = ()) -> None:
+    def draw(self, canvas: Surface, walked: Container[str] = ()) -> None:
         """The floor, zones, walls, doors and furniture, and a ring and the route of each person.
 
         The rings of those who have `walked` away are dashed.
@@ -79,7 +82,7 @@ class WorldMap:
             canvas.circle(x, y, person.radius * s, fill="#f3dcea", edge=_PERSON)
             canvas.circle(x, y, max(person.radius * s * 0.45, 2.0), fill=_PERSON)
 
-    def draw_names(self, canvas: Canvas, placer: Placer, moved: Mapping[str, Point | None] = {}) -> None:
+    def draw_names(self, canvas: Surface, placer: Placer, moved: Mapping[str, Point | None] = {}) -> None:
         """Marks and names of what is in the world; `moved` says where objects lie in the end."""
         for zone in self._world.zones:
             x, y = self.at(*middle_of(zone))
@@ -108,7 +111,7 @@ class WorldMap:
         for door in self._world.doors:
             self._name(canvas, placer, door.name, self.at(*door.middle), DOOR_COLOUR, 4.0)
 
-    def _object(self, canvas: Canvas, placer: Placer, thing: Thing, moved: Mapping[str, Point | None]) -> None:
+    def _object(self, canvas: Surface, placer: Placer, thing: Thing, moved: Mapping[str, Point | None]) -> None:
         radius = max(thing.radius * self.scale, 2.6)
         x, y = self.at(thing.x, thing.y)
         if thing.name in moved:
@@ -124,7 +127,7 @@ class WorldMap:
         self._name(canvas, placer, thing.name, (x, y), OBJECT, radius + 1.5)
 
     def _name(
-        self, canvas: Canvas, placer: Placer, name: str, at: tuple[float, float], colour: str, gap: float
+        self, canvas: Surface, placer: Placer, name: str, at: tuple[float, float], colour: str, gap: float
     ) -> None:
         text = letters.clipped(letters.shown(name), _LONGEST_NAME, SMALL)
         area, _ = placer.place(*at, letters.width(text, SMALL), SMALL + 1, gap)
@@ -135,7 +138,7 @@ class WorldMap:
         """Points on all walls, for labels to keep away from."""
         return [point for wall in self._world.walls for point in along([self.at(*p) for p in wall], 5.0)]
 
-    def draw_scale(self, canvas: Canvas, x: float, y: float) -> float:
+    def draw_scale(self, canvas: Surface, x: float, y: float) -> float:
         """A bar of a round length; returns the width that it takes."""
         metres = next(m for m in (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 1e9) if m * self.scale >= 40)
         length, text = metres * self.scale, f"{metres:g} m"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from btlang.backends.files import write_file
 from btlang.pictures import letters
-from btlang.pictures.canvas import Canvas, drawing
+from btlang.pictures.drawing import drawing
 from btlang.pictures.files import STILL, ending
 from btlang.pictures.placing import Area, Placer
 from btlang.pictures.style import HEADING, TITLE
@@ -12,6 +12,12 @@ from btlang.pictures.track import START, draw_body
 from btlang.pictures.world_map import WorldMap
 from btlang.robots.body_file import standard_body
 from btlang.robots.world import World
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from btlang.pictures.surface import Surface
 
 _MARGIN, _STRIP = 16.0, 22.0
 _TOP = _MARGIN + HEADING
@@ -25,16 +31,16 @@ def draw_world(world: World, path: str, title: str) -> None:
     Raises ValueError for another ending, MissionError (BT009, BT081).
     """
     kind = ending(path, STILL)
-    with drawing(path):
-        data = _drawn(world, title).encoded(kind)
+    with drawing(path, kind) as sheet:
+        data = _drawn(sheet, world, title).encoded(kind)
     write_file(path, data)
 
 
-def _drawn(world: World, title: str) -> Canvas:
+def _drawn(sheet: Callable[[float, float, str], Surface], world: World, title: str) -> Surface:
     drawn = WorldMap(world, _ROOM)
     area = drawn.area
     wide = max(area.width, _LEAST_WIDE)
-    canvas = Canvas(wide + 2 * _MARGIN, _TOP + area.height + _STRIP + _MARGIN, title)
+    canvas = sheet(wide + 2 * _MARGIN, _TOP + area.height + _STRIP + _MARGIN, title)
     canvas.text(_MARGIN, _MARGIN + 4, letters.clipped(title, wide, TITLE, True), size=TITLE, bold=True)
     placer = Placer(area)
     drawn.draw(canvas)

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from rich.text import Text
 
 _TRIES = 3
-_MORE = "'help' explains, 'words' lists what you can say, 'world' shows the world. Ctrl-D twice leaves."
-_MOST_COLUMNS, _OTHER_ROWS = 100, 10  # of the map, and rows of the terminal that it leaves free
+_MORE = "More: 'help' explains, 'words' lists what you can say. Ctrl-D twice leaves."
+_MOST_COLUMNS, _MOST_ROWS, _OTHER_ROWS = 100, 18, 10  # of the map, and rows of the terminal that it leaves free
 
 
 def world_map(draft: MissionDraft, columns: int, rows: int) -> Text | None:
@@ -27,7 +27,8 @@ def world_map(draft: MissionDraft, columns: int, rows: int) -> Text | None:
     drawn = draft.session.map(is_unicode(sys.stdout))
     if drawn is None:
         return None
-    return drawn.text(read_robot(draft.session.robot), min(columns, _MOST_COLUMNS), rows - _OTHER_ROWS)
+    height = min(rows - _OTHER_ROWS, _MOST_ROWS)
+    return drawn.text(read_robot(draft.session.robot), min(columns, _MOST_COLUMNS), height)
 
 
 def welcome(draft: MissionDraft) -> str:

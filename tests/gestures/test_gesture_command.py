@@ -76,7 +76,7 @@ def test_what_is_refused(capsys: pytest.CaptureFixture[str], words: tuple[str, .
     assert (code, says in lines) == (2, True), lines
 
 
-@pytest.mark.parametrize(("kind", "begins"), [("svg", b"<?xml"), ("png", b"\x89PNG"), ("gif", b"GIF89a")])
+@pytest.mark.parametrize(("kind", "begins"), [("svg", b"<svg"), ("png", b"\x89PNG"), ("gif", b"GIF89a")])
 def test_pictures(tmp_path: Path, capsys: pytest.CaptureFixture[str], kind: str, begins: bytes) -> None:
     pytest.importorskip("matplotlib")
     path = tmp_path / f"nod.{kind}"

@@ -213,7 +213,7 @@ def test_a_mission_that_cannot_run_leaves_no_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "arguments",
     [
-        ["run", "-c", "wave", "--speed", "max", "--picture", "a.svg"],
+        ["run", "-c", "wave", "--speed", "max", "--picture", "a.gif"],
         ["run", "-c", "wave", "--speed", "max", "--tree-picture", "a.png"],
         ["tree", "-c", "wave", "--picture", "a.png"],
     ],
@@ -236,6 +236,8 @@ def test_matplotlib_stays_silent_and_is_only_loaded_for_pictures(tmp_path: Path)
         "import sys; from btlang.cli import main\n"
         "main(['tree', '-c', 'wave']); main(['run', '-c', 'wave', '--speed', 'max', '--quiet'])\n"
         f"main(['tree', '-c', 'wave', '--picture', {str(tmp_path / 'a.svg')!r}])\n"
+        f"main(['run', '-c', 'wave', '--speed', 'max', '--quiet', '--picture', {str(tmp_path / 'a.svg')!r}])\n"
+        f"main(['world', '--picture', {str(tmp_path / 'a.svg')!r}])\n"
         "assert 'matplotlib' not in sys.modules\n"
         f"main(['tree', '-c', 'wave', '--picture', {str(tmp_path / 'a.png')!r}])\n"
     )
