@@ -9,6 +9,7 @@ EXAMPLES = {
         ('btc "go to the lab then wave"', "the same verb, for a mission in quotes"),
         ("btc run examples/patrol.txt --speed max", "as fast as the computer can"),
         ("btc run examples/roaming.txt --for 60s --speed 100 --log run.jsonl", "a minute of mission time, with a log"),
+        ("btc run examples/patrol.txt --speed max --picture patrol.svg", "with a picture of the run"),
         ("btc run examples/tea_service.txt --speed max --record tea.mcap", "recorded, for btc replay and btc why"),
     ),
     "examples": (
@@ -19,6 +20,7 @@ EXAMPLES = {
         ("btc replay tea.mcap --speed 20", "twenty times as fast as it was"),
         ("btc replay tea.mcap --speed max --from 30s --why", "from the 30th second on"),
     ),
+    "watch": (("btc watch tea.mcap", "opens the browser"),),
     "why": (("btc why tea.mcap", "what happened, command by command"),),
     "check": (
         ("btc check examples/hello.txt", "a file"),

@@ -24,11 +24,12 @@ ACTS: Mapping[str, tuple[Mapping[str, str], Mapping[str, Sequence[str]]]] = {
     "gesture": (GESTURE_ACTS, {}),
 }
 """By verbs: what each act does, and which options it takes where that is checked."""
-_UNTESTED = ("repl", "diff", "edit", "serve", "mcp", "sim-ros", "ros-node", "ros-devices", "serve-actions")
+_UNTESTED = ("repl", "diff", "edit", "watch", "serve", "mcp", "sim-ros", "ros-node", "ros-devices", "serve-actions")
 """Verbs whose examples wait for somebody, need ROS 2 or exit with 1: tests/test_readme.py runs all others."""
 _PAGES = {
-    "run": ("worlds.md", "recording.md", "robots.md", "ros.md"),
+    "run": ("page.md", "worlds.md", "recording.md", "robots.md", "ros.md"),
     "replay": ("recording.md", "groot.md"),
+    "watch": ("page.md", "recording.md"),
     "why": ("recording.md",),
     "check": ("messages.md", "xml.md"),
     "explain": ("formatting.md",),

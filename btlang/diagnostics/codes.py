@@ -243,7 +243,7 @@ _ALL = (
          "Install it: pip install 'btlang[server]'"),
     Code("BT201", "The server can't listen at {place}: {reason}."),
     Code("BT210", "'{words}' can't be renamed: {reason}."),
-    Code("BT211", "This installation of btlang has no page to edit with.",
+    Code("BT211", "This installation of btlang has no page for the browser.",
          "Install it again where npm can be reached: pip install --force-reinstall btlang"),
     Code("BT220", "The tree can't be changed like this: {reason}."),
     Code("BT221", "'{words}' can't be tried: what it does stands in {file}, and might move a real robot.",

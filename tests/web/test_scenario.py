@@ -14,7 +14,7 @@ import pytest
 from tests.components.robots import machine, robot_file
 from tests.profiles import only_long
 from tests.server.doors import PASSWORD, Program
-from tests.web.packages import ROOT, installed, node
+from tests.web.packages import LONG, ROOT, installed, node
 from tests.web.served import served
 from tests.world.worlds import LIVELY
 
@@ -24,6 +24,19 @@ HERE = Path(__file__).parent
 def test_log_in_watch_stop_release(robot: str) -> None:
     """The one in each run."""
     node(HERE / "scenario.mjs", robot, PASSWORD, folder=installed(HERE))
+
+
+def test_a_run_and_its_recording_are_watched(page: Path, tmp_path: Path) -> None:
+    """Without a log-in, until the page is closed."""
+    mission, recording = tmp_path / "morning.txt", tmp_path / "morning.mcap"
+    mission.write_text('say "Good morning!" and wave\ngo to the kitchen\n')
+    run = ("run", str(mission), "--watch", "--speed", "5", "--record", str(recording))
+    for kind, words in (("run", run), ("recording", ("watch", str(recording)))):
+        with closing(Program({**os.environ}, *words, "--no-browser")) as up:
+            up.start("Watch ")
+            node(HERE / "watch.mjs", up.lines[0].split()[-1], kind, str(tmp_path), folder=installed(HERE))
+            up.process.wait(LONG)
+        assert up.process.returncode == 0, up.lines
 
 
 @only_long
