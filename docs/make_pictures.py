@@ -17,8 +17,10 @@ DOCS = Path(__file__).parent
 
 def make_pictures(folder: Path) -> None:
     """Runs the mission of the README and draws its run and its tree, the guide of the museum, and the layers."""
-    if find_spec("matplotlib") is None:
-        sys.exit("The GIF needs matplotlib. Install it: pip install '.[pictures]'")
+    if any(find_spec(package) is None for package in ("matplotlib", "espeakng_loader", "av")):
+        sys.exit(
+            "The pictures of the guide need matplotlib and its voice. Install both: pip install '.[pictures,voice]'"
+        )
     sys.path.insert(0, str(DOCS))
     from framework_figure import draw_layers
     from moving_picture import moving_picture

@@ -153,6 +153,7 @@ class LocalPage:
 
     def wait(self, is_over: Callable[[], bool]) -> int:
         """Waits until it's over, or is interrupted; returns the exit code for that."""
+        self._seen = time.monotonic()  # a page that was just being loaded again isn't closed
         with interrupted_by_signals() as came:
             try:
                 while not is_over():
@@ -199,7 +200,7 @@ def local_page(make: Callable[[Accounts, int, str], LocalApi], port: int = 0) ->
 def say_where(page: LocalPage, what: str, browser: bool) -> None:
     """Opens the browser, or else prints the address that lets somebody in: where it opens nobody has to see that."""
     if browser and page.open():
-        show(f"{what} in the browser, at {page.place}. If it doesn't open, use --no-browser.")
+        show(f"{what} in the browser at {page.place}. If none opens, use --no-browser.")
     else:
         show(f"{what} at {page.address}")
         show(f"The address is good once, within {OPEN:.0f} s.")
