@@ -56,6 +56,11 @@ class RobotLink:
         return self._up.is_set()
 
     @property
+    def is_watched(self) -> bool:
+        """Whether a client gets its updates."""
+        return bool(self._outlets)
+
+    @property
     def latest(self) -> dict[str, Any]:
         """What is known of the robot itself: pose, battery, what keeps it from working."""
         return self._view.states.get("robot", {})

@@ -9,7 +9,7 @@ import re
 import threading
 import time
 from collections.abc import AsyncIterator, Callable, Iterator, Sequence
-from contextlib import asynccontextmanager, closing, contextmanager
+from contextlib import asynccontextmanager, closing, contextmanager, suppress
 from functools import partial
 
 from starlette.routing import BaseRoute
@@ -20,6 +20,7 @@ from btlang.robots.motion.urdf import urdf
 from btlang.robots.world_problem import read_world
 from btlang.run.command import EMERGENCY_STOPPED
 from btlang.run.controls import Controls
+from btlang.run.world_input import WorldInput
 from btlang.server.accounts import Accounts
 from btlang.server.links import RobotLink
 from btlang.server.local_page import LocalApi, LocalPage, LocalRobots, local_page, say_where
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
 
     from btlang.robots.body import Body
     from btlang.robots.world import World
+    from btlang.run.events import Sink
 
 _PATIENCE = 10.0  # seconds for which a run waits for the page
 _ROUTES = ("/api/login", "/api/me", "/api/robots", "/api/stop", "/api/commands", "/api/ws", "/", "/login", "/page")
@@ -73,18 +75,23 @@ class NoTasks:
 
 
 class PageMonitor:
-    """Shows a run on a page; see btlang.run.command.run_mission. It's also the reach of the page's `RobotLink`.
+    """Shows a run on a page; see btlang.run.command.run_mission. It's also the reach of `link`, the page's robot.
 
     `world` is None for a robot whose map isn't known.
     """
 
     hooks = None
 
-    def __init__(self, world: World | None, body: Body | None) -> None:
+    def __init__(self, name: str, world: World | None, body: Body | None) -> None:
+        self.link = RobotLink(name, self)
         self._body = body
         self._controls = Controls()
         self._emergency = ""
-        self._feed = Feed(NoTasks(), self._state, {}, world, parts=lambda: {"components": [], "devices": []})
+        self._input = WorldInput()  # which knows what the robot asks
+        self._feed = Feed(
+            NoTasks(), self._state, {}, world, parts=lambda: {"components": [], "devices": []},
+            question=lambda: self._input.question,
+        )  # fmt: skip
         self.page: LocalPage
 
     @contextmanager
@@ -95,11 +102,12 @@ class PageMonitor:
 
     def watch_run(self, run: Run, mission: Mission) -> None:
         """Shows a run, once the page is there."""
-        for sink in self._feed.sinks(1, mission, run):
+        sinks: list[Sink] = [self._input, *self._feed.sinks(1, mission, run)]
+        for sink in sinks:
             run.bus.add(sink)
         self._feed.wake()
         end = time.monotonic() + _PATIENCE
-        while not self.page.is_open and time.monotonic() < end:
+        while not self.link.is_watched and time.monotonic() < end:  # what happens before is in no page's log
             time.sleep(0.05)
 
     def stay(self, code: int) -> int:
@@ -136,7 +144,7 @@ class PageMonitor:
         reader, loop, is_over = asyncio.StreamReader(limit=LONGEST), asyncio.get_running_loop(), threading.Event()
 
         def send() -> None:
-            with closing(self._feed.watch(**request)) as messages:
+            with closing(self._feed.watch(**request)) as messages, suppress(RuntimeError):  # the loop may be closed
                 for message in messages:
                     if is_over.is_set():
                         return
@@ -160,9 +168,9 @@ class PageMonitor:
 def watched(mission: Mission, name: str, body: Body, is_simulated: bool, browser: bool) -> Iterator[PageMonitor]:
     """A monitor that shows a run on a page. `is_simulated`: the robot moves in the world of the mission."""
     world = read_world(mission.world, body) if is_simulated or mission.world is not None else None
-    monitor = PageMonitor(world, body)
-    link = RobotLink(name, monitor)
-    with local_page(lambda accounts, port, _: WatchApi(accounts, port, ("robots", name), LocalRobots(link))) as page:
+    monitor = PageMonitor(name, world, body)
+    robots = LocalRobots(monitor.link)
+    with local_page(lambda accounts, port, _: WatchApi(accounts, port, ("robots", name), robots)) as page:
         say_where(page, f"Watch {one_line(name)}", browser)
         show(f"The run begins when the page is there, or after {_PATIENCE:.0f} s.")
         monitor.page = page

@@ -18,7 +18,7 @@ from btlang.cli import main
 from tests.server.doors import LocalDoor, received
 from tests.task.layers import LONG, wait_until
 
-MISSION = 'say "hello" then wait 1 hour\n'
+MISSION = 'say "hello" then ask "Tea?" then wait 1 hour\n'
 
 
 @pytest.fixture
@@ -57,6 +57,7 @@ def test_a_run_is_watched_and_stopped(watched: LocalDoor) -> None:
         says = [place for place, (_, id, *_) in zip(run["spans"], run["nodes"], strict=True) if id == "Say"]
         assert [MISSION[start:end] for start, end in says] == ['say "hello"']
         assert received(socket, type="event")["event"]["text"] == "hello"
+        assert received(socket, type="asking", text="Tea?")
         for command in ("submit", "pause", "release", "down", "talk"):
             asked = {"command": command, "robot": "round.txt", "text": "wave", "task": 1}
             assert watched.ask("POST", "/api/commands", asked, **page).status in (400, 403), command

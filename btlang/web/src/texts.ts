@@ -31,7 +31,8 @@ export function t(key: Key, values: Record<string, string | number> = {}): strin
 
 /** How people here write times, in the language of the page. */
 function locale(): string {
-  return navigator.languages.find((each) => each.startsWith(language())) ?? language();
+  const valid = /^[\w-]+$/; // Chromium says "en-US@posix" where the system has no language
+  return navigator.languages.find((each) => each.startsWith(language()) && valid.test(each)) ?? language();
 }
 
 /** A moment, given in seconds since 1970: the time, with the day if that isn't today. */
