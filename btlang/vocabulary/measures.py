@@ -28,7 +28,7 @@ class Measures:
         self._joiner = frozenset(language["unit_joiner"])
         self._one_each, self._every_second = frozenset(language["one_each"]), frozenset(language["every_second"])
         self._further = frozenset(language["further"])
-        self._parts_of_day: dict[str, int] = language["parts_of_day"]
+        self.parts_of_day: dict[str, int] = language["parts_of_day"]
         self._fractions = tree_of(language["fractions"].items())
         self._times = tree_of(language["times"].items())
         self._number_starts = frozenset((*self._numbers, *self._multipliers, *self._fractions))
@@ -59,7 +59,7 @@ class Measures:
             return None
         hour, end = number
         half = self.half_of_day(text, end)
-        part = self._parts_of_day.get(text.words[at - 2]) if half is None and at > 1 else None
+        part = self.parts_of_day.get(text.words[at - 2]) if half is None and at > 1 else None
         if half is not None:
             hour, end = (hour % 12 + half[0] if 1 <= hour <= 12 else -1), half[1]
         elif part is not None and (hour <= 12 or part == 0):  # `every evening at 8`, `every night at 2`

@@ -76,6 +76,8 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("whenever bumped, dock. Try it 3 times", "BT010"),
         ("try it twice", "BT010"),
         ("go to both rooms", "BT152"),
+        ("charge until the morning", "BT160"),
+        ("wave during the night", "BT160"),
         ("put the red cup in the box until it is full", "BT154"),
         ("keep asking Alice if she is ok until she says yes", "BT159"),
         ("wave at 8 am or 6 pm", "BT160"),

@@ -53,5 +53,14 @@ def explain_time(text: Words, at: int, wanted: bool, vocabulary: Lexicon) -> Dia
     return _problem(span, "isn't a time of day: it needs am, pm or a ':'", ways)
 
 
+def without_hour(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic | None:
+    """BT160 for a part of the day without an hour among words: `until the morning`, `during the night`."""
+    values = vocabulary.values
+    place = next((i for i in range(at, min(end + 1, len(text.words))) if text.words[i] in values.parts_of_day), None)
+    if place is None or values.time_of_day(text, place) is not None:
+        return None
+    return _problem(text.span(place, place + 1), "says no hour", _USUAL)
+
+
 def _problem(span: Span, problem: str, example: str, fix: tuple[Span, str] | None = None) -> Diagnostic:
     return diagnostic("BT160", span, fix=fix, words=span.text, problem=problem, example=example)

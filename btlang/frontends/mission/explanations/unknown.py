@@ -14,7 +14,7 @@ from btlang.frontends.mission.explanations.lacking import not_two, unreferred, u
 from btlang.frontends.mission.explanations.misfits import Misfit, misfits_of
 from btlang.frontends.mission.explanations.roles import explain_role
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
-from btlang.frontends.mission.explanations.times import explain_time
+from btlang.frontends.mission.explanations.times import explain_time, without_hour
 from btlang.frontends.mission.symbols.definitions import Definitions
 from btlang.frontends.mission.symbols.nodes import misread_node
 from btlang.frontends.mission.symbols.prefixes import span_of
@@ -62,7 +62,7 @@ def explain_unknown(
         name = " ".join(text.words[unnamed + 1 : last])
         return unknown_value(text.span(unnamed, last + 1), name, context.known or ())
     lacking = untold(text, at, end, vocabulary) or not_two(text, at, end, vocabulary)
-    lacking = lacking or unreferred(text, at, vocabulary, context)
+    lacking = lacking or unreferred(text, at, vocabulary, context) or without_hour(text, at, end, vocabulary)
     if lacking is not None:
         return lacking
     roots = (vocabulary.trie, definitions.trie)

@@ -95,11 +95,13 @@ def prohibition(scan: Scan, token: Token) -> None:
 
 
 def without(scan: Scan, token: Token) -> None:
-    """`A without D-ing`: offers to end A early."""
+    """`A without D-ing`: offers to end A early; `A without it` says nothing that the robot would do."""
     entry = scan.stack[-1]
     start = scan.out[entry.operand].start if entry.operand < len(scan.out) else token.start
     end = next(at for at in range(scan.at, len(scan.raw)) if scan.raw[at].kind in ENDS)
-    advice = f"Write for example: {scan.source.text[start : scan.last_end]} {scan.word('stop_when')} ..."
+    advice = "It does only what it is told, so leave this out."
+    if scan.raw[scan.at + 1].kind in ("command", "name"):
+        advice = f"Write for example: {scan.source.text[start : scan.last_end]} {scan.word('stop_when')} ..."
     scan.fail("BT155", scan.span(token, scan.raw[end - 1]), words=scan.words(token), advice=advice)
 
 
