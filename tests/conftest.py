@@ -50,7 +50,7 @@ IN_REAL_TIME = (*OVER_DDS, *(f"tests/{folder}/" for folder in _FOLDERS))
 _AT_ONCE = 1
 """The tests of OVER_DDS that run at a time. With two on two cores some come too late."""
 _WORKER = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
-_GIVING_WAY, _FIRST = 8, -10
+_GIVING_WAY, _FIRST = 15, -10
 """How nice a test that only computes is, and one over DDS."""
 
 

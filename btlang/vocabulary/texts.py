@@ -40,11 +40,12 @@ class Texts:
         self._question_words = frozenset(language["question_words"])
         self._openers = frozenset((*language["clause_openers"], *self._question_words))
         self.inverting = frozenset(language["inverting"])
+        self._purpose = frozenset(language["purpose"])
         self._relatives = frozenset(phrase.split()[0] for phrase in language["relatives"])
         self._owners = frozenset(language["possessives"].get("others", ()))
         self._addressed = "".join(language["asking"].get("addressed", ())[:1])
         self._sayings = tree_of((phrase, True) for phrase in language["sayings"])
-        self._then = words_of("then")
+        self._then, self._otherwise = words_of("then"), words_of("otherwise")
         self._direct = tree_of((words, said) for said, clauses in language["direct"].items() for words in ways(clauses))
         self.of_persons = frozenset(language["of_persons"])
         """Words for persons that are others for whoever hears them."""
@@ -98,6 +99,10 @@ class Texts:
         """Whether a clause stands behind a word."""
         return word in self._openers
 
+    def may_be_joined(self, text: Words, first: int, last: int) -> bool:
+        """Whether a verb as it stands in commands could go on with a clause: `if he can come and help`."""
+        return any(text.words[at] in self.inverting or text.words[at] in self._purpose for at in range(first, last))
+
     def is_owned(self, text: Words, at: int) -> bool:
         """Whether an article, or a word for whose thing it is, stands before what begins at a word."""
         return at in text.articles or text.words[at] in self._owners
@@ -145,7 +150,10 @@ class Texts:
         """Where the clause ends that begins at a word, 0 where it is one word."""
         end = at
         while text.words[end] not in _ENDS:
-            if find(self._then, text.words, end + (text.words[end] == ",")) is not None:
+            has_comma = text.words[end] == ","
+            if find(self._then, text.words, end + has_comma) is not None:
+                break
+            if has_comma and find(self._otherwise, text.words, end + 1) is not None:
                 break
             end += 1
         return end if end > at + 1 else 0

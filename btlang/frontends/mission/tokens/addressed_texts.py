@@ -91,8 +91,11 @@ class AddressedTexts(SentenceReader):
         whole = text.source.text[text.begin(at) : text.ends[at]]
         return whole if whole.lower().endswith(text.words[at]) else text.words[at]
 
-    def _ask(self, entry: Entry, value: SlotValue, command: Token) -> None:
-        """`ask Bob if he is hungry`: the question that the clause stands for."""
+    def _ask(self, entry: Entry, value: SlotValue, command: Token) -> int:
+        """`ask Bob if he is hungry`: the question that the clause stands for.
+
+        Returns where to go on if the clause ends before its words do, else 0: `ask Bob what he wants and tell Alice`.
+        """
         values, text, at = self._vocabulary.values, self._text, value.first
         if not self._is_clause(value):
             if (
@@ -104,17 +107,37 @@ class AddressedTexts(SentenceReader):
                 self._doubt(entry, at, _NO_QUESTION)
             elif at not in text.articles and find(values.names_tree("person"), text.words, at) is not None:
                 self._doubt(entry, at, _PERSON)
-            return
-        question = values.texts.direct(text, at, value.last, self._joining_things(at, value.last))
-        for place in range(at, value.last):  # `ask Bob if he wants the cup. If so, bring it`
+            return 0
+        end = self._end_before_command(value)
+        last = end or value.last
+        question = values.texts.direct(text, at, last, self._joining_things(at, last))
+        for place in range(at, last):  # `ask Bob if he wants the cup. If so, bring it`
             for kind in (OBJECT, DOOR):
                 named = find(values.names_tree(kind), text.words, place)
                 if named is not None:
                     self._context.latest[kind] = named[0]
         if question is not None:
             self._set_text(command, value.name, question)
-        elif not self._doubt(entry, values.texts.doubt(text, at + 1, value.last)):
+            if end:
+                command.end = text.ends[end - 1]
+                self._tokens.append(command)
+            return end
+        if not self._doubt(entry, values.texts.doubt(text, at + 1, value.last)):
             self._doubt(entry, at, _NO_QUESTION)
+        return 0
+
+    def _end_before_command(self, value: SlotValue) -> int:
+        """Where a clause ends before `and` and a command, whose verb can't go on with it; 0 if it doesn't."""
+        text, joints, context = self._text, self._vocabulary.roles["and"], self._context.with_references()
+        context.latest = dict.fromkeys(context.types, "")  # `and bring him the cup`: who is asked isn't known yet
+        for at in range(value.first + 1, value.last - 1):
+            if text.words[at] in joints:
+                behind = longest(self._vocabulary.trie, text, at + 1, context)
+                is_command = behind is not None and behind.meaning.role == "command" and at + 1 not in text.articles
+                ends = behind is not None and (self._is_end(behind.last) or behind.last < value.last)
+                may_go_on = self._vocabulary.values.texts.may_be_joined(text, value.first, at)
+                return at if is_command and ends and not may_go_on else 0
+        return 0
 
     def _joining_things(self, first: int, last: int) -> set[str]:
         """The words that only join things there: `if she'd like the newspaper or her book`."""

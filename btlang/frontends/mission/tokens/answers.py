@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from btlang.frontends.mission.token import BEFORE_CONDITIONS, Called, Listed, Token
+from btlang.frontends.mission.token import BEFORE_CONDITIONS, Called, Listed, Token, statement_start
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.tree.asked import ABOUT_ANSWERS, ANSWERED, ASK, UNANSWERED
@@ -79,12 +79,34 @@ class Answers(AddressedTexts):
             return 0
         has_comma = text.words[last - 1] == ","
         start, end = text.starts[at], text.ends[last - 1 - has_comma]
-        self._tokens += [Token("if", start, start), Token("condition", start, end, Called(entry, ()))]
+        asked = Token("condition", start, end, Called(entry, ()))
+        self._tokens.append(Token("if", start, start))
+        self._end_reply(asked)
+        self._tokens.append(asked)
         if has_comma:
             self._tokens.append(Token("comma", text.starts[last - 1], text.ends[last - 1]))
         return last
 
     def said(self, token: Token, at: int) -> None:
+        """What a condition is about that was read at a word."""
+        self._hear(token, at)
+        self._end_reply(token)
+
+    def _end_reply(self, token: Token) -> None:
+        """`if he says yes, A, and if he says no, B`: the second answer ends what is done for the first."""
+        tokens, last = self._tokens, len(self._tokens) - 1
+        while last > 0 and tokens[last - 1].kind in ("and", "comma"):
+            last -= 1
+        first = statement_start(tokens, last)
+        asked = [each.value for each in (*tokens[first : first + 2], token) if isinstance(each.value, Called)]
+        if last == len(tokens) - 1 or tokens[-1].kind != "if" or tokens[first].kind != "if" or len(asked) != 2:
+            return
+        are_replies = all(value.entry.id in ABOUT_ANSWERS for value in asked) and asked[0] != asked[1]
+        kinds = [each.kind for each in tokens[first:last]]
+        if are_replies and kinds.count("open") == kinds.count("close") and kinds.count("if") == 1:
+            tokens[last:-1] = [Token("semi", tokens[last].start, tokens[last].start)]
+
+    def _hear(self, token: Token, at: int) -> None:
         """`wait until she says stop` where nobody is asked is what is heard; `she says nothing` is silence."""
         value = token.value
         if isinstance(value, Called) and value.entry.id == _PERSON_SAYS and self._may_ask:

@@ -19,7 +19,7 @@ def left_out(
 
     A text is never a part of it: `say hello, then goodbye` is no such command.
     """
-    rest = rest_of(text, at)
+    rest, particles = rest_of(text, at), context.values.role_words.particles
     whole = match_of(text, [*said, *said[-1:]], {}, tries, context)
     values = whole.values if whole else ()
     if values and _is_own(values[-1]) and text.words[at - 1] in context.joiners:
@@ -45,6 +45,12 @@ def left_out(
             continue  # only the way or the manner of the command before: `to the lab, going through the hall`
         if match is None or match.last <= len(front) or match.meaning.role not in ("command", "name"):
             continue
+        if (
+            match.last == len(front) + 1
+            and text.words[at] in particles
+            and not any(text.words[place] in particles for place in said[kept:])
+        ):
+            continue  # `from the lab to the hall and back`: not backwards; `look up, down` says another one
         if len(added) == 1 and added[0].first == len(front) and _may_be_theme(match, added[0]):
             continue  # `put the cup on the table and the book`
         if all(context.types[value.type].kind != "text" for value in match.values):

@@ -27,7 +27,7 @@ from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import PERSON
+from btlang.vocabulary.value_type import DOOR, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
 _COMES, _DURATION = "WaitForPerson", "duration"
@@ -110,7 +110,29 @@ class OrderWords(ClockWords):
 
     def no_phrase(self, at: int) -> int:
         """What begins with words that are no phrase."""
-        return self._start_of_leg(at) or self._pace(at) or self._journey_of_constraint(at) or self._wait_for(at)
+        return (
+            self._go_and_see(at)
+            or self._start_of_leg(at)
+            or self._pace(at)
+            or self._journey_of_constraint(at)
+            or self._wait_for(at)
+        )
+
+    def _go_and_see(self, at: int) -> int:
+        """`go and see if Bob is in the lab`: there, and then what is asked."""
+        going = find(self._vocabulary.going, self._text.words, at)
+        check = longest(self._vocabulary.trie, self._text, going[1], self._context) if going is not None else None
+        if going is None or check is None or check.meaning.role != "check":
+            return 0
+        asked = longest(self._vocabulary.trie, self._text, check.last, self._context)
+        places = [value for value in asked.values if value.type in (PLACE, DOOR)] if asked is not None else []
+        journey = self._with_front(at, places[0].first, "journey") if len(places) == 1 else None
+        if journey is None or journey.last != places[0].last:
+            return 0
+        self._partial.append(journey, at)
+        joint = self._text.ends[going[1] - 1]
+        self._tokens.append(Token("then", joint, joint))
+        return going[1]
 
     def _start_of_leg(self, at: int) -> int:
         """`go from the lab to the hall`, by the verb at a word."""

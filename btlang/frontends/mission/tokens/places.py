@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import Called, Listed, Token, constraint_of
+from btlang.frontends.mission.token import LINES, Called, Listed, Token, constraint_of, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
 from btlang.vocabulary.match import Match
+from btlang.vocabulary.references import NAMES, choice_of
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import OBJECT, PLACE
 from btlang.vocabulary.word_tree import find
@@ -13,6 +14,8 @@ _TRAVELS = "navigation"
 """What a command needs that drives by itself: it takes a place in its own way, or none."""
 _HOLD = "Hold"
 _JOINS = ("and", "then", "or")
+_PLAIN = frozenset(("command", "name", "comma", "open", "close", *_JOINS))
+"""The kinds of tokens of a statement that does each of its commands once."""
 
 
 class Places(SentenceReader):
@@ -78,12 +81,36 @@ class Places(SentenceReader):
         following = longest(self._vocabulary.trie, self._text, behind, self._context)
         if following is None or following.meaning.role != "command":
             return 0
-        if any(value.group or value.more for value in journey.values) and not self._is_end(following.last):
+        if any(value.group or value.more for value in journey.values) and not self._are_commands(behind):
             return 0  # `in every room, look around, and if you see Alice, greet her`
+        if self._repeats(journey):
+            return 0
         self._partial.append(journey, at)
         end = self._text.ends[journey.last - 1]
         self._tokens.append(Token("and", end, end))
         return behind
+
+    def _repeats(self, journey: Match) -> bool:
+        """`go to A and B three times. In each room, wave`: whether the rooms are those of a loop, three times each."""
+        choice, last = choice_of(journey.values[0].group), len(self._tokens)
+        while last and self._tokens[last - 1].kind in LINES:
+            last -= 1
+        first = statement_start(self._tokens, last)
+        is_spoken_of = choice is not None and NAMES in dict(choice.parts)
+        return is_spoken_of and any(token.kind not in _PLAIN for token in self._tokens[first:last])
+
+    def _are_commands(self, at: int) -> bool:
+        """Whether all from a word to the end of the statement are commands that `and` joins."""
+        joints = self._vocabulary.roles["and"]
+        while True:
+            command = longest(self._vocabulary.trie, self._text, at, self._context)
+            if command is None or command.meaning.role != "command":
+                return False
+            if self._is_end(command.last):
+                return True
+            if self._text.words[command.last] not in joints:
+                return False
+            at = command.last + 1
 
     def _to(self, at: int) -> Match | None:
         """The journey to where words say that something is done."""

@@ -52,8 +52,7 @@ class Requests(Questions):
             self._repeat(entry, value, command)
             return 0
         if entry.id == ASK:
-            self._ask(entry, value, command)
-            return 0
+            return self._ask(entry, value, command)
         if self._is_clause(value):
             self._doubt(entry, self._vocabulary.values.texts.doubt(self._text, value.first, value.last))
         if not (entry.accompaniment or "voice" in entry.needs):

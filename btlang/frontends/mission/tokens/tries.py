@@ -101,8 +101,10 @@ class Tries(SentenceReader):
     def _ask_again(self, match: Match, at: int) -> int:
         """`ask Bob "Tea?". If he says no, ask again`: what was asked before."""
         asked = next((token for token in reversed(self._tokens) if _is_question(token)), None)
-        if asked is None:
-            return 0
+        behind = match.last + (self._text.words[match.last] == ",")
+        amount = longest(self._vocabulary.trie, self._text, behind, self._context)
+        if asked is None or (amount is not None and amount.meaning.role in _IN_ALL):
+            return 0  # `if he says no, ask again, at most 3 times`: until he says something else
         self._tokens.append(Token("command", self._text.starts[at], self._text.ends[match.last - 1], asked.value))
         return match.last
 
