@@ -71,12 +71,11 @@ def _with_article(text: Words, at: int, end: int) -> Span:
 
 def _found(text: Words, at: int, end: int, vocabulary: Lexicon, context: ReadingContext) -> Iterator[tuple[_Gap, int]]:
     """The phrases that have the words, each with the word before which others were left out."""
-    gaps = _gaps(vocabulary)
     kinds = (name for name, kind in vocabulary.types.items() if kind.kind != "text")  # any word is a text
     value_at = cache(lambda kind, place: context.read(kind, text, place))  # many phrases ask for the same
     values = (f"{{{kind}}}" for kind in kinds if value_at(kind, at) is not None)
     for start in (text.words[at], *values):
-        for gap in gaps.get(start, ()):
+        for gap in _gaps(vocabulary, start):
             place = _read(gap.before, gap.entry, text, at, value_at)
             if place is not None and _read(gap.behind, gap.entry, text, place, value_at) == end:
                 yield gap, place
@@ -98,23 +97,39 @@ def _read(parts: Form, entry: Entry, text: Words, at: int, value_at: _ValueAt) -
     return at
 
 
-@lru_cache(maxsize=4)  # a text full of unknown words asks for them at each
-def _gaps(vocabulary: Lexicon) -> dict[str, list[_Gap]]:
-    """All phrases without some of their words, by their first word, or by the type of the slot they begin with."""
-    found: dict[str, list[_Gap]] = {}
-    known = [entry for entries in vocabulary.entries.values() for entry in entries]
-    for entry, form in ((each, form) for each in known for form in _forms(each, vocabulary)):
-        for first in range(len(form)):
-            for last in range(first + 1, min(first + _MOST_MISSING, len(form)) + 1):
-                missing = [part for part in form[first:last] if isinstance(part, str)]
-                rest = form[:first] + form[last:]
-                if len(missing) < last - first or not rest:
-                    break
-                start = rest[0] if isinstance(rest[0], str) else f"{{{entry.slot(rest[0].name).type}}}"
-                found.setdefault(start, []).append(_Gap(form[:first], tuple(missing), form[last:], entry))
-    return found
+@lru_cache(maxsize=256)  # a text full of unknown words asks for some again and again
+def _gaps(vocabulary: Lexicon, start: str) -> list[_Gap]:
+    """The phrases without some of their words that begin with a word then, or with a slot of a type."""
+    return [
+        gap
+        for entries in vocabulary.entries.values()
+        for entry in entries
+        for form in _forms(entry, start, vocabulary)
+        for gap in _without_words(entry, form)
+        if _begins_with(gap, start)
+    ]
 
 
-def _forms(entry: Entry, vocabulary: Lexicon) -> Iterator[Form]:
+def _without_words(entry: Entry, form: Form) -> Iterator[_Gap]:
+    """A phrase without some of its words side by side."""
+    for first in range(len(form)):
+        for last in range(first + 1, min(first + _MOST_MISSING, len(form)) + 1):
+            missing = [part for part in form[first:last] if isinstance(part, str)]
+            if len(missing) < last - first or last - first == len(form):
+                break
+            yield _Gap(form[:first], tuple(missing), form[last:], entry)
+
+
+def _begins_with(gap: _Gap, start: str) -> bool:
+    part = (*gap.before, *gap.behind)[0]
+    return start == (part if isinstance(part, str) else f"{{{gap.entry.slot(part.name).type}}}")
+
+
+def _forms(entry: Entry, start: str, vocabulary: Lexicon) -> Iterator[Form]:
+    """The ways to say the phrases of an entry that may have the start: only these are worth to be expanded."""
+    is_slot = start[0] == "{"
+    if is_slot and all(slot.type != start[1:-1] for slot in entry.slots):
+        return
     for phrase in entry.phrases:
-        yield from (form for form in forms(phrase, vocabulary.articles) if len(form) <= _LONGEST)
+        if is_slot or start in phrase:
+            yield from (form for form in forms(phrase, vocabulary.articles) if len(form) <= _LONGEST)
