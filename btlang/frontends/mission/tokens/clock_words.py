@@ -67,12 +67,19 @@ class ClockWords(SentenceReader):
         if tokens and tokens[-1].kind == "every":
             tokens += [Token("comma", start, start), Token("if", start, start), asked]
             return last[1]
-        if words[at] not in self._vocabulary.roles["start_at"] or (tokens and tokens[-1].kind not in BEGINS):
+        lasts = words[at] in self._vocabulary.roles["start_at"] or self._is_repeated(last[1])
+        if not lasts or (tokens and tokens[-1].kind not in BEGINS):
             return 0
-        tokens += [  # `from 7 am to 10 am, A`: also where it begins within that time
+        tokens += [  # `from 7 am to 10 am, A`, `between 7 am and 10 am, A every 5 min`: also begun within that time
             Token("wait_until", start, start), asked, Token("then", end, end), Token("until_time", start, end, last[0]),
         ]  # fmt: skip
         return last[1]
+
+    def _is_repeated(self, at: int) -> bool:
+        """Whether the rest of the statement is done again and again: `wave every 5 minutes`."""
+        end = self._end_of_statement(at)
+        found = (longest(self._vocabulary.trie, self._text, i, self._context) for i in range(at, end))
+        return any(match is not None and match.meaning.role == "every" for match in found)
 
     def _until(self) -> None:
         """`A at 7 am until 10 am` is until then from the first time on, not from now on."""
