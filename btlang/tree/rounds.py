@@ -135,9 +135,14 @@ def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice) -> int:
 
 
 def _is_joined(chain: ast.Chain, at: int) -> bool:
-    """Whether `and` or a bare comma stands behind a part: `go to every room, wave, then dock`."""
+    """Whether `and` or a bare comma stands behind a part: `go to every room, wave, then dock`.
+
+    What the same words make goes together: `say the number` measures and says.
+    """
     left, right = chain.items[at].span, chain.items[at + 1].span
-    return chain.operator == "and" or left.source.text[left.end : right.start].strip() == ","
+    return (
+        left.start == right.start or chain.operator == "and" or left.source.text[left.end : right.start].strip() == ","
+    )
 
 
 def _travels(node: ast.Ast) -> bool:

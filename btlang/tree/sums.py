@@ -5,7 +5,8 @@ Where somebody asks for the number behind several counts of one command, these a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
+from functools import partial
 
 from btlang.tree import ast
 from btlang.tree.visit import fold
@@ -76,7 +77,7 @@ class _Sums:
         begun = ast.Assign(_TOTAL, "set", self._number, "0", counting.span)
         keys = sorted(_keys(counting))
         told = [ast.Assign(key, "set", self._number, f"{{{_TOTAL}}}", counting.span) for key in keys]
-        made: list[ast.Ast] = [begun, fold(counting, ast.parts, self._adding), *told]
+        made: list[ast.Ast] = [begun, fold(counting, ast.parts, partial(self._adding, keys)), *told]
         for chain, part in zip(reversed(chains), reversed([*chains, counting][1:]), strict=True):
             at = next(at for at, item in enumerate(chain.items) if item is part)
             behind = (fold(item, ast.parts, self._asking_sum) for item in chain.items[at + 1 :])
@@ -84,10 +85,10 @@ class _Sums:
             made = [ast.Chain(chain.operator, items, chain.bracketed, chain.span)]
         return made
 
-    def _adding(self, node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
-        """A command that counts, with the number that it adds; numbers that were kept in each place are told later."""
+    def _adding(self, told: Container[str], node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+        """A command that counts, with the number that it adds; what is told later isn't kept in each place."""
         if isinstance(node, ast.Chain) and node.operator in _IN_TURN:
-            kept = (item for item in done if not _is_number(item))
+            kept = (item for item in done if not (isinstance(item, ast.Remember) and item.key in told))
             items = tuple(part for item in kept for part in _spliced(item))
             return ast.Chain(node.operator, items, node.bracketed, node.span)
         if not _is_count(node):
@@ -143,12 +144,14 @@ def _asks(node: ast.Ast) -> bool:
 
 
 def _counts_several(node: ast.Ast) -> bool:
-    """Whether a command counts in each place of a list or set."""
+    """Whether a command counts in each place of a list or set: no `for each`, and no commands one behind the other.
+
+    Those are said of trees as they are, so that they mean the same when they are read back.
+    """
     if isinstance(node, ast.ForEach):
-        return True
-    items = node.items if isinstance(node, ast.Chain) and node.operator in _IN_TURN else ()
-    ids = {each.entry.id if isinstance(each, ast.Phrase) else "" for each in items if not _is_of_sum(each)}
-    return len(items) > 1 and len(ids) == 1 and ids <= COUNTING
+        return node.body.span.start <= node.span.start
+    items = [each for each in ast.parts(node) if not _is_of_sum(each)] if isinstance(node, ast.Chain) else []
+    return len(items) > 1 and all(map(_is_count, items)) and len({each.span.start for each in items}) == 1
 
 
 def _is_of_sum(node: ast.Ast) -> bool:
@@ -157,8 +160,10 @@ def _is_of_sum(node: ast.Ast) -> bool:
 
 
 def _keys(node: ast.Ast) -> set[str]:
-    """The values in which a command keeps numbers."""
-    return {each.key for each in ast.parents_first(node) if isinstance(each, ast.Remember) and _is_number(each)}
+    """The values in which a command keeps numbers for what stands behind it, and doesn't use them itself."""
+    nodes = ast.parents_first(node)
+    used = {key for each in nodes if not isinstance(each, ast.Remember) for key in ast.keys_of(each)}
+    return {each.key for each in nodes if isinstance(each, ast.Remember) and _is_number(each)} - used
 
 
 def _is_asked(made: Sequence[_Made], first: int, keys: set[str]) -> bool:
