@@ -56,6 +56,8 @@ class _Round(Record):
 
 
 def _looped(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
+    if any(isinstance(node, ast.Remember) for node in ast.parents_first(root)):
+        root = fold(root, ast.parts, _with_what_says_it)
     nodes = ast.parents_first(root)
     sets = [(at, choice) for at, node in enumerate(nodes) if (choice := _set_of(node)) is not None]
     if not sets:
@@ -81,6 +83,21 @@ def _looped(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
         return made
 
     return fold(root, ast.parts, combine)
+
+
+def _with_what_says_it(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+    """`A and say the battery`: what says a value goes along with what measures it, as one phrase says both."""
+    if not isinstance(node, ast.Chain) or node.operator != "sequence":
+        return ast.with_parts(node, done)
+    made: list[ast.Ast] = []
+    for item in done:
+        before = made[-1] if made else None
+        last = before.items[-1] if isinstance(before, ast.Chain) and before.operator == "and" else None
+        if isinstance(before, ast.Chain) and isinstance(last, ast.Remember) and last.span.start == item.span.start:
+            made[-1] = ast.Chain("and", (*before.items, item), before.bracketed, before.span)
+        else:
+            made.append(item)
+    return made[0] if len(made) == 1 else ast.Chain("sequence", tuple(made), node.bracketed, node.span)
 
 
 def _round(nodes: Sequence[ast.Ast], at: int, choice: Choice, parents: dict[int, ast.Ast]) -> _Round:
@@ -135,14 +152,9 @@ def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice) -> int:
 
 
 def _is_joined(chain: ast.Chain, at: int) -> bool:
-    """Whether `and` or a bare comma stands behind a part: `go to every room, wave, then dock`.
-
-    What the same words make goes together: `say the number` measures and says.
-    """
+    """Whether `and` or a bare comma stands behind a part: `go to every room, wave, then dock`."""
     left, right = chain.items[at].span, chain.items[at + 1].span
-    return (
-        left.start == right.start or chain.operator == "and" or left.source.text[left.end : right.start].strip() == ","
-    )
+    return chain.operator == "and" or left.source.text[left.end : right.start].strip() == ","
 
 
 def _travels(node: ast.Ast) -> bool:
