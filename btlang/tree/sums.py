@@ -150,7 +150,9 @@ def _counts_several(node: ast.Ast) -> bool:
     """
     if isinstance(node, ast.ForEach):
         return node.body.span.start <= node.span.start
-    items = [each for each in ast.parts(node) if not _is_of_sum(each)] if isinstance(node, ast.Chain) else []
+    if not isinstance(node, ast.Chain) or node.operator not in _IN_TURN:
+        return False
+    items = [each for each in node.items if not _is_of_sum(each)]
     return len(items) > 1 and all(map(_is_count, items)) and len({each.span.start for each in items}) == 1
 
 
