@@ -78,6 +78,8 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("try it twice", "BT010"),
         ("go to both rooms", "BT152"),
         ("charge until the morning", "BT160"),
+        ("if bumped, look for the book. Pick it up. If you can't find it, wave", "BT168"),
+        ("look for the book. If bumped, wave. If you can't find it, nod", "BT168"),
         ("drive from the kitchen to the lab and back", "BT012"),
         ("ask Bob if he can come and wave", "BT159"),
         ("ask Bob if he wants to sit and wave", "BT159"),

@@ -7,7 +7,18 @@ The command fails where the condition doesn't hold. So its denial means that the
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import FORMS, JOINTS, LINES, RULES, Called, Listed, Token, go_on, texts_of
+from btlang.frontends.mission.token import (
+    FORMS,
+    JOINTS,
+    LINES,
+    RULES,
+    Called,
+    Listed,
+    Token,
+    go_on,
+    statement_start,
+    texts_of,
+)
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.text.source import Span
 from btlang.vocabulary.capabilities import MOVES
@@ -59,6 +70,11 @@ class Outcomes(SentenceReader):
         match = longest(self._vocabulary.trie, self._text, front[1], self._context)
         if match is None or match.meaning.entry is None or match.meaning.entry.sort != "action":
             return 0
+        if match.meaning.entry.first:
+            form += self._reach_search(form, self._text.span(at, match.last))
+            command = self._before(form)
+            if command is None:
+                return 0
         asked = {name for value in match.values for name in _names(value.text)}
         for token in self._tokens[self._statement(command)[0] : command + 1]:
             value = token.value
@@ -180,13 +196,49 @@ class Outcomes(SentenceReader):
             self._calls.problems.append(diagnostic("BT145", words, words=words.text.rstrip(","), example=example))
         if role not in ("otherwise", _FAILS, _WORKS):
             return role
+        if role == _FAILS and not set(self._vocabulary.asking["search"]).isdisjoint(_words(words.text)):
+            self._reach_search(len(self._tokens), words)
         kinds = self._statement(len(self._tokens))[1]
         if role == _FAILS and _WORKS in kinds and self._denies_what_worked(words):
             return "otherwise"
         if _WORKS in kinds if role == _FAILS else _FAILS in kinds and _WORKS not in kinds:
-            example = f"dock. {word(_WORKS)}, wave. {word('otherwise')} nod"
-            self._calls.problems.append(diagnostic("BT168", words, words=words.text, example=example))
+            self._unclear(words)
         return role
+
+    def _unclear(self, words: Span) -> None:
+        """BT168: about which command the words are."""
+        word = self._vocabulary.word
+        example = f"dock. {word(_WORKS)}, wave. {word('otherwise')} nod"
+        self._calls.problems.append(diagnostic("BT168", words, words=words.text, example=example))
+
+    def _reach_search(self, end: int, words: Span) -> int:
+        """`Look for the key. Pick it up. If you can't find it, A`: the statements up to the search become one.
+
+        `end` is behind the last of them. Returns by how many tokens there are more or fewer. BT168 where forms stand
+        between.
+        """
+        tokens, count, joints = self._tokens, len(self._tokens), list[tuple[int, int]]()
+        while end and tokens[end - 1].kind in _ENDS:
+            end -= 1
+        first = statement_start(tokens, end)
+        while not any(map(_searches, tokens[first:end])):
+            behind = first
+            while first and tokens[first - 1].kind in _ENDS:
+                first -= 1
+            if first == behind or not first or not _FORMS.isdisjoint(token.kind for token in tokens[behind:end]):
+                if any(map(_searches, tokens[:behind])):
+                    self._unclear(words)
+                return 0
+            joints.append((first, behind))
+            first, end = statement_start(tokens, first), first
+        if _FORMS.isdisjoint(token.kind for token in tokens[first:end]):
+            for before, behind in joints:
+                at = tokens[before].start
+                tokens[before:behind] = [] if tokens[behind].kind == "then" else [Token("then", at, at)]
+            self._looked = 0, None, 0, frozenset()
+        elif joints:
+            self._unclear(words)
+        return len(tokens) - count
 
     def _denies_what_worked(self, words: Span) -> bool:
         """Whether the words deny the latest ones by which the statement asked whether its command worked."""
@@ -228,6 +280,10 @@ class Outcomes(SentenceReader):
 
 def _words(text: str) -> list[str]:
     return text.lower().rstrip(",").split()
+
+
+def _searches(token: Token) -> bool:
+    return isinstance(token.value, Called | Listed) and token.value.entry.first
 
 
 def _moves(token: Token) -> bool:
