@@ -196,7 +196,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
         count, warned = sum(1 for _ in self.tree.walk()), len(self.warnings)
         warnings = f", {warned} warning{'s' * (warned > 1)}" if warned else ""
         root = self.tree.root
-        words = self.label(root) if root.span is None else " ".join(root.span.text.split())
+        words = self.label(root) if root.span is None else " ".join(root.source_text.split())
         words = words if len(words) <= _LONGEST else f"{words[: _LONGEST - 3]}..."
         return f"<Mission {words!r}, {count} node{'s' * (count > 1)}{warnings}>"
 

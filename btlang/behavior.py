@@ -13,7 +13,8 @@ from btlang.frontends.table import read_text
 from btlang.mission_vocabulary import described, world_vocabulary
 from btlang.passes import compile_mission, errors_of
 from btlang.record import Record
-from btlang.text.source import NOWHERE, Source
+from btlang.text.python_line import calling_line
+from btlang.text.source import NOWHERE, Source, Span
 from btlang.tree.ast import Fact, all_facts
 from btlang.tree.catalogue import CATALOGUE, MOST_NODES, POST_CONDITIONS, PRE_CONDITIONS
 from btlang.tree.node import Node, Tree
@@ -34,12 +35,12 @@ Value: TypeAlias = str | float | bool
 """What a port can be set to; a text `{key}` refers to the blackboard."""
 
 
-class Behavior(Record):
+class Behavior(Record, uncompared=("span",)):
     """A node of a tree in Python, with its children. Immutable; `mission` checks it and finds the words of its texts.
 
     A child is another behavior, a command or condition in English, the text of a mission, XML or JSON, a function
     decorated with `btlang.action` or `btlang.condition`, a btlang.Mission or a tree. `call` is the decorated function
-    of a leaf, None for others.
+    of a leaf, None for others. `span` is the line of the script that made it, which messages show.
     """
 
     id: str
@@ -47,6 +48,7 @@ class Behavior(Record):
     ports: tuple[tuple[str, str], ...] = ()
     name: str = ""
     call: Callable[..., Any] | None = None
+    span: Span | None = None
 
     def __repr__(self) -> str:
         count = len(self.children)
@@ -97,7 +99,7 @@ def leaf(what: str | Callable[..., object], /, *values: Value, name: str = "", *
     if isinstance(what, str):
         if values:
             raise TypeError(f"the ports of {what} are set by their names")
-        return Behavior(what, (), _ports(ports), name)
+        return Behavior(what, (), _ports(ports), name, span=calling_line())
     entry = _entry(what)
     slots = [slot.name for slot in entry.slots]
     if "name" in slots[len(values) :] and name:
@@ -107,7 +109,7 @@ def leaf(what: str | Callable[..., object], /, *values: Value, name: str = "", *
     if len(values) > len(slots) or unknown:
         wrong = f"{unknown[0]!r}" if unknown else f"{len(values)} values"
         raise TypeError(f"{entry.id} takes {', '.join(slots) or 'no values'}, not {wrong}")
-    return Behavior(entry.id, (), _ports({**given, **ports}), name, what)
+    return Behavior(entry.id, (), _ports({**given, **ports}), name, what, calling_line())
 
 
 def built(
@@ -131,7 +133,7 @@ def built(
     for script in scripts:
         if script not in PRE_CONDITIONS + POST_CONDITIONS and not kind.any_ports:
             raise TypeError(f"{node_id} has no port {script!r}")
-    return Behavior(node_id, own, _ports({**ports, **scripts}), name)
+    return Behavior(node_id, own, _ports({**ports, **scripts}), name, span=calling_line())
 
 
 def _ports(ports: Mapping[str, object]) -> tuple[tuple[str, str], ...]:
@@ -193,7 +195,7 @@ class _Assembly:
 
     def _made(self, child: Child, children: list[Node]) -> Node:
         if isinstance(child, Behavior):
-            return Node(child.id or self._id_of(child.call), tuple(children), child.ports, child.name)
+            return Node(child.id or self._id_of(child.call), tuple(children), child.ports, child.name, child.span)
         if isinstance(child, Node):
             return child
         if isinstance(child, str | Source):
@@ -230,4 +232,19 @@ class _Assembly:
 
 
 def _parts(child: Child) -> tuple[Child, ...]:
-    return child.children if isinstance(child, Behavior) else ()
+    """The children of a behavior; texts and functions are at its line."""
+    if not isinstance(child, Behavior):
+        return ()
+    span = child.span
+    if span is None:
+        return child.children
+    return tuple(_placed(part, span) for part in child.children)
+
+
+def _placed(child: Child, span: Span) -> Child:
+    if isinstance(child, str):
+        line, _ = span.source.position(span.start)
+        return Source(child, f"{span.source.name}:{line} <text>", folder="")
+    if hasattr(child, "btlang_entry"):
+        return Behavior(_entry(child).id, call=child, span=span)  # type: ignore[arg-type]
+    return child

@@ -4,25 +4,47 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from functools import wraps
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.text.source import NOWHERE, Source, Span
+from btlang.text.python_line import calling_line
+from btlang.text.source import NOWHERE
 from btlang.vocabulary.capabilities import resources_of
 from btlang.vocabulary.entry import Entry, SlotSpec
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from types import FrameType
-    from typing import Any, TypeAlias, TypeVar
+    from typing import Any, ParamSpec, Protocol, TypeAlias, TypeVar, overload
 
     from btlang.vocabulary.ros_binding import RosBinding
 
     Call = TypeVar("Call", bound=Callable[..., Any])
     Phrases: TypeAlias = str | Sequence[str]
     Slots: TypeAlias = Mapping[str, str | Mapping[str, str]]
+    Options = ParamSpec("Options")
+
+    class Decorator(Protocol[Options]):
+        """A decorator that may stand above a function with its options in parentheses, or without both."""
+
+        @overload
+        def __call__(self, function: Call, /) -> Call: ...
+        @overload
+        def __call__(self, *args: Options.args, **kwargs: Options.kwargs) -> Callable[[Call], Call]: ...
 
 
+def _also_bare(made: Callable[Options, Callable[[Call], Call]]) -> Decorator[Options]:
+    """A decorator that does without parentheses what it does with empty ones."""
+
+    @wraps(made)
+    def decorator(*given: Any, **options: Any) -> Any:
+        bare = len(given) == 1 and callable(given[0])
+        return made()(given[0]) if bare else made(*given, **options)  # type: ignore[call-arg]
+
+    return decorator
+
+
+@_also_bare
 def action(
     phrase: Phrases = "",
     *,
@@ -46,7 +68,8 @@ def action(
     The options are the keys of an entry in a keyword file (docs/keywords.md). `phrase` is one pattern or several, by
     default the name of the function and a slot for each of its parameters. `id` is the node's name, by default the name
     of the function in CamelCase. `help` is the docstring by default. btlang/engine/leaves/leaf.py describes what a leaf
-    can be. Raises ValueError for a `ros` table with mistakes, MissionError (BT061) for a phrase with mistakes.
+    can be. `@action` without parentheses is the same as `@action()`. Raises ValueError for a `ros` table with mistakes,
+    MissionError (BT061) for a phrase with mistakes.
 
     The type of a slot is what `slots` says (a type, or a type and a default), else what its annotation says (see
     btlang.slots), else the type with the slot's name, else "count" for an int, "number" for a float, "text" for a str.
@@ -59,6 +82,7 @@ def action(
                  thread=thread, touches=touches)  # fmt: skip
 
 
+@_also_bare
 def condition(
     phrase: Phrases = "",
     *,
@@ -109,10 +133,8 @@ def _word(
 ) -> Callable[[Call], Call]:
     from btlang.vocabulary.pattern import PatternError, Slot, forms
 
-    if callable(phrase):
-        raise TypeError(f"write @btlang.{sort}(...) with parentheses above {phrase.__name__}")
     given = (phrase,) if isinstance(phrase, str) else tuple(phrase)
-    span = _place(sys._getframe(2))
+    span = calling_line()
 
     def decorate(call: Call) -> Call:
         phrases = given if any(given) else (_phrase_of(call),)
@@ -181,19 +203,6 @@ def _annotated(call: Any) -> dict[str, tuple[str, None, str]]:
         named = [text for text in get_args(kind)[1:] if isinstance(text, str)] if get_origin(kind) is Annotated else []
         found[name] = (named[0] if named else name, None, _OF_PYTHON.get(getattr(kind, "__name__", ""), ""))
     return found
-
-
-def _place(frame: FrameType) -> Span | None:
-    """The line of a program that decorates a function; None where its text isn't known."""
-    from linecache import getlines
-
-    lines, number = getlines(frame.f_code.co_filename), frame.f_lineno
-    if not 0 < number <= len(lines):
-        return None
-    source = Source("".join(lines), frame.f_code.co_filename)
-    words = source.line(number).strip()
-    start = source.offset(number, 1 + source.line(number).find(words))
-    return Span(source, start, start + len(words))
 
 
 def _ros(table: Mapping[str, Any] | None, sort: str) -> RosBinding | None:

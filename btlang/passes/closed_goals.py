@@ -30,7 +30,7 @@ def check_goals(compilation: Compilation) -> list[Diagnostic]:
         for zone in closed if goals else ():
             node = goals.get(zone.lower())
             if node is not None and node.span is not None:
-                problems.append(diagnostic("BT162", node.span, words=node.span.text, zone=zone))
+                problems.append(diagnostic("BT162", node.span, words=node.source_text, zone=zone))
 
     def combine(node: Node, children: Sequence[Goals], named: dict[str, Goals]) -> Goals:
         if not children:

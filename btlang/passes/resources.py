@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
+from btlang.printer.phrase import is_sentence
 from btlang.text.source import NOWHERE, Span
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node
@@ -65,15 +66,15 @@ def _conflicts(parts: Sequence[Holders], vocabulary: Lexicon) -> list[Diagnostic
 
 
 def _conflict(resource: str, first: Node, second: Node, vocabulary: Lexicon) -> Diagnostic:
-    one, other = (node.id if node.span is None else node.span.text for node in (first, second))
+    one, other = first.source_text, second.source_text
     notes = ((first.span, f"this needs the {resource} too"),) if first.span is not None else ()
     fixed = f"{one} {vocabulary.word('then')} {other}"
     fix = None
     if one[:1] == "<":
         fixed = f"<Sequence> {one} {other} </Sequence>"
-    elif first.span is None or one[:1] == '"':  # of JSON
+    elif first.span is None or not is_sentence(first.span):
         fixed = f"{first.id} and {second.id} as children of a Sequence"
-    elif second.span is not None:
+    elif second.span is not None and is_sentence(second.span):
         fix = _one_after_the_other(first.span, second.span, vocabulary)
         fixed = _sentence_with(*fix) if fix is not None else fixed
     problem = diagnostic(

@@ -17,7 +17,7 @@ def check_types(compilation: Compilation) -> Iterator[Diagnostic]:
         wrong = {id(node): wanted for node in nodes if node.ports and (wanted := _out_of_range(node))}
         for node, span in _with_spans(nodes[-1]) if wrong else ():
             if span is not None and id(node) in wrong:
-                yield diagnostic("BT014", span, words=span.text, wanted=wrong[id(node)])
+                yield diagnostic("BT014", span, words=node.replace(span=span).source_text, wanted=wrong[id(node)])
 
 
 def _with_spans(root: Node) -> Iterator[tuple[Node, Span | None]]:

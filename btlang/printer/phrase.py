@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from btlang.text.source import Source
+from btlang.text.source import PythonSource, Source, Span
 from btlang.text.words import split
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.dump import described
@@ -27,7 +27,7 @@ def phrase_of(node: Node, vocabulary: Lexicon) -> str:
     """
     if node.id == SUBTREE:
         return _filled_name(node)
-    if node.span is not None and is_written(node) and node.span.text[:1] not in MARKUP:
+    if node.span is not None and is_written(node) and is_sentence(node.span):
         return node.span.text
     if node.id in ("Choose", "ChooseAll"):
         return vocabulary.values.choice_words(choice_by(dict(node.ports)))
@@ -38,6 +38,11 @@ def phrase_of(node: Node, vocabulary: Lexicon) -> str:
     if node.id in ("AlwaysSuccess", "AlwaysFailure"):
         return vocabulary.word("nothing" if node.id == "AlwaysSuccess" else "fail")
     return leaf_words(node.id, dict(node.ports), vocabulary) or described(node)
+
+
+def is_sentence(span: Span) -> bool:
+    """Whether the text of a node is English: not XML, JSON or Python."""
+    return span.text[:1] not in MARKUP and not isinstance(span.source, PythonSource)
 
 
 def is_written(node: Node) -> bool:

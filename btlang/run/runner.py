@@ -85,7 +85,7 @@ def traced_engine(
     def warned(failure: Failure) -> None:
         what = "is not known" if engine.is_question(failure.index) else "failed"
         place = raised_in(failure.exception)
-        text = f"'{_words(failure)}' {what}: {failure.reason}" + (f" (raised in {place})" if place else "")
+        text = f"'{failure.node.source_text}' {what}: {failure.reason}" + (f" (raised in {place})" if place else "")
         bus.emit(Warned, text, failure.path, _place(failure))
 
     engine = Engine(
@@ -320,7 +320,7 @@ class Runner:
         unended = self._engine.close(_PATIENCE)
         self._report_halts()
         for failure in unended:
-            self._report(failure, f"{_words(failure)} did not end after it was halted")
+            self._report(failure, f"{failure.node.source_text} did not end after it was halted")
         if self._robot is None:
             return Standstill()
         rest_until, passed = self._clock.now + _REST, self._period
@@ -357,12 +357,6 @@ def _place(failure: Failure) -> str:
 
 def _nothing() -> None:
     """In place of what a robot does not have."""
-
-
-def _words(failure: Failure) -> str:
-    """The words of a command where it came from some."""
-    span = failure.node.span
-    return span.text if span is not None else failure.node.id
 
 
 def _ending(outcome: Outcome) -> tuple[Any, ...]:

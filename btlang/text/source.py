@@ -71,6 +71,12 @@ class Source:
         return self._starts
 
 
+class PythonSource(Source):
+    """The text of a Python script: its lines make nodes and words, but don't say them in English."""
+
+    __slots__ = ()
+
+
 class Span(Record, uncompared=("source",)):
     """Characters `start` to `end` (exclusive) of a source."""
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.record import Record
-from btlang.text.source import Span
+from btlang.text.source import PythonSource, Span
 from btlang.tree.model import NodeModel
 
 
@@ -23,6 +23,11 @@ class Node(Record, uncompared=("span",)):
     ports: tuple[tuple[str, str], ...] = ()
     name: str = ""
     span: Span | None = None
+
+    @property
+    def source_text(self) -> str:
+        """The text that it came from; its id if that isn't known, or is Python."""
+        return self.id if self.span is None or isinstance(self.span.source, PythonSource) else self.span.text
 
     def port(self, name: str, default: str = "") -> str:
         """The text of a port, or the default where it is not set."""

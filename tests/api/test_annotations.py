@@ -70,8 +70,47 @@ def test_errors_show_the_line_of_the_decorator() -> None:
     with pytest.raises(btlang.MissionError, match="BT061") as caught:
         btlang.parse_tree("skip it", keywords=[skip])
     assert caught.value.diagnostics[0].span.text == '@btlang.action("skip {what}")'
-    with pytest.raises(TypeError, match="parentheses above wave"):
 
-        @btlang.action
-        def wave() -> None:
-            pass
+
+@btlang.action
+def spin_for(rounds: int) -> None:
+    DONE.append(rounds)
+
+
+@btlang.action
+class Purr:
+    """Purrs."""
+
+    def start(self) -> bool:
+        DONE.append("purr")
+        return True
+
+    def tick(self) -> bool:
+        return True
+
+    def halt(self) -> None:
+        """Nothing moves."""
+
+
+@btlang.condition
+def it_is_quiet() -> bool:
+    return "purr" not in DONE
+
+
+def test_a_decorator_without_parentheses_takes_the_name_and_the_parameters() -> None:
+    DONE.clear()
+    text = "if it is quiet, spin for 3. If it is quiet, purr. If it is quiet, wave"
+    mission = btlang.parse_tree(text, keywords=[spin_for, Purr, it_is_quiet])
+    assert mission.run(speed="max").succeeded
+    assert DONE == [3, "purr"]
+    assert Purr.__doc__ == "Purrs."
+
+
+def test_errors_below_a_bare_decorator_show_its_line() -> None:
+    @btlang.action
+    def skip(what: object) -> None:
+        pass
+
+    with pytest.raises(btlang.MissionError, match="BT061") as caught:
+        btlang.parse_tree("skip it", keywords=[skip])
+    assert caught.value.diagnostics[0].span.text == "@btlang.action"

@@ -146,7 +146,7 @@ def test_mistakes_in_texts_and_values() -> None:
         sequence("go to the moon").mission()
     with pytest.raises(btlang.MissionError, match="BT130"):
         leaf("Fly").run()
-    with pytest.raises(btlang.MissionError, match="BT132"):
+    with pytest.raises(btlang.MissionError, match="BT014"):
         repeat("wave", num_cycles=-7).run()
 
 

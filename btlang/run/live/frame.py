@@ -64,7 +64,7 @@ class Words:
         found = self._known.get(index)
         if found is None:
             node = self._nodes[index]
-            sentence = node.span.text.strip() if node.children and node.span is not None else ""
+            sentence = node.source_text.strip() if node.children and node.span is not None else ""
             first, more, _ = sentence.partition("\n")
             name = self._label(node)
             if (more and not _heads_a_block(node, first)) or first.lower() == name.lower():
