@@ -11,7 +11,7 @@ __version__ = "0.2.0"
 
 PUBLIC: dict[str, tuple[str, ...]] = {
     "btlang.api": ("Mission", "parse_file", "parse_tree"),
-    "btlang.behavior": ("Behavior",),
+    "btlang.behavior": ("Behavior", "from_py_trees"),
     "btlang.builders": (
         "always_failure", "always_success", "async_fallback", "async_sequence", "delay", "fallback",
         "force_failure", "force_success", "if_then_else", "inverter", "keep_in", "keep_out",

@@ -3,6 +3,7 @@ from btlang.api import Mission as Mission
 from btlang.api import parse_file as parse_file
 from btlang.api import parse_tree as parse_tree
 from btlang.behavior import Behavior as Behavior
+from btlang.behavior import from_py_trees as from_py_trees
 from btlang.builders import always_failure as always_failure
 from btlang.builders import always_success as always_success
 from btlang.builders import async_fallback as async_fallback

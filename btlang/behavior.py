@@ -112,6 +112,25 @@ def leaf(what: str | Callable[..., object], /, *values: Value, name: str = "", *
     return Behavior(entry.id, (), _ports({**given, **ports}), name, what, calling_line())
 
 
+def from_py_trees(root: object, *, names: bool = True) -> Behavior:
+    """The behavior of a live py_trees tree: its root, or a `BehaviourTree`.
+
+    Nodes become their counterparts (docs/engine.md lists the differences). Leaves that btlang made for py_trees are
+    commands and conditions again. Other behaviours without children stay what they are, and are ticked as leaves: call
+    their `setup` before. Without `names` the nodes don't get the names of their behaviours, and the English is plainer.
+    Raises MissionError (BT134) for all nodes without a counterpart.
+    """
+    from btlang.backends.py_trees.lift import read_py_trees  # which needs py_trees
+
+    span = calling_line()
+    tree, leaves = read_py_trees(root, span, names)
+
+    def made(node: Node, children: list[Behavior]) -> Behavior:
+        return Behavior(node.id, tuple(children), node.ports, node.name, leaves.get(node.id), node.span or span)
+
+    return fold(tree, lambda node: node.children, made)
+
+
 def built(
     node_id: str,
     children: tuple[Child | None, ...],

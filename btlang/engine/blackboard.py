@@ -40,6 +40,14 @@ class Blackboard:
         self._state = parent if shares else None
         self._writes: dict[str, int] = {}  # only of keys that somebody has asked for
 
+    @property
+    def shared(self) -> Blackboard:
+        """The scope to which all its keys but private ones belong: itself, or one around it."""
+        scope = self
+        while scope._state is not None and not scope._remapped and not scope._values:
+            scope = scope._state
+        return scope
+
     def _owner(self, key: str) -> tuple[Blackboard, str]:
         scope = self
         while True:

@@ -11,7 +11,7 @@ from py_trees.behaviour import Behaviour
 
 from btlang.backends.engine import bind_leaf
 from btlang.backends.py_trees import choosing, decorating, in_order, node
-from btlang.backends.py_trees.plan import Name, Part, plan_of
+from btlang.backends.py_trees.plan import ON_COMPLETION, Name, Part, plan_of
 from btlang.backends.py_trees.values import engine_leaf, values_of
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
@@ -53,7 +53,7 @@ def to_py_trees(
         "interrupts": [],
         "values": Blackboard() if values is None else values,
         "zones": getattr(services.get("robot"), "zones", None),
-        "common.OneShotPolicy.ON_COMPLETION": common.OneShotPolicy.ON_COMPLETION,
+        ON_COMPLETION: common.OneShotPolicy.ON_COMPLETION,
     }
     for scope in plan.scopes:
         known[scope.name] = values_of(dict(scope.ports), known[scope.around])
@@ -69,9 +69,9 @@ def to_py_trees(
             leaf = bind(Node(arguments["id"], ports=tuple(arguments["ports"].items())))
         elif part.make.startswith("decorators."):
             [child] = children
-            return _CLASSES[part.make](part.name, child, **arguments)
+            return CLASSES[part.make](part.name, child, **arguments)
         else:
-            return _CLASSES[part.make](part.name, **({"children": children} if children else {}), **arguments)
+            return CLASSES[part.make](part.name, **({"children": children} if children else {}), **arguments)
         return node.interrupting(leaf, known["interrupts"]) if part.starts else leaf
 
     try:
@@ -81,7 +81,7 @@ def to_py_trees(
         raise MissionError([diagnostic("BT132", span, id=error.node.id, reason=error.message)]) from None
 
 
-_CLASSES: dict[str, Callable[..., Behaviour]] = {
+CLASSES: dict[str, Callable[..., Behaviour]] = {
     **{
         name: made
         for module in (node, in_order, choosing, decorating)

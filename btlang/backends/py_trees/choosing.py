@@ -67,7 +67,7 @@ class Parallel(Node, composites.Parallel):
     """Ticks all that have not completed; ends with the child that decides. A negative count is counted from all."""
 
     def __init__(self, name: str, children: Sequence[Behaviour], successes: int = -1, failures: int = 1) -> None:
-        self.required, self.allowed = successes, failures
+        self.successes, self.failures = successes, failures
         self.done: dict[int, common.Status] = {}
         super().__init__(name, children, policy=common.ParallelPolicy.SuccessOnAll(synchronise=False))
 
@@ -89,14 +89,14 @@ class Parallel(Node, composites.Parallel):
 
     def run(self) -> Asking:
         count = len(self.children)
-        required = self.required + (count + 1 if self.required < 0 else 0)
-        allowed = self.allowed + (count + 1 if self.allowed < 0 else 0)
+        required = self.successes + (count + 1 if self.successes < 0 else 0)
+        allowed = self.failures + (count + 1 if self.failures < 0 else 0)
         skipped = 0
         for index, child in enumerate(self.children):
             skipped += yield from self.complete(index, child)
             successes = list(self.done.values()).count(SUCCESS)
             failures = len(self.done) - successes
-            if successes >= required or (self.required < 0 and successes + skipped >= required):
+            if successes >= required or (self.successes < 0 and successes + skipped >= required):
                 self.halt(False)
                 return SUCCESS
             if count - failures < required or failures == allowed:
@@ -110,7 +110,7 @@ class ParallelAll(Parallel):
 
     def run(self) -> Asking:
         count = len(self.children)
-        allowed = self.allowed + (count + 1 if self.allowed < 0 else 0)
+        allowed = self.failures + (count + 1 if self.failures < 0 else 0)
         skipped = 0
         for index, child in enumerate(self.children):
             skipped += yield from self.complete(index, child)

@@ -24,6 +24,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+ON_COMPLETION = "common.OneShotPolicy.ON_COMPLETION"
 DEEPEST = 250
 """Levels of a tree; py_trees calls itself at each one."""
 
@@ -163,7 +164,7 @@ class _Planner:
         native = not self._suspended[index] and not any(skips) and (node.id != "RunOnce" or not self._skips[index])
         if node.id in ("ReactiveSequence", "ReactiveFallback"):
             native = native and not any(self._acts[i] for i in below[:-1])
-        make, arguments = _THEIRS[node.id] if native and node.id in _THEIRS else _ours(node)
+        make, arguments = THEIRS[node.id] if native and node.id in THEIRS else _ours(node)
         return Part(make, self._name(node), children, arguments)
 
     def _leaf(self, instance: NodeInstance) -> Part:
@@ -213,14 +214,14 @@ _SKIPPED: dict[str, Callable[[list[bool]], bool]] = {
 """Whether a node can be skipped, by whether its children can be, for each way of NodeKind.skipped."""
 
 _INTERRUPTS = (("interrupts", Name("interrupts")),)
-_OURS = {
+OURS = {
     "Sequence": "SkippableSequence",
     "Fallback": "SkippableFallback",
     **{id: id for id in ("SequenceWithMemory", "IfThenElse", "PipelineSequence", "RoundRobin", SUBTREE)},
     **{id: id for id in ("Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure")},
 }
 _REACTIVE = ("ReactiveSequence", "ReactiveFallback", "WhileDoElse", "Whenever")
-_THEIRS: dict[str, tuple[str, tuple[tuple[str, Any], ...]]] = {
+THEIRS: dict[str, tuple[str, tuple[tuple[str, Any], ...]]] = {
     "Sequence": ("composites.Sequence", (("memory", True),)),
     "Fallback": ("composites.Selector", (("memory", True),)),
     "ReactiveSequence": ("composites.Sequence", (("memory", False),)),
@@ -228,7 +229,7 @@ _THEIRS: dict[str, tuple[str, tuple[tuple[str, Any], ...]]] = {
     "ForceSuccess": ("decorators.FailureIsSuccess", ()),
     "ForceFailure": ("decorators.SuccessIsFailure", ()),
     "KeepRunningUntilFailure": ("decorators.SuccessIsRunning", ()),
-    "RunOnce": ("decorators.OneShot", (("policy", Name("common.OneShotPolicy.ON_COMPLETION")),)),
+    "RunOnce": ("decorators.OneShot", (("policy", Name(ON_COMPLETION)),)),
     SUBTREE: ("decorators.PassThrough", ()),
 }
 """The nodes of py_trees that mean the same where no child can be skipped, and nothing has to be suspended.
@@ -239,8 +240,8 @@ Its Inverter does not: it makes a SUCCESS of a condition that could not know.
 
 def _ours(node: Node) -> tuple[str, tuple[tuple[str, Any], ...]]:
     """Our class for a node, and its arguments."""
-    if node.id in _OURS:
-        return _OURS[node.id], ()
+    if node.id in OURS:
+        return OURS[node.id], ()
     if node.id == "Whenever":
         return node.id, (("once", _truth(node, "once")), *_INTERRUPTS)
     if node.id in _REACTIVE:
@@ -251,10 +252,10 @@ def _ours(node: Node) -> tuple[str, tuple[tuple[str, Any], ...]]:
         return node.id, (("names", zone_names(_constant(node, "zones"))), ("zones", Name("zones")))
     if node.id == "TryCatch" and not _truth(node, "catch_on_halt"):
         return node.id, ()
-    if node.id not in _NUMBERS:
+    if node.id not in NUMBERS:
         what = "with catch_on_halt " if node.id == "TryCatch" else ""
         raise _Inexpressible(f"py_trees has no such node {what}and btlang has no replacement")
-    make, names = _NUMBERS[node.id]
+    make, names = NUMBERS[node.id]
     arguments: list[tuple[str, Any]] = []
     for name, port in zip(names, CATALOGUE[node.id].ports.items(), strict=True):
         arguments += _argument(node, name, *port)
@@ -273,7 +274,7 @@ def _argument(node: Node, name: str, port: str, kind: Port) -> list[tuple[str, A
     return [(name, int(text))]
 
 
-_NUMBERS: dict[str, tuple[str, tuple[str, ...]]] = {
+NUMBERS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Parallel": ("Parallel", ("successes", "failures")),
     "ParallelAll": ("ParallelAll", ("failures",)),
     "Repeat": ("Repeat", ("most",)),

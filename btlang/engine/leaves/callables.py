@@ -151,7 +151,8 @@ def keeping_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Store
 def class_leaf(instance: NodeInstance, leaf: Any, start: Callable[..., Any], stored: Stored) -> Compiled:
     """An object with `tick` and `halt`, and what starts it; `stored` gives the values that are read at each start."""
     go_on = leaf.tick
-    interrupts, trace = instance.state.interrupts, _trace_of(instance)
+    trace = _trace_of(instance)
+    interrupts = instance.state.interrupts if getattr(leaf, "interrupts", True) else []
     running = False
 
     def tick() -> int:

@@ -5,7 +5,8 @@ A leaf is one of
 - a generator function: each `yield` is RUNNING, its return value counts as a function's; halting closes it, so stop
   what it moves with `try: ... finally: robot.stop()`;
 - a class with `start(**ports)`, `tick()` and `halt()`: created once for its node; `start` and `tick` return the same
-  as functions, but None means RUNNING. `halt` is only called while it runs;
+  as functions, but None means RUNNING. `halt` is only called while it runs. With a class attribute `interrupts = False`
+  it isn't known to be an action: what it replaces is halted after it has started, if it is RUNNING then;
 - a background leaf: an `async def` function, or a plain function with `thread` in its binding. It runs concurrently
   with ticks and is RUNNING until it returns; its value counts as a function's, and the next tick comes at once. Halting
   cancels the task of an async function, and sets the event `halted` for a thread, which should check it. The engine
