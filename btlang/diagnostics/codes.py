@@ -262,6 +262,8 @@ _ALL = (
          "Write how often it runs at most, or -1 for no limit.", "warning", "no rounds"),
     Code("BT238", "BehaviorTree.CPP 4.10 refuses the ID '{id}', because it contains {what}.",
          "Rename it in all files that use it.", "warning", "refused id"),
+    Code("BT239", "The model of {id} lacks ports that its nodes have: {ports}.", "Add them to the model.", "warning",
+         "stale model"),
     Code("BT240", "There are no words for the node '{id}': {reason}.", "Missions say it by its id: do \"{id}\"", "warning",
          "node without words"),
 )  # fmt: skip

@@ -13,11 +13,12 @@ from btlang.frontends.btcpp.project import XmlProject
 from btlang.passes import PASSES
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.allow import not_allowed
-from btlang.projects.ports import port_problems, subtree_problems
+from btlang.projects.ports import DescribedUses, port_problems, subtree_problems
 from btlang.projects.unknown import unknown_nodes
 from btlang.projects.unused import keys_read, unread_subtree_ports, unread_values, unused_trees
 from btlang.text.source import Span
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SEQUENCE, SUBTREE
+from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
@@ -40,20 +41,19 @@ class _Check:
     def __init__(self, project: XmlProject, vocabulary: Lexicon) -> None:
         self._project = project
         self._nodes = [node for root in project.trees.values() for node in Tree(root).walk()]
-        self._models = {id: model for id, model in project.models.items() if id not in CATALOGUE}
         elsewhere = self._ids_from_elsewhere(vocabulary)
         own = {id: known for id, known in vocabulary.entries.items() if id not in elsewhere}
         self._vocabulary = vocabulary.replaced(entries=own)
         self._words = vocabulary.entries.keys()
-        ids = {node.id for node in self._nodes} - self._models.keys()
-        self._described = {*CATALOGUE, *self._models, *nav2_models(ids)}
+        ids = {node.id for node in self._nodes} - project.models.keys()
+        self._described = {*CATALOGUE, *project.models, *nav2_models(ids)}
 
     def problems(self) -> Iterator[Diagnostic]:
         """Of the trees; only those of single nodes where trees contain themselves."""
         yield from unknown_nodes(self._nodes, self._described, self._words, self._project.dialects)
         yield from self._wrong_ports()
         yield from unused_trees(self._project)
-        yield from unread_values(self._nodes, self._models, keys_read(self._nodes, self._models))
+        yield from unread_values(self._nodes, self._project, keys_read(self._nodes, self._project))
         if self._project.is_round:
             return
         yield from unread_subtree_ports(self._nodes, self._project.trees)
@@ -74,20 +74,26 @@ class _Check:
 
     def _fits(self, node_id: str, vocabulary: Lexicon) -> bool:
         """Whether a model, if there is one, describes the entry of this id."""
-        model = self._models.get(node_id)
+        model = self._project.models.get(node_id)
         slots = {slot.name for entry in vocabulary.entries[node_id] for slot in entry.slots}
         return model is None or all(port.name in slots for port in model.ports)
 
     def _wrong_ports(self) -> Iterator[Diagnostic]:
-        trees = self._project.models
+        described: dict[int, tuple[NodeModel, list[Node]]] = {}
         for node in self._nodes:
-            model = trees.get(node.port("ID")) if node.id == SUBTREE else self._models.get(node.id)
-            if model is None or node.id in self._vocabulary.entries:
-                continue
-            if node.id != SUBTREE and model.kind != SUBTREE:
-                yield from port_problems(node, model)
-            elif node.id == SUBTREE and model.kind == SUBTREE and self._dialect(node) == 4:
-                yield from subtree_problems(node, model)
+            if node.id == SUBTREE:
+                model = self._project.model(node, node.port("ID"))
+                if model is not None and model.kind == SUBTREE and self._dialect(node) == 4:
+                    yield from subtree_problems(node, model)
+            elif node.id not in CATALOGUE and node.id not in self._vocabulary.entries:
+                model = self._project.model(node)
+                if model is not None and model.kind != SUBTREE:
+                    described.setdefault(id(model), (model, []))[1].append(node)
+        for model, nodes in described.values():
+            models = self._project.described[model.id]
+            place = next(place for each, place in models if each is model)
+            others = tuple((each, where) for each, where in models if each is not model)
+            yield from port_problems(DescribedUses(model, place, tuple(nodes), others))
 
     def _dialect(self, node: Node) -> int:
         return self._project.dialects.get(node.span.source.name, 4) if node.span is not None else 4

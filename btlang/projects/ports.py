@@ -1,44 +1,120 @@
-"""The ports of nodes by their models: unknown and missing ones, and values of another type."""
+"""The ports of nodes by their models: unknown and missing ones, values of another type, and outdated models."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
 from btlang.projects.places import attribute_name, attribute_value, place_of
 from btlang.projects.port_values import wanted
-from btlang.text.source import Span
+from btlang.record import Record
+from btlang.text.source import NOWHERE, Span
 from btlang.text.spelling import is_misspelling, nearest
 from btlang.tree.catalogue import SUBTREE
-from btlang.tree.model import NodeModel
+from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node
 
+_SEVERAL = 2
 
-def port_problems(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
-    """BT232 for ports that the model doesn't have, BT233 for values of another type, BT234 for missing ports."""
+
+class DescribedUses(Record):
+    """The nodes that one model describes. `others` are what else describes them, each with its place."""
+
+    model: NodeModel
+    place: Span
+    nodes: tuple[Node, ...]
+    others: tuple[tuple[NodeModel, Span], ...] = ()
+
+
+def port_problems(uses: DescribedUses) -> Iterator[Diagnostic]:
+    """BT232 for ports that the model doesn't have, BT233 for values of another type, BT234 for missing ports.
+
+    BT239 where the model is wrong, and not the nodes.
+    """
+    model = uses.model
     ports = {port.name: port for port in model.ports}
-    given = dict(node.ports)
-    unknown = [name for name in given if name not in ports and name[:1] != "_" and name != "ID"]
-    missing = [port.name for port in model.ports if _must_be_given(port.direction, port.default, given.get(port.name))]
-    for name in unknown:
-        near = nearest(name.lower(), [port for port in ports if port not in given])
-        fix = respelling(attribute_name(node, name), near)
-        missing = [port for port in missing if fix is None or port != fix[1]]
-        help = f"Similar: {', '.join(near)}" if near else f"It has {', '.join(ports) or 'none'}."
-        yield diagnostic("BT232", attribute_name(node, name), (), fix, port=name, id=node.id, help=help)
-    for name in missing:
-        yield diagnostic("BT234", place_of(node), id=node.id, port=name)
+    others = [port for other, _ in uses.others for port in other.ports]
+    given = [dict(node.ports) for node in uses.nodes]
+    lacking = _lacking(uses, others)
+    optional = {port.name for port in model.ports if _may_be_left_out(port, others, given)}
+    for node in uses.nodes:
+        own = dict(node.ports)
+        missing = [port for port in ports if port not in own and port not in optional]
+        for name in own:
+            if name in ports or name in lacking or _is_no_port(name):
+                continue
+            near = _near(name, own, ports)
+            fix = respelling(attribute_name(node, name), near)
+            missing = [port for port in missing if fix is None or port != fix[1]]
+            help = f"Similar: {', '.join(near)}" if near else f"It has {', '.join(ports) or 'none'}."
+            yield diagnostic("BT232", attribute_name(node, name), (), fix, port=name, id=node.id, help=help)
+        for name in missing:
+            yield diagnostic("BT234", place_of(node), id=node.id, port=name)
+        yield from _wrong_values(node, [*ports.values(), *others])
+    if lacking:
+        yield _stale(uses, lacking)
+
+
+def _is_no_port(name: str) -> bool:
+    return name[:1] == "_" or name == "ID"
+
+
+def _near(name: str, given: Iterable[str], ports: Iterable[str]) -> list[str]:
+    return nearest(name.lower(), [port for port in ports if port not in given])
+
+
+def _lacking(uses: DescribedUses, others: Iterable[PortModel]) -> dict[str, list[Node]]:
+    """The ports that nodes have and the model lacks, with these nodes: another model has them, or several nodes do and
+    they aren't misspelt.
+    """
+    ports, elsewhere = {port.name for port in uses.model.ports}, {port.name for port in others}
+    found: dict[str, list[Node]] = {}
+    misspelt: set[str] = set()
+    for node in uses.nodes:
+        for name, _ in node.ports:
+            if name in ports or _is_no_port(name):
+                continue
+            found.setdefault(name, []).append(node)
+            if _near(name, dict(node.ports), ports):
+                misspelt.add(name)
+    return {name: nodes for name, nodes in found.items()
+            if name in elsewhere or (len(nodes) >= _SEVERAL and name not in misspelt)}  # fmt: skip
+
+
+def _may_be_left_out(port: PortModel, others: Iterable[PortModel], given: Sequence[dict[str, str]]) -> bool:
+    """Whether a port needn't be given: it is an output or has a default, or half of several nodes leave it out."""
+    if port.direction == "output" or port.default is not None:
+        return True
+    if any(other.name == port.name and other.default is not None for other in others):
+        return True
+    left_out = sum(port.name not in ports for ports in given)
+    return left_out >= _SEVERAL and left_out * 2 >= len(given)
+
+
+def _wrong_values(node: Node, ports: Sequence[PortModel]) -> Iterator[Diagnostic]:
+    """BT233 where no model takes a value."""
     for name, text in node.ports:
-        port = ports.get(name)
-        if port is None or not text.strip() or "{" in text or port.direction == "output":
+        described = [port for port in ports if port.name == name]
+        if not described or not text.strip() or "{" in text or described[0].direction == "output":
             continue
-        if expected := wanted(text.strip(), port.type):
-            yield diagnostic("BT233", attribute_value(node, name), text=text, port=name, id=node.id, wanted=expected)
+        if all(expected := [wanted(text.strip(), port.type) for port in described]):
+            yield diagnostic("BT233", attribute_value(node, name), text=text, port=name, id=node.id, wanted=expected[0])
 
 
-def _must_be_given(direction: str, default: str | None, text: str | None) -> bool:
-    return direction != "output" and default is None and text is None
+def _stale(uses: DescribedUses, lacking: dict[str, list[Node]]) -> Diagnostic:
+    """BT239 at the model, with the first node of each port that it lacks, and the models that have them."""
+    notes = [(attribute_name(nodes[0], name), f"'{name}' is given here{_more(nodes)}")
+             for name, nodes in lacking.items()]  # fmt: skip
+    for model, place in uses.others:
+        if place is not NOWHERE and any(port.name in lacking for port in model.ports):
+            notes.append((place, "this model has it" if len(lacking) == 1 else "this model has more ports"))
+    ports = ", ".join(f"'{name}'" for name in lacking)
+    return diagnostic("BT239", uses.place, tuple(notes), None, id=uses.model.id, ports=ports)
+
+
+def _more(nodes: Sequence[Node]) -> str:
+    return f", and {len(nodes) - 1} more times" if len(nodes) > _SEVERAL else " and once more" if len(nodes) > 1 else ""
 
 
 def respelling(span: Span, near: list[str]) -> tuple[Span, str] | None:

@@ -16,6 +16,7 @@ from jsonschema import Draft202012Validator
 from btlang.cli import main
 from btlang.diagnostics.codes import CODES
 from tests.conftest import matches_golden, without_pointer
+from tests.projects.trees import problems
 
 ROOT = Path(__file__).parent.parent.parent
 PROJECT = ROOT / "tests" / "corpus" / "project"
@@ -29,12 +30,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     shutil.copytree(PROJECT, tmp_path / "project")
     monkeypatch.chdir(tmp_path / "project")
     return tmp_path / "project"
-
-
-def problems(capsys: pytest.CaptureFixture[str], *arguments: str) -> list[dict[str, Any]]:
-    main(["check", "--format", "json", *arguments])
-    found: list[dict[str, Any]] = json.loads(capsys.readouterr().out)
-    return found
 
 
 @pytest.mark.usefixtures("folder")
@@ -120,6 +115,8 @@ def test_equal_warnings_of_several_files_name_their_files(
     for name in "abc":
         text = f'<root BTCPP_format="4">\n<BehaviorTree ID="{name}"><Foo/></BehaviorTree>{model}</root>'
         Path(f"{name}.xml").write_text(text, "utf-8")
+    given = '<root BTCPP_format="4"><BehaviorTree ID="D"><Sequence>{}</Sequence></BehaviorTree></root>'
+    Path("d.xml").write_text(given.format('<Foo y="1"/>' * 4), "utf-8")  # so that the port isn't optional
     assert main(["check", "."]) == 0
     assert "And 2 more: b.xml:2, c.xml:2\n" in capsys.readouterr().err
 
@@ -320,4 +317,4 @@ def test_the_hook_as_pre_commit_runs_it(folder: Path, capsys: pytest.CaptureFixt
     assert btc == "btc"
     assert main([*words, "sound", *chosen]) == 0
     capsys.readouterr()
-    assert main([*words, "sound", "mistakes/doors.xml"]) == 2
+    assert main([*words, "sound", "mistakes/deliver.xml"]) == 2

@@ -54,11 +54,12 @@ class XmlFile:
     what BehaviorTree.CPP ignores.
 
     Nodes are read by `read_trees`, when the trees of all included files are known. `within` is the dialect of the file
-    that includes it.
+    that includes it, `path` is where it really is.
     """
 
-    def __init__(self, document: Document, within: int = 3) -> None:
+    def __init__(self, document: Document, within: int = 3, path: str = "") -> None:
         self.document = document
+        self.path = path
         self.notes = Notes(document)
         self.problems: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
@@ -72,14 +73,24 @@ class XmlFile:
         self.uses: dict[str, list[Node]] = {}
         """The SubTree nodes of each tree."""
         self._parts: list[int] = []
+        self._described: dict[str, int] = {}  # the elements of the models
         self.attributes = document.attributes(0)
         self.dialect = dialect_of(document, within)
         self._survey()
 
     @property
+    def names(self) -> dict[str, str]:
+        """The names of its trees by their IDs."""
+        return {head.id: head.name for head in self.heads}
+
+    @property
     def root_span(self) -> Span:
         """The start tag of <root>."""
         return self.document.span(0)
+
+    def model_span(self, node_id: str) -> Span:
+        """The start tag of the model of a node."""
+        return self.document.span(self._described[node_id])
 
     def _survey(self) -> None:
         document = self.document
@@ -102,8 +113,9 @@ class XmlFile:
                 self._wrong("BT122", document.span(at), what=f"A second <{tag}>", problem="isn't allowed", advice=help)
             elif tag == MODEL:
                 described = at
-                for model in models.read(at):
-                    self.models.setdefault(model.id, model)
+                for element, model in models.read(at):
+                    if self.models.setdefault(model.id, model) is model:
+                        self._described[model.id] = element
             elif tag == "include":
                 self.includes.append((attributes, document.span(at)))
             else:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
@@ -11,6 +11,7 @@ from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models, subtree_defaults
 from btlang.frontends.btcpp.scan import Document, scanned
+from btlang.frontends.btcpp.scopes import Scopes
 from btlang.frontends.btcpp.spelling import MODEL, TO_4
 from btlang.text.source import Source, Span
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
@@ -35,6 +36,7 @@ class XmlFiles:
         self.problems: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
         self._read: set[str] = set()
+        self._includes: dict[str, list[str]] = {}  # by real path, that of each file, too
         self._kinds: dict[str, str] = {}  # of nodes, as models and tags declare them
         self._follows_includes = follows_includes
 
@@ -48,6 +50,11 @@ class XmlFiles:
     def models(self) -> dict[str, NodeModel]:
         """The models by the id of a node, those of the first file that has one."""
         return {node_id: model for file in reversed(self.files) for node_id, model in file.models.items()}
+
+    @property
+    def scopes(self) -> Scopes:
+        """What belongs together, once all files are added."""
+        return Scopes(self._includes)
 
     @property
     def names(self) -> dict[str, str]:
@@ -64,13 +71,18 @@ class XmlFiles:
         """The names of the trees that others use."""
         return {node.port("ID") for file in self.files for nodes in file.uses.values() for node in nodes}
 
-    def read_trees(self, models: Mapping[str, NodeModel]) -> None:
-        """Reads the trees of all sound files; in each, an ID means the file's own tree before others."""
+    def read_trees(
+        self,
+        models: Mapping[str, NodeModel],
+        own_names: Callable[[XmlFile], Mapping[str, str]] = lambda file: file.names,
+        own_models: Callable[[XmlFile], Mapping[str, NodeModel]] = lambda _: {},
+    ) -> None:
+        """Reads the trees of all sound files; in each, an ID means the file's own trees and models before others."""
         kinds = self._kinds = {node_id: model.kind for node_id, model in models.items() if model.kind != SUBTREE}
         names, defaults = self.names, subtree_defaults(models.values())
         for file in self._sound:
-            own = {head.id: head.name for head in file.heads}
-            file.read_trees({**names, **own}, kinds, defaults)
+            known = {**defaults, **subtree_defaults(own_models(file).values())}
+            file.read_trees({**names, **own_names(file)}, kinds, known)
             self.problems += file.problems
 
     def known_models(self) -> list[NodeModel]:
@@ -122,7 +134,7 @@ class XmlFiles:
         """Reads a file and what it includes; `within` are the files around it, its own last, `dialect` is theirs."""
         self._read.add(within[-1])
         try:
-            file = XmlFile(scanned(source), dialect)
+            file = XmlFile(scanned(source), dialect, within[-1])
         except MissionError as error:
             self.problems += error.diagnostics
             return
@@ -131,6 +143,7 @@ class XmlFiles:
         file.is_sound = not file.problems
         file.problems.clear()
         self.files.append(file)
+        self._includes[file.path] = []
         for attributes, span in file.includes if self._follows_includes else ():
             if "path" not in attributes:
                 self.problems.append(diagnostic("BT123", span, tag="include", attribute="path", advice=""))
@@ -139,14 +152,19 @@ class XmlFiles:
 
     def _include(self, attributes: dict[str, str], span: Span, within: tuple[str, ...], dialect: int) -> None:
         path, source = attributes["path"], span.source
-        if "ros_pkg" in attributes and source.roots:
-            folder = _package_folder(attributes["ros_pkg"])
+        package = attributes.get("ros_pkg")
+        _, real = included_path(path, source)
+        if (package or real not in self._sources) and (beside := self._in_sources(path, package or "")):
+            real = beside
+        elif package is not None and source.roots:
+            folder = _package_folder(package)
             if folder is None:
-                self._not_included(span, path=path, reason=_no_package(attributes["ros_pkg"]))
+                self._not_included(span, path=path, reason=_no_package(package))
                 return
             # an installed package may be included from anywhere
             source = Source("", folder=folder, hides_includes=source.hides_includes)
-        _, real = included_path(path, source)
+            _, real = included_path(path, source)
+        self._includes[within[-1]].append(real)
         if real in within:
             circle = " -> ".join(map(os.path.basename, (*within[within.index(real) :], real)))
             self._not_included(span, path=path, reason=f"it includes itself: {circle}")
@@ -167,6 +185,21 @@ class XmlFiles:
                 self._not_included(span, path=path, reason=dict(problem.arguments)["reason"])
                 return
             self._read_file(included, (*within, real), dialect)
+
+    def _in_sources(self, path: str, package: str) -> str:
+        """The one source that is installed at a path, in the folder of its package; "" if that isn't certain.
+
+        An installed file is included as `install/PACKAGE/share/PACKAGE/trees/dock.xml`, or by the path in its package.
+        """
+        folders = path.replace("\\", "/").split("/")
+        if not package and "share" in folders[:-2]:
+            share = len(folders) - 1 - folders[::-1].index("share")
+            package, folders = folders[share + 1], folders[share + 2 :]
+        if not package:
+            return ""
+        paths = {real: real.split(os.sep) for real in self._sources}
+        found = [real for real, parts in paths.items() if parts[-len(folders) :] == folders and package in parts]
+        return found[0] if len(found) == 1 else ""
 
     def _not_included(self, span: Span, *, path: str, reason: str) -> None:
         self.problems.append(diagnostic("BT128", span, path=path, reason=reason))

@@ -105,7 +105,7 @@ def kept_in(text: str) -> Kept:
         attributes = dict(part.attributes)
         if part.tag == MODEL:
             parts.append(part)
-            models += reader.read(at)
+            models += [model for _, model in reader.read(at)]
         elif part.tag == "BehaviorTree":
             name = attributes.pop("ID", "")
             trees[name] = tuple(attributes.items())

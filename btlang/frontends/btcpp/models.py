@@ -39,8 +39,8 @@ class ModelReader:
         self._document = document
         self._notes = notes
 
-    def read(self, index: int) -> Iterator[NodeModel]:
-        """The models in element `index`, a TreeNodesModel."""
+    def read(self, index: int) -> Iterator[tuple[int, NodeModel]]:
+        """The models in element `index`, a TreeNodesModel, each with its own element."""
         document = self._document
         for at in self._inner(index):
             tag = document.elements[at][0]
@@ -50,7 +50,7 @@ class ModelReader:
             elif not node_id.strip():
                 self._odd(at, f"This <{tag}>", "describes no node", "Give it the ID of one, or remove it.")
             else:
-                yield NodeModel(tag, node_id, tuple(self._ports(at)), self._description(at))
+                yield at, NodeModel(tag, node_id, tuple(self._ports(at)), self._description(at))
 
     def _ports(self, index: int) -> Iterator[PortModel]:
         for at in self._inner(index):

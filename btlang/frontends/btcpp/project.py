@@ -2,61 +2,179 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import os
+from collections.abc import Iterable, Iterator, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.files import XmlFiles, same_id
 from btlang.frontends.btcpp.reader import MAIN, empty_file, no_tree
+from btlang.frontends.btcpp.scopes import Scopes
 from btlang.frontends.btcpp.spelling import MAIN_TREE
 from btlang.record import Record
+from btlang.text.source import Span
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeVar
+
+    Defined = TypeVar("Defined")
 
 
 class XmlProject(Record):
     """The trees by name, their heads, the names of those that files start with, and the models by the id of a node.
 
-    `dialects` is that of each file. `unread` are the IDs of trees whose files have mistakes. `problems` are errors and
-    warnings of reading; where `is_round`, trees contain themselves.
+    Where files describe a node differently, `models` has the first model, `own_models` by the name of a file the ones
+    that are nearest to it, and `described` all of them, each with its place. `dialects` is that of each file. `unread`
+    are the IDs of trees whose files have mistakes. `problems` are errors and warnings of reading; where `is_round`,
+    trees contain themselves.
     """
 
     trees: dict[str, Node]
     heads: dict[str, TreeHead]
     mains: frozenset[str]
     models: dict[str, NodeModel]
+    own_models: dict[str, Mapping[str, NodeModel]]
+    described: dict[str, list[tuple[NodeModel, Span]]]
     dialects: dict[str, int]
     unread: frozenset[str]
     problems: tuple[Diagnostic, ...]
     is_round: bool = False
 
+    def model(self, node: Node, node_id: str = "") -> NodeModel | None:
+        """The model of a node, or of another id, that counts where the node is."""
+        node_id = node_id or node.id
+        own = self.own_models.get(node.span.source.name, {}) if node.span is not None else {}
+        return own.get(node_id) or self.models.get(node_id)
+
 
 def read_project(read: XmlFiles, palettes: XmlFiles, main: str = "") -> XmlProject:
     """The project of these files; of `palettes` only the models count, before those of the files.
 
-    A tree with the ID of one in another file is reported (BT127), unless both files start with them and no tree uses
-    them. `main` is the ID of a tree that must be there.
+    A file may use the trees and models of all others, the nearest first. A tree with the ID of another one is reported
+    (BT127) where a program has both, or where nothing decides which of them a file means. `main` is the ID of a tree
+    that must be there.
     """
     sound = [file for file in read.files if file.is_sound]
     unread = frozenset(head.written for file in read.files if not file.is_sound for head in file.heads)
-    heads, again = _named(sound)
+    heads = _named(sound)
     models = {**read.models, **palettes.models}
-    read.read_trees(models)
-    names, trees, used = read.names, read.trees, read.used
+    nearest = _Nearest(read, sound, palettes.models)
+    read.read_trees(models, nearest.names, nearest.models)
+    trees = read.trees
     circles = read.circles()
     problems = [*read.problems, *_once(read.warnings), *palettes.problems, *circles]
     problems += [empty_file(file) for file in sound if not (file.heads or file.models or file.includes)]
-    mains = frozenset(own for file in sound if (own := _main_of(file, names)) in trees)
-    for name, first in again.items():
-        if not {name, first} <= mains or not used.isdisjoint((name, first)):
-            problems.append(same_id(heads[name], heads[first]))
-    known = dict.fromkeys((*names, *trees, *unread))  # no set: they are listed
+    mains = {file.path: own for file in sound if (own := _main_of(file, read.names | nearest.names(file))) in trees}
+    for name, first in nearest.repeated(mains, read.used).items():
+        problems.append(same_id(heads[name], heads[first]))
+    known = dict.fromkeys((*read.names, *trees, *unread))  # no set: they are listed
     for file in sound:
         asked = main or file.attributes.get(MAIN, "")
         if asked and asked not in known:
             problems.append(no_tree(file.root_span, asked, known))
-    dialects = {file.document.source.name: file.dialect for file in read.files}
-    return XmlProject(trees, heads, mains, models, dialects, unread, tuple(problems), bool(circles))
+    described: dict[str, list[tuple[NodeModel, Span]]] = {}
+    for file in (*palettes.files, *read.files):
+        for node_id, model in file.models.items():
+            described.setdefault(node_id, []).append((model, file.model_span(node_id)))
+    return XmlProject(
+        trees,
+        heads,
+        frozenset(mains.values()),
+        models,
+        {file.document.source.name: nearest.models(file) for file in sound},
+        described,
+        {file.document.source.name: file.dialect for file in read.files},
+        unread,
+        tuple(problems),
+        bool(circles),
+    )
+
+
+class _Nearest:
+    """What each of the files means by an ID that several files define."""
+
+    def __init__(self, read: XmlFiles, files: list[XmlFile], palette: Mapping[str, NodeModel]) -> None:
+        self._scopes: Scopes = read.scopes
+        self._files = {file.path: file for file in files}
+        self._trees = _defined({file.path: file.names for file in files})
+        described = {file.path: file.models for file in read.files}
+        self._described = {
+            node_id: by_file
+            for node_id, by_file in _defined(described).items()
+            if node_id not in palette and any(model != next(iter(by_file.values())) for model in by_file.values())
+        }
+        self._names: dict[str, dict[str, str]] = {}
+        self._models: dict[str, dict[str, NodeModel]] = {}
+
+    def names(self, file: XmlFile) -> dict[str, str]:
+        """The names of the trees by such IDs, and of its own ones."""
+        if file.path not in self._names:
+            self._names[file.path] = {**self._near(file, self._trees), **file.names}
+        return self._names[file.path]
+
+    def models(self, file: XmlFile) -> Mapping[str, NodeModel]:
+        """The models of nodes that files describe differently, by id."""
+        if file.path not in self._models:
+            self._models[file.path] = self._near(file, self._described)
+        return self._models[file.path]
+
+    def _near(self, file: XmlFile, defined: Mapping[str, dict[str, Defined]]) -> dict[str, Defined]:
+        """What the nearest file says of each ID that is named in a file."""
+        if not defined:
+            return {}
+        named = {file.attributes.get(MAIN, "")}
+        for tag, flat, *_ in file.document.elements:
+            named.add(tag)
+            named.update(flat[1::2] if "ID" in flat else ())
+        return {each: by_file[self._scopes.nearest(file.path, by_file)[0]]
+                for each, by_file in defined.items() if each in named}  # fmt: skip
+
+    def repeated(self, mains: Mapping[str, str], used: set[str]) -> dict[str, str]:
+        """The names of trees that can be confused with an earlier one, each with the name of that.
+
+        Main trees of one program can't, unless they are used: they are run one by one.
+        """
+        found: dict[str, str] = {}
+        starts = set(mains.values())
+        for file in self._files.values():
+            own: dict[str, str] = {}
+            for head in file.heads:
+                first = own.setdefault(head.id, head.name)
+                if first != head.name:
+                    found[head.name] = first
+        for by_file in self._trees.values():
+            for at, (path, name) in enumerate(by_file.items()):
+                for earlier, first in list(by_file.items())[:at]:
+                    apart = {name, first} <= starts and used.isdisjoint((name, first))
+                    if not apart and self._scopes.are_together(path, earlier):
+                        found.setdefault(name, first)
+        for file in self._files.values():
+            for tree_id in self._foreign(file):
+                first, *others = self._scopes.nearest(file.path, by_file := self._trees[tree_id])
+                for path in others:
+                    # which of several folders is installed isn't known here
+                    if os.path.dirname(path) == os.path.dirname(first):
+                        found.setdefault(by_file[path], by_file[first])
+        return found
+
+    def _foreign(self, file: XmlFile) -> set[str]:
+        """The IDs in a file that mean a tree of another file, where several define it."""
+        names = {name: tree_id for tree_id, name in self.names(file).items() if tree_id not in file.names}
+        used = {node.port("ID") for nodes in file.uses.values() for node in nodes}
+        used.add(self.names(file).get(file.attributes.get(MAIN, ""), ""))
+        return {names[name] for name in used if name in names}
+
+
+def _defined(by_file: Mapping[str, Mapping[str, Defined]]) -> dict[str, dict[str, Defined]]:
+    """By ID, what each file says of it, where several files do."""
+    found: dict[str, dict[str, Defined]] = {}
+    for path, defined in by_file.items():
+        for each, value in defined.items():
+            found.setdefault(each, {})[path] = value
+    return {each: values for each, values in found.items() if len(values) > 1}
 
 
 def _once(warnings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
@@ -71,23 +189,19 @@ def _once(warnings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
         yield warning
 
 
-def _named(files: list[XmlFile]) -> tuple[dict[str, TreeHead], dict[str, str]]:
-    """The heads of all trees by unique names; and for those whose ID was taken, that ID by their new name."""
+def _named(files: list[XmlFile]) -> dict[str, TreeHead]:
+    """The heads of all trees by unique names."""
     heads: dict[str, TreeHead] = {}
-    again: dict[str, str] = {}
     for file in files:
         for at, head in enumerate(file.heads):
             name, number = head.name, 2
             while name in heads:
                 name, number = f"{head.name} ({number})", number + 1
-            if name != head.name and head.written:
-                again[name] = head.name
             heads[name] = file.heads[at] = head.replace(name=name)
-    return heads, again
+    return heads
 
 
 def _main_of(file: XmlFile, names: dict[str, str]) -> str:
     """The name of the tree that a file starts with, "" where it doesn't say."""
     written = file.attributes.get(MAIN, MAIN_TREE)
-    own = {head.written: head.name for head in file.heads}
-    return own.get(written) or (names.get(written, "") if MAIN in file.attributes else "")
+    return file.names.get(written) or (names.get(written, "") if MAIN in file.attributes else "")

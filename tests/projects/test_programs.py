@@ -1,0 +1,86 @@
+"""Folders with several programs: which trees and models belong together, and what models leave open."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.projects.trees import TREE, problems, write
+
+
+def test_programs_of_a_folder_may_define_one_id(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Each means its own tree, also where it includes a file that both share."""
+    shared = '<include path="shared.xml"/>'
+    write(tmp_path, "shared.xml", TREE.format("Rest", "<Wave/>"))
+    for name in ("one", "two"):
+        use = TREE.format(
+            f"Main {name}".replace(" ", ""), '<Sequence><SubTree ID="Dock"/><SubTree ID="Rest"/></Sequence>'
+        )
+        write(tmp_path, f"{name}.xml", shared, use, TREE.format("Dock", "<Nod/>"))
+    assert problems(capsys, str(tmp_path)) == []
+
+
+@pytest.mark.parametrize("joined", ["include", "project", "use", "main tree"])
+def test_a_program_defines_an_id_once(joined: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    one, two = TREE.format("Dock", "<Nod/>"), TREE.format("Dock", "<Wave/>")
+    write(tmp_path, "one.xml", '<include path="two.xml"/>' if joined == "include" else "", one)
+    write(tmp_path, "two.xml", two)
+    if joined == "project":
+        write(tmp_path, "all.btproj", '<include path="one.xml"/><include path="two.xml"/>')
+    elif joined == "use":
+        write(tmp_path, "three.xml", TREE.format("Main", '<SubTree ID="Dock"/>'))
+    elif joined == "main tree":
+        write(tmp_path, "three.xml", TREE.format("Rest", "<Wave/>"), attributes='main_tree_to_execute="Dock"')
+    found = problems(capsys, str(tmp_path))
+    assert [problem["code"] for problem in found if problem["severity"] == "error"] == ["BT127"]
+
+
+def test_a_use_means_the_nearest_tree_and_model(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The packages of a repository have trees and models of the same IDs."""
+    for package, port in (("arm", "pose"), ("base", "place")):
+        model = f'<Action ID="Move"><input_port name="{port}" type="double"/></Action>'
+        write(tmp_path, f"{package}/nodes.xml", models=model)
+        write(tmp_path, f"{package}/trees/part.xml", TREE.format("Dock", f'<Move {port}="1"/>'))
+        write(tmp_path, f"{package}/trees/main.xml", TREE.format("MainTree", '<SubTree ID="Dock"/>'))
+    assert problems(capsys, str(tmp_path)) == []
+    write(tmp_path, "arm/trees/part.xml", TREE.format("Dock", '<Move pose="up"/>'))
+    assert [problem["code"] for problem in problems(capsys, str(tmp_path))] == ["BT233"]
+
+
+def test_an_installed_file_is_the_one_in_its_package(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(tmp_path, "src/dock_trees/trees/dock.xml", TREE.format("Dock", "<Nod/>"))
+    for name, include in (
+        ("one", 'path="install/dock_trees/share/dock_trees/trees/dock.xml"'),
+        ("two", 'ros_pkg="dock_trees" path="trees/dock.xml"'),
+    ):
+        use = TREE.format("MainTree", '<SubTree ID="Dock"/>')
+        write(tmp_path, f"src/robot/{name}.xml", f"<include {include}/>", use)
+    assert problems(capsys, str(tmp_path)) == []
+    write(tmp_path, "src/robot/one.xml", '<include path="install/dock_trees/share/dock_trees/trees/none.xml"/>')
+    assert [problem["code"] for problem in problems(capsys, str(tmp_path))] == ["BT128"]
+
+
+def test_a_model_that_is_out_of_date_is_one_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    old, new = '<input_port name="speed"/>', '<input_port name="speed"/><input_port name="lane"/>'
+    model = '<Action ID="Drive">{}</Action>'
+    use = '<Drive speed="1" lane="2" gear="3"/>'
+    write(tmp_path, "a.xml", TREE.format("A", f"<Sequence>{use * 2}</Sequence>"), models=model.format(old))
+    write(tmp_path, "b.xml", TREE.format("B", '<Drive speed="1" lane="2"/>'), models=model.format(new))
+    [problem] = problems(capsys, str(tmp_path))
+    assert (problem["code"], Path(problem["file"]).name) == ("BT239", "a.xml")
+    assert "'lane', 'gear'" in problem["message"]
+    assert [Path(note["file"]).name for note in problem["notes"]] == ["a.xml", "a.xml", "b.xml"]
+    # a port that is misspelt as often as it is written stays a mistake of the nodes
+    use = '<Drive sped="1"/>'
+    write(tmp_path, "a.xml", TREE.format("A", f"<Sequence>{use * 2}</Sequence>"), models=model.format(old))
+    assert {problem["code"] for problem in problems(capsys, str(tmp_path))} == {"BT232"}
+
+
+def test_ports_that_are_left_out_are_optional(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    model = '<Action ID="Drive"><input_port name="speed"/><input_port name="lane"/></Action>'
+    uses = '<Drive speed="1"/><Drive speed="1"/><Drive lane="2"/>'
+    write(tmp_path, "a.xml", TREE.format("A", f"<Sequence>{uses}</Sequence>"), models=model)
+    assert [problem["message"] for problem in problems(capsys, str(tmp_path))] == [
+        "The port speed of Drive is missing."
+    ]
