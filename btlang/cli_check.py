@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -128,6 +129,7 @@ class _Check:
         from btlang.frontends.btcpp.files import XmlFiles
         from btlang.frontends.btcpp.project import read_project
         from btlang.projects.checking import project_problems
+        from btlang.projects.cpp_ports import CppSources
 
         options = self._options
         palettes, files = XmlFiles(), XmlFiles(sources)
@@ -136,4 +138,5 @@ class _Check:
         for source in sources:
             files.add(source)
         vocabulary = world_vocabulary(options.keywords, options.world, options.language)
-        return project_problems(read_project(files, palettes, options.main), vocabulary)
+        folders = [path for path in options.file or () if os.path.isdir(path)]
+        return project_problems(read_project(files, palettes, options.main), vocabulary, CppSources(folders))

@@ -13,10 +13,11 @@ from btlang.frontends.btcpp.project import XmlProject
 from btlang.passes import PASSES
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.allow import not_allowed
-from btlang.projects.ports import DescribedUses, port_problems, subtree_problems
+from btlang.projects.cpp_ports import CppSources
+from btlang.projects.ports import DescribedUses, misspelt_ports, port_problems, subtree_problems
 from btlang.projects.unknown import unknown_nodes
 from btlang.projects.unused import keys_read, unread_subtree_ports, unread_values, unused_trees
-from btlang.text.source import Span
+from btlang.text.source import NOWHERE, Span
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SEQUENCE, SUBTREE
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
@@ -24,11 +25,14 @@ from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
 
 
-def project_problems(project: XmlProject, vocabulary: Lexicon) -> list[Diagnostic]:
-    """Errors and warnings of all files, in order, without those that comments allow."""
+def project_problems(project: XmlProject, vocabulary: Lexicon, sources: CppSources) -> list[Diagnostic]:
+    """Errors and warnings of all files, in order, without those that comments allow.
+
+    The C++ sources are asked about nodes that models describe badly, or not at all.
+    """
     found = list(project.problems)
     if project.trees:
-        found += _Check(project, vocabulary).problems()
+        found += _Check(project, vocabulary, sources).problems()
     wrong = {_place(problem.span) for problem in found if problem.is_error and problem.code != "BT132"}
     return in_order(not_allowed(each for each in found if each.code != "BT132" or _place(each.span) not in wrong))
 
@@ -38,15 +42,19 @@ def _place(span: Span) -> tuple[str, int]:
 
 
 class _Check:
-    def __init__(self, project: XmlProject, vocabulary: Lexicon) -> None:
+    def __init__(self, project: XmlProject, vocabulary: Lexicon, sources: CppSources) -> None:
         self._project = project
+        self._sources = sources
         self._nodes = [node for root in project.trees.values() for node in Tree(root).walk()]
         elsewhere = self._ids_from_elsewhere(vocabulary)
         own = {id: known for id, known in vocabulary.entries.items() if id not in elsewhere}
         self._vocabulary = vocabulary.replaced(entries=own)
         self._words = vocabulary.entries.keys()
-        ids = {node.id for node in self._nodes} - project.models.keys()
-        self._described = {*CATALOGUE, *project.models, *nav2_models(ids)}
+        ids = {node.id for node in self._nodes} - project.models.keys() - CATALOGUE.keys()
+        self._nav2 = nav2_models(ids)
+        self._described = {*CATALOGUE, *project.models, *self._nav2}
+        if ids - self._described - self._words:
+            self._described.update(sources.models)
 
     def problems(self) -> Iterator[Diagnostic]:
         """Of the trees; only those of single nodes where trees contain themselves."""
@@ -86,14 +94,32 @@ class _Check:
                 if model is not None and model.kind == SUBTREE and self._dialect(node) == 4:
                     yield from subtree_problems(node, model)
             elif node.id not in CATALOGUE and node.id not in self._vocabulary.entries:
-                model = self._project.model(node)
+                model = self._project.model(node) or self._known(node.id)
                 if model is not None and model.kind != SUBTREE:
                     described.setdefault(id(model), (model, []))[1].append(node)
         for model, nodes in described.values():
-            models = self._project.described[model.id]
-            place = next(place for each, place in models if each is model)
-            others = tuple((each, where) for each, where in models if each is not model)
-            yield from port_problems(DescribedUses(model, place, tuple(nodes), others))
+            uses = DescribedUses(model, NOWHERE, tuple(nodes))
+            if model.id not in self._project.models:
+                yield from misspelt_ports(uses)
+            elif any(port_problems(uses)):
+                yield from port_problems(self._with_others(uses))
+
+    def _known(self, node_id: str) -> NodeModel | None:
+        """What is known of a node that no model of the project describes."""
+        known = self._nav2.get(node_id)
+        if known is None and node_id in self._described:
+            known, _ = self._sources.models[node_id]
+        return known
+
+    def _with_others(self, uses: DescribedUses) -> DescribedUses:
+        """With the other models of the same nodes, and what C++ says of them."""
+        models = self._project.described[uses.model.id]
+        place = next(place for each, place in models if each is uses.model)
+        others = [other for other in models if other[0] is not uses.model]
+        if uses.model.id in self._sources.models:
+            others.append(self._sources.models[uses.model.id])
+        made: DescribedUses = uses.replace(place=place, others=tuple(others))
+        return made
 
     def _dialect(self, node: Node) -> int:
         return self._project.dialects.get(node.span.source.name, 4) if node.span is not None else 4

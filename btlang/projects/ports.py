@@ -56,6 +56,13 @@ def port_problems(uses: DescribedUses) -> Iterator[Diagnostic]:
         yield _stale(uses, lacking)
 
 
+def misspelt_ports(uses: DescribedUses) -> Iterator[Diagnostic]:
+    """BT232 for ports that are surely misspelt, where the model may not list all ports."""
+    for problem in port_problems(uses):
+        if problem.code == "BT232" and problem.fix is not None:
+            yield problem
+
+
 def _is_no_port(name: str) -> bool:
     return name[:1] == "_" or name == "ID"
 

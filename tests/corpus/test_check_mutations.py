@@ -15,6 +15,7 @@ from btlang.frontends.btcpp.files import XmlFiles
 from btlang.frontends.btcpp.project import read_project
 from btlang.mission_vocabulary import world_vocabulary
 from btlang.projects.checking import project_problems
+from btlang.projects.cpp_ports import CppSources
 from btlang.text.source import Source
 from tests.corpus.test_mutations import mutated
 from tests.profiles import amount
@@ -48,7 +49,7 @@ def checked(source: Source) -> list[Diagnostic]:
     """What `btc check` says of one file."""
     files = XmlFiles([source])
     files.add(source)
-    return project_problems(read_project(files, XmlFiles()), world_vocabulary())
+    return project_problems(read_project(files, XmlFiles()), world_vocabulary(), CppSources())
 
 
 @pytest.mark.long

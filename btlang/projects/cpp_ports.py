@@ -1,0 +1,141 @@
+"""What C++ sources say of the ports of nodes: `providedPorts()`, and whether a node goes on without a port.
+
+A small reader of the usual forms. What is written in another way is left out, so what isn't found means nothing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import read_source
+from btlang.projects.files import files_below
+from btlang.text.source import Source, Span
+from btlang.tree.model import NodeModel, PortModel
+
+_ENDINGS = (".hpp", ".h", ".hh", ".hxx", ".cpp", ".cc", ".cxx")
+_TELLING = ("providedPorts", "providedBasicPorts", "getInput", "registerNodeType", "registerBuilder", "registerSimple",
+            "registerBehavior", "CreateRosNodePlugin")  # fmt: skip
+_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
+_CLASS = re.compile(
+    r"\b(?:class|struct)\s+(?:[A-Z_]+\s+)?(?P<name>\w+)\s*(?:final\s*)?"
+    r"(?::(?!:)\s*(?:(?:public|protected|private|virtual)\s+)*(?P<base>[\w:]+)[^;{()]{0,500})?\{"
+)
+_MEMBER = re.compile(r"^(?:\w[^\n;={}()]*?[\s*&>:])??(?P<name>\w+)(?:<\w+>)?::~?\w+\s*\(", re.MULTILINE)
+_PORT = re.compile(r"\b(Input|Output|Bidirectional)Port\s*(?:<([^;()\"]{0,300})>)?\s*\(\s*\"(\w+)\"")
+_DIRECTIONS = {"Input": "input", "Output": "output", "Bidirectional": "inout"}
+_READ = re.compile(r"\bgetInput\s*(?:<[^;()\"]{0,300}>)?\s*\(\s*\"(\w+)\"[^;\"]{0,300}?\)(?=(\s*;)?)")
+_FALLS_BACK = re.compile(r"\b(?:getInputOrBlackboard|deconflictPortAndParamFrame)\b[^;\"]{0,300}\"(\w+)\"")
+_UNUSED = re.compile(r"([{};]\s*|\bif\s*\(\s*)(?:[\w:]+(?:::|\.|->))?$")
+_MOST_BEFORE = 80  # characters of the text before a call
+_REGISTERED = re.compile(
+    r"\bregister\w*\s*<\s*(?P<class>[\w:]+)[^;(\"]{0,300}>\s*\(\s*(?:\w+\s*,\s*)?\"(?P<id>[^\"]+)\"|"
+    r"\bCreateRosNodePlugin\s*\(\s*(?P<plugin>[\w:]+)\s*,\s*\"(?P<plugin_id>[^\"]+)\"|"
+    r"\bregisterSimple\w+\s*\(\s*\"(?P<simple_id>[^\"]+)\""
+)
+
+
+class _Class:
+    """What all parts of a class say: `spared` are ports without which it goes on, `needed` others that it reads."""
+
+    def __init__(self, place: Span) -> None:
+        self.place = place
+        self.base = ""
+        self.ports: dict[str, PortModel] = {}
+        self.spared: set[str] = set()
+        self.needed: set[str] = set()
+
+    def read(self, text: str, start: int, end: int, place: Span) -> None:
+        """Adds what a part of the class says, which begins at a place."""
+        for port in _PORT.finditer(text, start, end):
+            direction, type, name = port.groups()
+            given = list(_arguments(text, port.end(), end))
+            default = given[0].strip('"') if len(given) > 1 else None
+            if not self.ports:
+                self.place = place
+            self.ports.setdefault(name, PortModel(name, _DIRECTIONS[direction], (type or "").strip(), default))
+        self.spared.update(match[1] for match in _FALLS_BACK.finditer(text, start, end))
+        for match in _READ.finditer(text, start, end):
+            before = _UNUSED.search(text, max(start - 1, match.start() - _MOST_BEFORE), match.start())
+            goes_on = before is not None and (before[1][0] == "i" or match[2] is not None)
+            (self.spared if goes_on else self.needed).add(match[1])
+
+
+class CppSources:
+    """The C++ sources in folders and below them, which are read when they are first asked for."""
+
+    def __init__(self, folders: Sequence[str] = ()) -> None:
+        self._folders = folders
+
+    @cached_property
+    def models(self) -> Mapping[str, tuple[NodeModel, Span]]:
+        """By the ids of nodes, their ports, and where their classes are. A port that may be left out has a default."""
+        classes: dict[str, _Class] = {}
+        registered: dict[str, tuple[str, Span]] = {}
+        for source in self._sources():
+            text = _COMMENT.sub(lambda match: match[0] if match[0][0] == '"' else " " * len(match[0]), source.text)
+            for match in _REGISTERED.finditer(text):
+                name, node_id = match["class"] or match["plugin"] or "", match["id"] or match["plugin_id"]
+                place = Span(source, match.start(), match.end())
+                registered[node_id or match["simple_id"]] = (name.rpartition(":")[2], place)
+            heads = sorted((*_CLASS.finditer(text), *_MEMBER.finditer(text)), key=lambda head: head.start())
+            ends = [head.start() for head in heads[1:]] + [len(text)]
+            for head, end in zip(heads, ends, strict=False):
+                place = Span(source, head.start(), head.end())
+                found = classes.setdefault(head["name"], _Class(place))
+                found.base = found.base or (head.groupdict().get("base") or "").rpartition(":")[2]
+                found.read(text, head.end(), end, place)
+        models = {}
+        for name, found in classes.items():
+            if found.ports:
+                registered.setdefault(name, (name, found.place))
+        for node_id, (name, place) in registered.items():
+            ports = tuple(_ports(name, classes))
+            models[node_id] = NodeModel("Action", node_id, ports), classes[name].place if name in classes else place
+        return models
+
+    def _sources(self) -> Iterator[Source]:
+        for folder in self._folders:
+            for path in files_below(folder, _ENDINGS):
+                try:
+                    source = read_source(path)
+                except MissionError:
+                    continue  # it isn't what the user asked about
+                if any(word in source.text for word in _TELLING):
+                    yield source
+
+
+def _ports(name: str, classes: Mapping[str, _Class]) -> Iterator[PortModel]:
+    """The ports of a class and its bases, without those that a nearer class has."""
+    line: list[_Class] = []
+    while name in classes and classes[name] not in line:
+        line.append(classes[name])
+        name = line[-1].base
+    spared = {port for each in line for port in each.spared} - {port for each in line for port in each.needed}
+    ports = {port.name: port for each in reversed(line) for port in each.ports.values()}
+    for port in ports.values():
+        yield port.replace(default="") if port.default is None and port.name in spared else port
+
+
+def _arguments(text: str, start: int, end: int) -> Iterator[str]:
+    """The further arguments of a call, behind the first one."""
+    depth, begin, at = 0, -1, start
+    while at < end:
+        letter = text[at]
+        if letter == '"':
+            closing = re.compile(r'(?:[^"\\]|\\.)*"').match(text, at + 1)
+            at = closing.end() if closing else end
+            continue
+        if letter in "([{":
+            depth += 1
+        elif letter in ")]}":
+            depth -= 1
+        if depth < 0 or (letter == "," and depth == 0):
+            if begin >= 0:
+                yield text[begin:at].strip()
+            if depth < 0:
+                return
+            begin = at + 1
+        at += 1
