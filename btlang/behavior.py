@@ -150,7 +150,7 @@ def built(
         if not isinstance(child, Behavior | str | Source | Node | Tree | Mission):
             _entry(child)
     for script in scripts:
-        if script not in PRE_CONDITIONS + POST_CONDITIONS and not kind.any_ports:
+        if script not in (*PRE_CONDITIONS, *POST_CONDITIONS) and not kind.any_ports:
             raise TypeError(f"{node_id} has no port {script!r}")
     return Behavior(node_id, own, _ports({**ports, **scripts}), name, span=calling_line())
 

@@ -27,7 +27,7 @@ from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.nodes.constants import skipped
 from btlang.engine.nodes.script_nodes import read_script
 from btlang.engine.script.script import truth
-from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED, SUCCESS
 from btlang.text.spelling import distance
 from btlang.tree.catalogue import POST_CONDITIONS, PRE_CONDITIONS, SUBTREE
 
@@ -39,12 +39,7 @@ if TYPE_CHECKING:
 
     Script: TypeAlias = Callable[[Blackboard], Any]
 
-_DECIDES = {
-    "_failureIf": (True, FAILURE),
-    "_successIf": (True, SUCCESS),
-    "_skipIf": (True, SKIPPED),
-    "_while": (False, SKIPPED),
-}  # in the order in which they are asked: the answer that decides, and what it decides
+_DECIDES = {port: (answer, NAMES.index(status)) for port, (answer, status) in PRE_CONDITIONS.items()}
 _NEAR = 2  # one letter, as `distance` counts
 
 

@@ -18,10 +18,16 @@ if TYPE_CHECKING:
 
 SEQUENCE, SUBTREE = "Sequence", "SubTree"
 """The ids that others than lowering have to make or know."""
-ON_SUCCESS, ON_FAILURE = "SUCCESS", "FAILURE"
+ON_SUCCESS, ON_FAILURE, ON_SKIPPED = "SUCCESS", "FAILURE", "SKIPPED"
 BEHAVIOR_TREE_CPP, NAV2, BTLANG = "BehaviorTree.CPP", "Nav2", "btlang"
 
-PRE_CONDITIONS = ("_failureIf", "_successIf", "_skipIf", "_while")
+PRE_CONDITIONS = {
+    "_failureIf": (True, ON_FAILURE),
+    "_successIf": (True, ON_SUCCESS),
+    "_skipIf": (True, ON_SKIPPED),
+    "_while": (False, ON_SKIPPED),
+}
+"""Scripts that every node may have, in the order in which they are asked: which answer decides, and the status then."""
 POST_CONDITIONS = ("_onSuccess", "_onFailure", "_onHalted", "_post")
 """Scripts in ports that every node may have."""
 SCRIPT, KEY = "script", "key"

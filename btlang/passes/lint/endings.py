@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
-from btlang.tree.catalogue import CATALOGUE, SUBTREE, NodeKind
+from btlang.tree.catalogue import CATALOGUE, PRE_CONDITIONS, SUBTREE, NodeKind
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -23,8 +23,25 @@ EITHER: Ends = SUCCESS | FAILURE
 
 def ends_of(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> Ends:
     """The ways in which a node can end, given those of its children and those of the defined names."""
-    if node.ports and node.port("_skipIf") == "true":
-        return SKIPPED
+    decided, may_start = _before(node) if node.ports else (0, True)
+    return decided | _ends(node, children, named) if may_start else decided
+
+
+def _before(node: Node) -> tuple[Ends, bool]:
+    """The endings that pre-conditions decide, and whether the node may start. `_while` also ends it once it runs."""
+    found = 0
+    for port, (answer, ending) in PRE_CONDITIONS.items():
+        text = node.port(port).strip()
+        always = {"true": True, "1": True, "false": False, "0": False}.get(text)
+        if not text or always is (not answer):
+            continue
+        found |= _NAMED[ending]
+        if always is answer:
+            return found, False
+    return found, True
+
+
+def _ends(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> Ends:
     if node.id == SUBTREE:
         return named.get(node.port("ID"), ANY)
     kind = CATALOGUE.get(node.id)
@@ -97,4 +114,4 @@ def _sum(names: Iterable[str]) -> Ends:
     return sum(_NAMED[name] for name in names)
 
 
-_NAMED = {"SUCCESS": SUCCESS, "FAILURE": FAILURE}
+_NAMED = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "SKIPPED": SKIPPED}
