@@ -266,6 +266,7 @@ _ALL = (
          "stale model"),
     Code("BT240", "There are no words for the node '{id}': {reason}.", "Missions say it by its id: do \"{id}\"", "warning",
          "node without words"),
+    Code("BT241", "Nothing sets '{key}', which the port {port} of {id} reads.", "", "warning", "unset value"),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from btlang.engine.instance import Compiled
 
 
+_ANY_VALUE = "{key}"
+"""What every port takes when the tree is compiled."""
+
+
 class UnknownNode(EngineError):
     """Neither a node of the engine nor bound to anything."""
 
@@ -68,14 +72,52 @@ def _wrong_with(node: Node, subtrees: dict[str, Node], state: EngineState) -> It
         if bound is None:
             yield UnknownNode(f"nothing is bound to {node.id}", node)
             return
-    standing_in: Compiled = (lambda: SUCCESS, halt_nothing)
-    count = 1 if node.id == SUBTREE else len(node.children)
     try:
         if node.id == SUBTREE:
             child_scope(node, Blackboard())
-        compile_node(NodeInstance(node, 0, None, 0, Blackboard(), state), [standing_in] * count)
     except EngineError as error:
         yield EngineError(error.message, node)
+        return
+    for message in _refusals(node, 1 if node.id == SUBTREE else len(node.children), state):
+        yield EngineError(message, node)
+
+
+def _refusals(node: Node, children: int, state: EngineState) -> list[str]:
+    """Why a node can't be compiled. Compiling stops at the first reason, so that is mended before it is tried again."""
+    found: list[str] = []
+    message = _refusal(node, children, state)
+    while message and message not in found:
+        found.append(message)
+        tried = [(node, children, _refusal(node, children, state)) for node, children in _mended(node, children)]
+        tried = [each for each in tried if each[2] not in found]
+        if not tried:
+            break
+        node, children, message = min(tried, key=lambda each: each[2] != "")
+    return found
+
+
+def _refusal(node: Node, children: int, state: EngineState) -> str:
+    """The first reason why a node can't be compiled, "" if there is none."""
+    standing_in: Compiled = (lambda: SUCCESS, halt_nothing)
+    try:
+        compile_node(NodeInstance(node, 0, None, 0, Blackboard(), state), [standing_in] * children)
+    except EngineError as error:
+        return error.message
+    return ""
+
+
+def _mended(node: Node, children: int) -> Iterator[tuple[Node, int]]:
+    """A built-in node with one change that may mend it: the number of children, or a port."""
+    kind = CATALOGUE.get(node.id)
+    if kind is None:
+        return
+    if not kind.least <= children <= kind.most:
+        yield node, kind.least
+    given = dict(node.ports)
+    for port in (*given, *kind.ports):
+        yield node.replace(ports=tuple({**given, port: _ANY_VALUE}.items())), children
+    for port in given:
+        yield node.replace(ports=tuple(pair for pair in node.ports if pair[0] != port)), children
 
 
 def _circles(uses: dict[str, list[Node]]) -> list[Node]:

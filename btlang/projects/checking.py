@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 
 from btlang.backends.checking import anything, bound, misnamed, tree_problems
@@ -14,7 +15,16 @@ from btlang.passes import PASSES
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.allow import not_allowed
 from btlang.projects.cpp_ports import CppSources
-from btlang.projects.ports import DescribedUses, misspelt_ports, port_problems, subtree_problems
+from btlang.projects.entries import conflicting_types, entries_of, unset_entries, unset_enums
+from btlang.projects.port_values import enum_names
+from btlang.projects.ports import (
+    DescribedUses,
+    constant_outputs,
+    misspelt_ports,
+    port_problems,
+    several_alone,
+    subtree_problems,
+)
 from btlang.projects.unknown import unknown_nodes
 from btlang.projects.unused import keys_read, unread_subtree_ports, unread_values, unused_trees
 from btlang.text.source import NOWHERE, Span
@@ -23,6 +33,8 @@ from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
+
+_OF_A_VALUE = re.compile(r"\w+ must be ")
 
 
 def project_problems(project: XmlProject, vocabulary: Lexicon, sources: CppSources) -> list[Diagnostic]:
@@ -33,8 +45,18 @@ def project_problems(project: XmlProject, vocabulary: Lexicon, sources: CppSourc
     found = list(project.problems)
     if project.trees:
         found += _Check(project, vocabulary, sources).problems()
-    wrong = {_place(problem.span) for problem in found if problem.is_error and problem.code != "BT132"}
-    return in_order(not_allowed(each for each in found if each.code != "BT132" or _place(each.span) not in wrong))
+    wrong: dict[tuple[str, int], set[str]] = {}
+    for problem in found:
+        if problem.is_error and problem.code != "BT132":
+            wrong.setdefault(_place(problem.span), set()).add(problem.code)
+    return in_order(not_allowed(each for each in found if not _follows(each, wrong.get(_place(each.span), set()))))
+
+
+def _follows(problem: Diagnostic, wrong: set[str]) -> bool:
+    """Whether the engine refuses a node only because of what other errors at its place say."""
+    if problem.code != "BT132" or not wrong:
+        return False
+    return wrong != {"BT014"} or _OF_A_VALUE.match(dict(problem.arguments)["reason"]) is not None
 
 
 def _place(span: Span) -> tuple[str, int]:
@@ -65,6 +87,7 @@ class _Check:
         if self._project.is_round:
             return
         yield from unread_subtree_ports(self._nodes, self._project.trees)
+        yield from self._wrong_entries()
         yield from self._faults()
         compilation = Compilation(self._vocabulary, tree=self._whole(self._project.trees))
         for one in PASSES:
@@ -93,9 +116,14 @@ class _Check:
                 model = self._project.model(node, node.port("ID"))
                 if model is not None and model.kind == SUBTREE and self._dialect(node) == 4:
                     yield from subtree_problems(node, model)
-            elif node.id not in CATALOGUE and node.id not in self._vocabulary.entries:
-                model = self._project.model(node) or self._known(node.id)
+            elif node.id in CATALOGUE:
+                if self._dialect(node) == 4:
+                    yield from several_alone(node)
+            elif node.id not in self._vocabulary.entries:
+                model = self._model(node)
                 if model is not None and model.kind != SUBTREE:
+                    if self._dialect(node) == 4:
+                        yield from constant_outputs(node, model)
                     described.setdefault(id(model), (model, []))[1].append(node)
         for model, nodes in described.values():
             uses = DescribedUses(model, NOWHERE, tuple(nodes))
@@ -103,6 +131,20 @@ class _Check:
                 yield from misspelt_ports(uses)
             elif any(port_problems(uses)):
                 yield from port_problems(self._with_others(uses))
+
+    def _wrong_entries(self) -> Iterator[Diagnostic]:
+        entries = {name: entries_of(root, self._model) for name, root in self._project.trees.items()}
+        yield from unset_entries(entries, self._project.mains)
+        if any(use.may_be_enum for each in entries.values() for use in each.uses):
+            types = {port.type for model in self._project.models.values() for port in model.ports}
+            registered, are_all = self._sources.enums
+            described = {name for type in types for name in enum_names(type)}
+            yield from unset_enums(entries, registered | described, are_all)
+        older = {name for name, dialect in self._project.dialects.items() if dialect == 3}
+        yield from conflicting_types(entries, older)
+
+    def _model(self, node: Node) -> NodeModel | None:
+        return self._project.model(node) or self._known(node.id)
 
     def _known(self, node_id: str) -> NodeModel | None:
         """What is known of a node that no model of the project describes."""

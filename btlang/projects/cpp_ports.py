@@ -17,7 +17,7 @@ from btlang.tree.model import NodeModel, PortModel
 
 _ENDINGS = (".hpp", ".h", ".hh", ".hxx", ".cpp", ".cc", ".cxx")
 _TELLING = ("providedPorts", "providedBasicPorts", "getInput", "registerNodeType", "registerBuilder", "registerSimple",
-            "registerBehavior", "CreateRosNodePlugin")  # fmt: skip
+            "registerBehavior", "registerScriptingEnum", "CreateRosNodePlugin")  # fmt: skip
 _COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 _CLASS = re.compile(
     r"\b(?:class|struct)\s+(?:[A-Z_]+\s+)?(?P<name>\w+)\s*(?:final\s*)?"
@@ -35,6 +35,10 @@ _REGISTERED = re.compile(
     r"\bCreateRosNodePlugin\s*\(\s*(?P<plugin>[\w:]+)\s*,\s*\"(?P<plugin_id>[^\"]+)\"|"
     r"\bregisterSimple\w+\s*\(\s*\"(?P<simple_id>[^\"]+)\""
 )
+
+_REGISTERING = "registerScriptingEnum"
+_ENUM = re.compile(r"registerScriptingEnum\s*\(\s*\"(\w+)\"")
+_ENUMS = re.compile(r"registerScriptingEnums\b|registerScriptingEnum\s*\(\s*[^\s\"]")
 
 
 class _Class:
@@ -68,6 +72,17 @@ class CppSources:
 
     def __init__(self, folders: Sequence[str] = ()) -> None:
         self._folders = folders
+        self._registering_enums: list[str] = []
+
+    @cached_property
+    def enums(self) -> tuple[frozenset[str], bool]:
+        """The names of enums that scripts may use, and whether these are all: a type may be registered as a whole."""
+        names: set[str] = set()
+        is_complete = bool(self.models)
+        for text in self._registering_enums:
+            names.update(match[1] for match in _ENUM.finditer(text))
+            is_complete = is_complete and _ENUMS.search(text) is None
+        return frozenset(names), is_complete
 
     @cached_property
     def models(self) -> Mapping[str, tuple[NodeModel, Span]]:
@@ -76,6 +91,8 @@ class CppSources:
         registered: dict[str, tuple[str, Span]] = {}
         for source in self._sources():
             text = _COMMENT.sub(lambda match: match[0] if match[0][0] == '"' else " " * len(match[0]), source.text)
+            if _REGISTERING in text:
+                self._registering_enums.append(text)
             for match in _REGISTERED.finditer(text):
                 name, node_id = match["class"] or match["plugin"] or "", match["id"] or match["plugin_id"]
                 place = Span(source, match.start(), match.end())

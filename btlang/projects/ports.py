@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.engine.instance import blackboard_key
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
 from btlang.projects.places import attribute_name, attribute_value, place_of
 from btlang.projects.port_values import wanted
 from btlang.record import Record
 from btlang.text.source import NOWHERE, Span
 from btlang.text.spelling import is_misspelling, nearest
-from btlang.tree.catalogue import SUBTREE
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node
 
@@ -138,3 +139,22 @@ def subtree_problems(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
         if not port.default and port.name[:1] != "_" and not any(key == port.name for key, _ in node.ports):
             reason = f"the model of {model.id} requires the port {port.name}"
             yield diagnostic("BT132", place_of(node), id=SUBTREE, reason=reason)
+
+
+def constant_outputs(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
+    """BT233 for outputs that name no entry: BehaviorTree.CPP 4 writes them nowhere, but version 3 needs no braces."""
+    outputs = {port.name for port in model.ports if port.direction == "output"}
+    for name, text in node.ports:
+        if name in outputs and text.strip() not in ("", "=") and blackboard_key(name, text) is None:
+            place = attribute_value(node, name)
+            fix = (place, f"{{{text}}}") if text.isidentifier() else None
+            yield diagnostic("BT233", place, (), fix, text=text, port=name, id=node.id, wanted="an entry such as {key}")
+
+
+def several_alone(node: Node) -> Iterator[Diagnostic]:
+    """BT132 for a second child of a kind of which BehaviorTree.CPP 4.10 takes only one there."""
+    alone = [child for child in node.children if child.id in CATALOGUE and CATALOGUE[child.id].alone_in == node.id]
+    if len(alone) > 1:
+        notes = tuple((place_of(child), f"{child.id} is asynchronous") for child in alone)
+        reason = f"BehaviorTree.CPP 4.10 refuses more than one {alone[0].id} in it"
+        yield diagnostic("BT132", place_of(node), notes, None, id=node.id, reason=reason)

@@ -75,6 +75,7 @@ class NodeKind(Record):
     - `skipped`: which children must be SKIPPED for it to be: "any", "all", "first", "last", "tried" (all but the
       last), "branch" (any but the first) or "never".
     - `keeps_completed`: it does not reset a child that has completed.
+    - `alone_in`: the node in which BehaviorTree.CPP takes only one child of this kind, "" if there is none.
     - `symbol`: for drawings; `origin`: the library that has it; `text`: what it does, where that library isn't at hand.
     - `tags_3`: its tags in version 3 of BehaviorTree.CPP, the one to write first, () where it has no such node;
       `is_common_name`: users of version 3 have their own nodes by this name, so that it doesn't show the version.
@@ -102,6 +103,7 @@ class NodeKind(Record):
     ends: tuple[str, ...] = ()
     skipped: str = "any"
     keeps_completed: bool = False
+    alone_in: str = ""
     symbol: str = ""
     origin: str = BEHAVIOR_TREE_CPP
     text: str = ""
@@ -153,7 +155,7 @@ CATALOGUE: dict[str, NodeKind] = {
     kind.id: kind
     for kind in (
         _control(SEQUENCE, waits=True, tags_3=("Sequence",), **_IN_ORDER),
-        _control("AsyncSequence", waits=True, **_IN_ORDER),
+        _control("AsyncSequence", waits=True, alone_in="ReactiveSequence", **_IN_ORDER),
         _control("SequenceWithMemory", waits=True, tags_3=("SequenceStar",), **_IN_ORDER),
         _control("ReactiveSequence", reactive=True, interrupts=True, tags_3=("ReactiveSequence",), **_IN_ORDER),
         _control("PipelineSequence", origin=NAV2, keeps_completed=True, **_IN_ORDER),

@@ -12,16 +12,21 @@ _WORD = re.compile(r"[^\W\d]\w*")
 
 def uses_of_names(code: str) -> dict[str, set[str]]:
     """READS, SETS or both by name, enums too, in the order of the code; of what is no script each word is read."""
-    found: dict[str, set[str]] = {}
     try:
-        tokens = Tokens(code)
-        while tokens.kind != "end":
-            name = tokens.text if tokens.kind == "name" and tokens.text not in BOOLEANS else ""
-            tokens.advance()
-            if name:
-                found.setdefault(name, set()).update(_uses(tokens.sign))
+        return uses_in_script(code)
     except ScriptError:
         return {word: {READS} for word in _WORD.findall(code)}
+
+
+def uses_in_script(code: str) -> dict[str, set[str]]:
+    """READS, SETS or both by name, enums too, in the order of the code. May raise ScriptError if it is no script."""
+    found: dict[str, set[str]] = {}
+    tokens = Tokens(code)
+    while tokens.kind != "end":
+        name = tokens.text if tokens.kind == "name" and tokens.text not in BOOLEANS else ""
+        tokens.advance()
+        if name:
+            found.setdefault(name, set()).update(_uses(tokens.sign))
     return found
 
 

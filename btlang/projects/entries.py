@@ -1,0 +1,184 @@
+"""Entries of blackboards: those that nothing sets (BT241), and those that two ports give different types (BT132)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.engine.instance import blackboard_key
+from btlang.engine.script.names import READS, SETS, uses_in_script
+from btlang.engine.script.tokens import ScriptError
+from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
+from btlang.projects.places import attribute_value, place_of
+from btlang.record import Record
+from btlang.text.source import Span
+from btlang.text.spelling import is_misspelling, nearest
+from btlang.tree.catalogue import CATALOGUE, SCRIPT, SUBTREE, held
+from btlang.tree.model import NodeModel
+from btlang.tree.node import Node, Tree
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    ModelOf: TypeAlias = Callable[[Node], NodeModel | None]
+
+_WORD = re.compile(r"[^\W\d]\w*")
+_ENUM = re.compile(r"[A-Z][A-Z0-9_]+")
+_SAME = {"int32_t": "int", "unsigned": "unsigned int", "uint32_t": "unsigned int", "string": "std::string"}
+_SCALARS = ("bool", "double", "float", "int", "unsigned int", "int8_t", "int16_t", "uint8_t", "uint16_t")
+_TEXT = "std::string"
+_MESSAGE = re.compile(r"\w+::msg::\w+")
+_MOST_PLACES = 3
+_ISOLATED = "Give it to the SubTree, or set it in this tree, which sees no other entries."
+
+
+class EntryUse(Record):
+    """An entry that a port or script of a node names: what it may do with it, and its type, "" if that isn't known."""
+
+    node: Node
+    port: str
+    key: str
+    reads: bool = True
+    sets: bool = True
+    type: str = ""
+
+    @property
+    def may_be_enum(self) -> bool:
+        """Whether a script reads what may be the name of an enum, such as RED."""
+        return not self.sets and held(self.node.id, self.port) == SCRIPT and _ENUM.fullmatch(self.key) is not None
+
+
+class TreeEntries(Record):
+    """The entries that a tree names, in the order in which its nodes are made, and its SubTree nodes."""
+
+    uses: tuple[EntryUse, ...]
+    subtrees: tuple[Node, ...]
+
+    @property
+    def shares(self) -> bool:
+        """Whether another tree sees its entries by their own names."""
+        return any(node.port(AUTOREMAP) in TRUE for node in self.subtrees)
+
+
+def entries_of(root: Node, model_of: ModelOf) -> TreeEntries:
+    """What a tree says of its blackboard; a port of which nothing is known may read and set an entry."""
+    uses: list[EntryUse] = []
+    subtrees: list[Node] = []
+    for node in Tree(root).walk():
+        if node.id == SUBTREE:
+            subtrees.append(node)
+        for port, text in node.ports:
+            if held(node.id, port) == SCRIPT:
+                uses += _script_uses(node, port, text)
+            elif (key := blackboard_key(port, text)) is not None:
+                uses.append(_port_use(node, port, key, model_of))
+            elif _WORD.fullmatch(text) and (use := _port_use(node, port, text, model_of)).sets:
+                uses.append(use.replace(reads=False))  # in version 3, an output names its entry without braces
+    return TreeEntries(tuple(use for use in uses if use.key[:1] != "@"), tuple(subtrees))
+
+
+def _script_uses(node: Node, port: str, code: str) -> list[EntryUse]:
+    """Nothing of what is no script, which is reported elsewhere, or is in an entry itself."""
+    try:
+        uses = {} if blackboard_key(port, code) is not None else uses_in_script(code)
+    except ScriptError:
+        return []
+    return [EntryUse(node, port, name, READS in how, SETS in how) for name, how in uses.items()]
+
+
+def _port_use(node: Node, port: str, key: str, model_of: ModelOf) -> EntryUse:
+    kind = CATALOGUE.get(node.id)
+    if kind is not None:
+        known = kind.ports.get(port)
+        if known is None:
+            return EntryUse(node, port, key)
+        return EntryUse(node, port, key, not known.holds, known.holds != "" or known.direction != "input", known.type)
+    model = model_of(node)
+    for each in model.ports if model is not None else ():
+        if each.name == port:
+            return EntryUse(node, port, key, each.direction != "output", each.direction != "input", each.type)
+    return EntryUse(node, port, key)
+
+
+def unset_entries(entries: Mapping[str, TreeEntries], mains: Collection[str]) -> Iterator[Diagnostic]:
+    """BT241 for what a tree with a blackboard of its own reads, if neither it nor a SubTree node sets that."""
+    users: dict[str, list[Node]] = {}
+    for each in entries.values():
+        for node in each.subtrees:
+            users.setdefault(node.port("ID"), []).append(node)
+    for name, nodes in users.items():
+        if name not in entries or name in mains or any(node.port(AUTOREMAP) in TRUE for node in nodes):
+            continue
+        if not entries[name].shares:
+            yield from _unset(entries[name].uses, nodes)
+
+
+def _unset(uses: Sequence[EntryUse], users: Iterable[Node]) -> Iterator[Diagnostic]:
+    done = {use.key for use in uses if use.sets}
+    for use in uses:
+        if use.key in done or use.may_be_enum:
+            continue
+        done.add(use.key)
+        lacking = [node for node in users if all(port != use.key for port, _ in node.ports)]
+        if lacking:
+            notes = tuple((place_of(node), "this SubTree doesn't give it") for node in lacking[:_MOST_PLACES])
+            yield _nothing_sets(use, _ISOLATED, notes)
+
+
+def unset_enums(entries: Mapping[str, TreeEntries], enums: Collection[str], are_all: bool) -> Iterator[Diagnostic]:
+    """BT241 for names such as RED in scripts, unless an entry has that name or it is one of `enums`.
+
+    If these may not be all, only for misspelt ones.
+    """
+    known = {*enums, *(use.key for each in entries.values() for use in each.uses if not use.may_be_enum)}
+    known.update(port for each in entries.values() for node in each.subtrees for port, _ in node.ports)
+    for use in (use for each in entries.values() for use in each.uses):
+        if use.may_be_enum and use.key not in known:
+            near = [name for name in nearest(use.key.lower(), enums) if is_misspelling(use.key, name, ())]
+            if near or are_all:
+                yield _nothing_sets(
+                    use, f"Similar: {', '.join(near)}" if near else "If it is an enum, register it in C++."
+                )
+
+
+def _nothing_sets(use: EntryUse, help: str, notes: tuple[tuple[Span, str], ...] = ()) -> Diagnostic:
+    place = attribute_value(use.node, use.port)
+    return diagnostic("BT241", place, notes, None, key=use.key, port=use.port, id=use.node.id, help=help)
+
+
+def conflicting_types(entries: Mapping[str, TreeEntries], older: Collection[str]) -> Iterator[Diagnostic]:
+    """BT132 for ports whose entry has another type since an earlier port, as BehaviorTree.CPP 4 refuses them.
+
+    Entries that another tree may see are left out, as they may have their type from there; so are files of version 3.
+    """
+    outside: dict[str, set[str]] = {}
+    shared: set[str] = set()
+    for each in entries.values():
+        for node in each.subtrees:
+            outside.setdefault(node.port("ID"), set()).update(port for port, _ in node.ports)
+            if node.port(AUTOREMAP) in TRUE:
+                shared.add(node.port("ID"))
+    for name, each in entries.items():
+        if each.shares or name in shared:
+            continue
+        first: dict[str, EntryUse] = {}
+        for use in each.uses:
+            if use.key in outside.get(name, ()) or held(use.node.id, use.port) == SCRIPT:
+                continue
+            before = first.setdefault(use.key, use)
+            if place_of(use.node).source.name not in older and _differ(before.type, use.type):
+                reason = f"'{use.key}' is of type {before.type}, and its port {use.port} is of type {use.type}"
+                notes = ((attribute_value(before.node, before.port), f"here '{use.key}' gets its type"),)
+                yield diagnostic(
+                    "BT132", attribute_value(use.node, use.port), notes, None, id=use.node.id, reason=reason
+                )
+
+
+def _differ(first: str, later: str) -> bool:
+    """Whether two types surely differ, the first of which isn't a text, from which everything can be read."""
+    first, later = _SAME.get(first, first), _SAME.get(later, later)
+    if first == later or not (first in _SCALARS or _MESSAGE.fullmatch(first)):
+        return False
+    return later in _SCALARS or (first in _SCALARS and (later == _TEXT or _MESSAGE.fullmatch(later) is not None))

@@ -1,0 +1,137 @@
+"""What `btc check` says of entries of blackboards, of outputs, and of all that is wrong with one tag."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.projects.trees import TREE, problems, write
+
+MODELS = """
+<Action ID="Find"><output_port name="at" type="geometry_msgs::msg::Pose"/>
+  <output_port name="count" type="int"/></Action>
+<Action ID="Move"><input_port name="to" type="geometry_msgs::msg::Pose"/></Action>
+<Action ID="Spin"><input_port name="speed" type="double"/><input_port name="times" type="int32_t"/></Action>
+<Action ID="Log"><input_port name="text" type="std::string"/></Action>
+<Action ID="Paint"><input_port name="color" type="RED|GREEN"/></Action>
+"""
+
+
+def found(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], *trees: str, code: str = "", models: str = MODELS
+) -> list[str]:
+    """The messages with a code, of trees of which the first is the main one."""
+    named = [TREE.format(f"T{at}", f"<Sequence>{tree}</Sequence>") for at, tree in enumerate(trees)]
+    write(tmp_path, "trees.xml", *named, models=models, attributes='main_tree_to_execute="T0"')
+    return [problem["message"] for problem in problems(capsys, str(tmp_path)) if problem["code"] == code]
+
+
+@pytest.mark.parametrize(
+    ("use", "tree", "unset"),
+    [
+        ('<SubTree ID="T1"/>', '<Move to="{goal}"/>', "goal"),
+        ('<SubTree ID="T1"/>', '<Sleep msec="{goal}"/>', "goal"),
+        ('<SubTree ID="T1"/>', '<ScriptCondition code="goal &gt; 3"/>', "goal"),
+        ('<SubTree ID="T1" goal="{x}"/><SubTree ID="T1"/>', '<Move to="{goal}"/>', "goal"),
+        ('<SubTree ID="T1" goal="{x}"/>', '<Move to="{goal}"/>', ""),
+        ('<SubTree ID="T1" _autoremap="true"/>', '<Move to="{goal}"/>', ""),
+        ('<SubTree ID="T1"/>', '<Find at="{goal}"/><Move to="{goal}"/>', ""),
+        ('<SubTree ID="T1"/>', '<Nobody to="{goal}"/><Move to="{goal}"/>', ""),
+        ('<SubTree ID="T1"/>', '<Script code="goal := 1"/><Move to="{goal}"/>', ""),
+        ('<SubTree ID="T1"/>', '<SetBlackboard output_key="goal" value="1"/><Move to="{goal}"/>', ""),
+        ('<SubTree ID="T1"/>', '<SubTree ID="T2" out="{goal}"/><Move to="{goal}"/>', ""),
+        ('<SubTree ID="T1"/>', '<SubTree ID="T2" _autoremap="true"/><Move to="{goal}"/>', ""),
+        ('<SubTree ID="T1"/>', '<Move to="{@goal}"/>', ""),
+        ('<SubTree ID="T1"/>', '<Log text="at {goal}"/>', ""),
+    ],
+)
+def test_entries_of_subtrees_that_nothing_sets(
+    use: str, tree: str, unset: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """An unknown port may set an entry, and from outside only a main tree can be given one."""
+    messages = found(tmp_path, capsys, use + '<Move to="{from_outside}"/>', tree, '<Log text="x"/>', code="BT241")
+    assert [message.split("'")[1] for message in messages] == ([unset] if unset else [])
+
+
+def test_version_3_names_outputs_without_braces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main = TREE.format("MainTree", '<SubTree ID="Go"/>')
+    inner = TREE.format("Go", '<Sequence><Action ID="Find" at="goal"/><Action ID="Move" to="{goal}"/></Sequence>')
+    text = f"<root>{main}{inner}<TreeNodesModel>{MODELS}</TreeNodesModel></root>"
+    (tmp_path / "old.xml").write_text(text, "utf-8")
+    assert problems(capsys, str(tmp_path)) == []
+
+
+def test_outputs_are_entries(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tree = '<Find at="goal" count="${n}"/><Find at="{goal}" count=""/><Find at="{=}" count="{n}"/>'
+    assert found(tmp_path, capsys, tree, code="BT233") == [
+        "'goal' can't be the port at of Find: an entry such as {key} is needed.",
+        "'${n}' can't be the port count of Find: an entry such as {key} is needed.",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("tree", "types"),
+    [
+        ('<Find count="{n}"/><Spin speed="{n}"/>', "int, and its port speed is of type double"),
+        ('<Find at="{n}"/><Spin times="{n}"/>', "geometry_msgs::msg::Pose, and its port times is of type int32_t"),
+        ('<Find count="{n}"/><Log text="{n}"/>', "int, and its port text is of type std::string"),
+        ('<Repeat num_cycles="{n}"><Spin speed="{n}"/></Repeat>', "int, and its port speed is of type double"),
+        ('<Find count="{n}"/><Spin times="{n}"/>', ""),  # one type with two names
+        ('<Log text="{n}"/><Spin speed="{n}"/>', ""),  # a text can be read as anything
+        ('<Nobody n="{n}"/><Find count="{n}"/><Spin speed="{n}"/>', ""),  # the first type isn't known
+        ('<SetBlackboard output_key="n" value="1"/><Find count="{n}"/><Spin speed="{n}"/>', ""),
+        ('<SubTree ID="T1" x="{n}"/><Find count="{n}"/><Spin speed="{n}"/>', ""),
+        ('<Find count="{n}"/><Paint color="{n}"/>', ""),
+    ],
+)
+def test_two_types_of_an_entry(tree: str, types: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    messages = found(tmp_path, capsys, tree, '<Log text="{x}"/>', code="BT132")
+    assert [message.partition("'n' is of type ")[2] for message in messages] == ([f"{types}."] if types else [])
+
+
+def test_only_one_asynchronous_sequence_in_a_reactive_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    part = '<AsyncSequence><Log text="x"/></AsyncSequence>'
+    trees = f"<ReactiveSequence>{part * 2}</ReactiveSequence><ReactiveSequence>{part}</ReactiveSequence>{part}{part}"
+    [message] = found(tmp_path, capsys, trees, code="BT132")
+    assert "BehaviorTree.CPP 4.10 refuses more than one AsyncSequence in it" in message
+
+
+SCRIPTS = '<Script code="color := RED; other := GREN; third := BLUE"/><Log text="{color}{other}{third}"/>'
+
+
+@pytest.mark.parametrize(
+    ("source", "unset"),
+    [
+        ("", ["GREN"]),
+        ('factory.registerNodeType<Log>("Log");', ["BLUE", "GREN"]),
+        ('factory.registerNodeType<Log>("Log"); factory.registerScriptingEnum("BLUE", 3);', ["GREN"]),
+        ('factory.registerNodeType<Log>("Log"); factory.registerScriptingEnums<Color>();', ["GREN"]),
+    ],
+)
+def test_names_of_enums_in_scripts(
+    source: str, unset: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """They are known by the types of ports and by C++; what C++ doesn't show is only reported if it is misspelt."""
+    (tmp_path / "main.cpp").write_text(source, "utf-8")
+    messages = found(tmp_path, capsys, SCRIPTS, code="BT241")
+    assert sorted(message.split("'")[1] for message in messages) == unset
+
+
+def test_all_that_is_wrong_with_a_tag(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    trees = '<Timeout timeout_ms="3"/><Parallel success_count="9" failure_count="x" fast="1"><Log text="x"/></Parallel>'
+    reasons = [message.partition("like this: ")[2] for message in found(tmp_path, capsys, trees, code="BT132")]
+    assert sorted(reasons) == [
+        "Parallel takes no port fast.",
+        "Timeout has 0 children instead of 1.",
+        "Timeout needs a port msec.",
+        "Timeout takes no port timeout_ms.",
+        "failure_count must be a whole number from -2 to 1, not 'x'.",
+        "success_count must be a whole number from -2 to 1, not '9'.",
+    ]
+
+
+def test_a_wrong_number_hides_no_other_mistake(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tree = '<Repeat num_cycles="x" times="3"><Log text="x"/></Repeat>'
+    write(tmp_path, "tree.xml", TREE.format("Main", tree), models=MODELS)
+    assert [problem["code"] for problem in problems(capsys, str(tmp_path))] == ["BT014", "BT132"]
