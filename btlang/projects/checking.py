@@ -29,7 +29,7 @@ from btlang.projects.unknown import unknown_nodes
 from btlang.projects.unused import keys_read, unread_subtree_ports, unread_values, unused_trees
 from btlang.text.source import NOWHERE, Span
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SEQUENCE, SUBTREE
-from btlang.tree.model import NodeModel
+from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
@@ -67,6 +67,8 @@ class _Check:
     def __init__(self, project: XmlProject, vocabulary: Lexicon, sources: CppSources) -> None:
         self._project = project
         self._sources = sources
+        self._outputs_of_models: dict[int, frozenset[str]] = {}
+        self._ports_of_models: dict[int, dict[str, PortModel]] = {}
         self._nodes = [node for root in project.trees.values() for node in Tree(root).walk()]
         elsewhere = self._ids_from_elsewhere(vocabulary)
         own = {id: known for id, known in vocabulary.entries.items() if id not in elsewhere}
@@ -83,7 +85,7 @@ class _Check:
         yield from unknown_nodes(self._nodes, self._described, self._words, self._project.dialects)
         yield from self._wrong_ports()
         yield from unused_trees(self._project)
-        yield from unread_values(self._nodes, self._project, keys_read(self._nodes, self._project))
+        yield from unread_values(self._nodes, self._outputs, keys_read(self._nodes, self._outputs))
         if self._project.is_round:
             return
         yield from unread_subtree_ports(self._nodes, self._project.trees)
@@ -133,15 +135,36 @@ class _Check:
                 yield from port_problems(self._with_others(uses))
 
     def _wrong_entries(self) -> Iterator[Diagnostic]:
-        entries = {name: entries_of(root, self._model) for name, root in self._project.trees.items()}
+        older = {name for name, dialect in self._project.dialects.items() if dialect == 3}
+        entries = {name: entries_of(root, self._ports, older) for name, root in self._project.trees.items()}
         yield from unset_entries(entries, self._project.mains)
         if any(use.may_be_enum for each in entries.values() for use in each.uses):
             types = {port.type for model in self._project.models.values() for port in model.ports}
             registered, are_all = self._sources.enums
             described = {name for type in types for name in enum_names(type)}
             yield from unset_enums(entries, registered | described, are_all)
-        older = {name for name, dialect in self._project.dialects.items() if dialect == 3}
         yield from conflicting_types(entries, older)
+
+    def _ports(self, node: Node) -> Mapping[str, PortModel]:
+        """The ports of a node by name, as far as they are known."""
+        model = self._model(node)
+        if model is None:
+            return {}
+        ports = self._ports_of_models.get(id(model))
+        if ports is None:
+            ports = self._ports_of_models[id(model)] = {port.name: port for port in model.ports}
+        return ports
+
+    def _outputs(self, node: Node) -> frozenset[str]:
+        """The outputs of a node that a model of the project describes."""
+        model = self._project.model(node) if node.id not in CATALOGUE else None
+        if model is None:
+            return frozenset()
+        outputs = self._outputs_of_models.get(id(model))
+        if outputs is None:
+            outputs = frozenset(port.name for port in model.ports if port.direction == "output")
+            self._outputs_of_models[id(model)] = outputs
+        return outputs
 
     def _model(self, node: Node) -> NodeModel | None:
         return self._project.model(node) or self._known(node.id)

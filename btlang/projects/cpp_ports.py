@@ -6,36 +6,40 @@ A small reader of the usual forms. What is written in another way is left out, s
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.reading import read_bytes
 from btlang.projects.files import files_below
 from btlang.text.source import Source, Span
 from btlang.tree.model import NodeModel, PortModel
 
 _ENDINGS = (".hpp", ".h", ".hh", ".hxx", ".cpp", ".cc", ".cxx")
-_TELLING = ("providedPorts", "providedBasicPorts", "getInput", "registerNodeType", "registerBuilder", "registerSimple",
-            "registerBehavior", "registerScriptingEnum", "CreateRosNodePlugin")  # fmt: skip
+_TELLING = (b"Ports(", b"getInput", b"registerNodeType", b"registerBuilder", b"registerSimple", b"registerBehavior",
+            b"registerScriptingEnum", b"RosNodePlugin")  # fmt: skip
 _COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
-_CLASS = re.compile(
-    r"\b(?:class|struct)\s+(?:[A-Z_]+\s+)?(?P<name>\w+)\s*(?:final\s*)?"
-    r"(?::(?!:)\s*(?:(?:public|protected|private|virtual)\s+)*(?P<base>[\w:]+)[^;{()]{0,500})?\{"
+_CLASSES = tuple(
+    re.compile(  # a pattern that begins with a plain word is found much sooner
+        rf"{word}\s+(?:[A-Z_]+\s+)?(?P<name>\w+)\s*(?:final\s*)?"
+        r"(?::(?!:)\s*(?:(?:public|protected|private|virtual)\s+)*(?P<base>[\w:]+)[^;{()]{0,500})?\{"
+    )
+    for word in ("class", "struct")
 )
 _MEMBER = re.compile(r"^(?:\w[^\n;={}()]*?[\s*&>:])??(?P<name>\w+)(?:<\w+>)?::~?\w+\s*\(", re.MULTILINE)
-_PORT = re.compile(r"\b(Input|Output|Bidirectional)Port\s*(?:<([^;()\"]{0,300})>)?\s*\(\s*\"(\w+)\"")
+_PORT = re.compile(r"Port\s*(?:<([^;()\"]{0,300})>)?\s*\(\s*\"(\w+)\"")
 _DIRECTIONS = {"Input": "input", "Output": "output", "Bidirectional": "inout"}
-_READ = re.compile(r"\bgetInput\s*(?:<[^;()\"]{0,300}>)?\s*\(\s*\"(\w+)\"[^;\"]{0,300}?\)(?=(\s*;)?)")
-_FALLS_BACK = re.compile(r"\b(?:getInputOrBlackboard|deconflictPortAndParamFrame)\b[^;\"]{0,300}\"(\w+)\"")
+_READ = re.compile(r"getInput\s*(?:<[^;()\"]{0,300}>)?\s*\(\s*\"(\w+)\"[^;\"]{0,300}?\)(?=(\s*;)?)")
+_FALL_BACK = tuple(
+    re.compile(rf"{function}\b[^;\"]{{0,300}}\"(\w+)\"")
+    for function in ("getInputOrBlackboard", "deconflictPortAndParamFrame")
+)
 _UNUSED = re.compile(r"([{};]\s*|\bif\s*\(\s*)(?:[\w:]+(?:::|\.|->))?$")
 _MOST_BEFORE = 80  # characters of the text before a call
-_REGISTERED = re.compile(
-    r"\bregister\w*\s*<\s*(?P<class>[\w:]+)[^;(\"]{0,300}>\s*\(\s*(?:\w+\s*,\s*)?\"(?P<id>[^\"]+)\"|"
-    r"\bCreateRosNodePlugin\s*\(\s*(?P<plugin>[\w:]+)\s*,\s*\"(?P<plugin_id>[^\"]+)\"|"
-    r"\bregisterSimple\w+\s*\(\s*\"(?P<simple_id>[^\"]+)\""
+_REGISTERED = (
+    re.compile(r"register\w*\s*<\s*(?P<class>[\w:]+)[^;(\"]{0,300}>\s*\(\s*(?:\w+\s*,\s*)?\"(?P<id>[^\"]+)\""),
+    re.compile(r"registerSimple\w+\s*(?P<class>)\(\s*\"(?P<id>[^\"]+)\""),
+    re.compile(r"CreateRosNodePlugin\s*\(\s*(?P<class>[\w:]+)\s*,\s*\"(?P<id>[^\"]+)\""),
 )
-
 _REGISTERING = "registerScriptingEnum"
 _ENUM = re.compile(r"registerScriptingEnum\s*\(\s*\"(\w+)\"")
 _ENUMS = re.compile(r"registerScriptingEnums\b|registerScriptingEnum\s*\(\s*[^\s\"]")
@@ -54,13 +58,16 @@ class _Class:
     def read(self, text: str, start: int, end: int, place: Span) -> None:
         """Adds what a part of the class says, which begins at a place."""
         for port in _PORT.finditer(text, start, end):
-            direction, type, name = port.groups()
+            direction = next((word for word in _DIRECTIONS if text.endswith(word, start, port.start())), "")
+            if not direction:
+                continue
+            type, name = port.groups()
             given = list(_arguments(text, port.end(), end))
             default = given[0].strip('"') if len(given) > 1 else None
             if not self.ports:
                 self.place = place
             self.ports.setdefault(name, PortModel(name, _DIRECTIONS[direction], (type or "").strip(), default))
-        self.spared.update(match[1] for match in _FALLS_BACK.finditer(text, start, end))
+        self.spared.update(match[1] for pattern in _FALL_BACK for match in pattern.finditer(text, start, end))
         for match in _READ.finditer(text, start, end):
             before = _UNUSED.search(text, max(start - 1, match.start() - _MOST_BEFORE), match.start())
             goes_on = before is not None and (before[1][0] == "i" or match[2] is not None)
@@ -93,11 +100,10 @@ class CppSources:
             text = _COMMENT.sub(lambda match: match[0] if match[0][0] == '"' else " " * len(match[0]), source.text)
             if _REGISTERING in text:
                 self._registering_enums.append(text)
-            for match in _REGISTERED.finditer(text):
-                name, node_id = match["class"] or match["plugin"] or "", match["id"] or match["plugin_id"]
+            for match in _found(_REGISTERED, text):
                 place = Span(source, match.start(), match.end())
-                registered[node_id or match["simple_id"]] = (name.rpartition(":")[2], place)
-            heads = sorted((*_CLASS.finditer(text), *_MEMBER.finditer(text)), key=lambda head: head.start())
+                registered[match["id"]] = (match["class"].rpartition(":")[2], place)
+            heads = sorted(_found((*_CLASSES, _MEMBER), text), key=lambda head: head.start())
             ends = [head.start() for head in heads[1:]] + [len(text)]
             for head, end in zip(heads, ends, strict=False):
                 place = Span(source, head.start(), head.end())
@@ -117,11 +123,15 @@ class CppSources:
         for folder in self._folders:
             for path in files_below(folder, _ENDINGS):
                 try:
-                    source = read_source(path)
-                except MissionError:
+                    data = read_bytes(path)
+                except OSError:
                     continue  # it isn't what the user asked about
-                if any(word in source.text for word in _TELLING):
-                    yield source
+                if any(word in data for word in _TELLING):
+                    yield Source(data.decode(errors="replace"), path)
+
+
+def _found(patterns: Iterable[re.Pattern[str]], text: str) -> Iterator[re.Match[str]]:
+    return (match for pattern in patterns for match in pattern.finditer(text))
 
 
 def _ports(name: str, classes: Mapping[str, _Class]) -> Iterator[PortModel]:

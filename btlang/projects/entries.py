@@ -13,18 +13,17 @@ from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
 from btlang.projects.places import attribute_value, place_of
 from btlang.record import Record
 from btlang.text.source import Span
-from btlang.text.spelling import is_misspelling, nearest
+from btlang.text.spelling import misspelt
 from btlang.tree.catalogue import CATALOGUE, SCRIPT, SUBTREE, held
-from btlang.tree.model import NodeModel
+from btlang.tree.model import PortModel
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-    ModelOf: TypeAlias = Callable[[Node], NodeModel | None]
+    PortsOf: TypeAlias = Callable[[Node], Mapping[str, PortModel]]
 
-_WORD = re.compile(r"[^\W\d]\w*")
 _ENUM = re.compile(r"[A-Z][A-Z0-9_]+")
 _SAME = {"int32_t": "int", "unsigned": "unsigned int", "uint32_t": "unsigned int", "string": "std::string"}
 _SCALARS = ("bool", "double", "float", "int", "unsigned int", "int8_t", "int16_t", "uint8_t", "uint16_t")
@@ -47,7 +46,8 @@ class EntryUse(Record):
     @property
     def may_be_enum(self) -> bool:
         """Whether a script reads what may be the name of an enum, such as RED."""
-        return not self.sets and held(self.node.id, self.port) == SCRIPT and _ENUM.fullmatch(self.key) is not None
+        may_be = self.key.isupper() and not self.sets and _ENUM.fullmatch(self.key) is not None
+        return may_be and held(self.node.id, self.port) == SCRIPT
 
 
 class TreeEntries(Record):
@@ -62,20 +62,30 @@ class TreeEntries(Record):
         return any(node.port(AUTOREMAP) in TRUE for node in self.subtrees)
 
 
-def entries_of(root: Node, model_of: ModelOf) -> TreeEntries:
-    """What a tree says of its blackboard; a port of which nothing is known may read and set an entry."""
+def entries_of(root: Node, ports_of: PortsOf, older: Collection[str] = ()) -> TreeEntries:
+    """What a tree says of its blackboard; a port of which nothing is known may read and set an entry.
+
+    In the files `older`, of version 3, an output names its entry without braces.
+    """
     uses: list[EntryUse] = []
     subtrees: list[Node] = []
     for node in Tree(root).walk():
         if node.id == SUBTREE:
             subtrees.append(node)
+        is_built_in, is_older = node.id in CATALOGUE, place_of(node).source.name in older
         for port, text in node.ports:
-            if held(node.id, port) == SCRIPT:
+            may_hold = is_built_in or port[:1] == "_"
+            if not (may_hold or is_older or "{" in text):
+                continue
+            holds = held(node.id, port) if may_hold else ""
+            if holds == SCRIPT:
                 uses += _script_uses(node, port, text)
-            elif (key := blackboard_key(port, text)) is not None:
-                uses.append(_port_use(node, port, key, model_of))
-            elif _WORD.fullmatch(text) and (use := _port_use(node, port, text, model_of)).sets:
-                uses.append(use.replace(reads=False))  # in version 3, an output names its entry without braces
+            elif "{" in text:
+                key = blackboard_key(port, text)
+                if key is not None:
+                    uses.append(_port_use(node, port, key, ports_of))
+            elif holds or (is_older and _is_output(node, port, ports_of)):
+                uses.append(EntryUse(node, port, text, reads=False))
     return TreeEntries(tuple(use for use in uses if use.key[:1] != "@"), tuple(subtrees))
 
 
@@ -88,18 +98,25 @@ def _script_uses(node: Node, port: str, code: str) -> list[EntryUse]:
     return [EntryUse(node, port, name, READS in how, SETS in how) for name, how in uses.items()]
 
 
-def _port_use(node: Node, port: str, key: str, model_of: ModelOf) -> EntryUse:
+def _port_use(node: Node, port: str, key: str, ports_of: PortsOf) -> EntryUse:
     kind = CATALOGUE.get(node.id)
     if kind is not None:
         known = kind.ports.get(port)
         if known is None:
             return EntryUse(node, port, key)
         return EntryUse(node, port, key, not known.holds, known.holds != "" or known.direction != "input", known.type)
-    model = model_of(node)
-    for each in model.ports if model is not None else ():
-        if each.name == port:
-            return EntryUse(node, port, key, each.direction != "output", each.direction != "input", each.type)
-    return EntryUse(node, port, key)
+    described = ports_of(node).get(port)
+    if described is None:
+        return EntryUse(node, port, key)
+    direction = described.direction
+    return EntryUse(node, port, key, direction != "output", direction != "input", described.type)
+
+
+def _is_output(node: Node, port: str, ports_of: PortsOf) -> bool:
+    if node.id in CATALOGUE:
+        return False
+    described = ports_of(node).get(port)
+    return described is None or described.direction != "input"
 
 
 def unset_entries(entries: Mapping[str, TreeEntries], mains: Collection[str]) -> Iterator[Diagnostic]:
@@ -136,7 +153,7 @@ def unset_enums(entries: Mapping[str, TreeEntries], enums: Collection[str], are_
     known.update(port for each in entries.values() for node in each.subtrees for port, _ in node.ports)
     for use in (use for each in entries.values() for use in each.uses):
         if use.may_be_enum and use.key not in known:
-            near = [name for name in nearest(use.key.lower(), enums) if is_misspelling(use.key, name, ())]
+            near = misspelt(use.key, enums)
             if near or are_all:
                 yield _nothing_sets(
                     use, f"Similar: {', '.join(near)}" if near else "If it is an enum, register it in C++."

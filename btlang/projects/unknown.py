@@ -8,7 +8,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.btcpp.dialect import ONLY_IN_3
 from btlang.projects.places import id_place
 from btlang.projects.ports import respelling
-from btlang.text.spelling import is_misspelling, nearest
+from btlang.text.spelling import misspelt
 from btlang.tree.node import Node
 
 
@@ -28,8 +28,7 @@ def unknown_nodes(
         place = id_place(first)
         if node_id in ONLY_IN_3 and dialects.get(place.source.name) == 3:
             continue
-        near = [name for name in nearest(node_id.lower(), described) if is_misspelling(node_id, name, ())]
-        words_near = [name for name in nearest(node_id.lower(), words) if is_misspelling(node_id, name, ())]
+        near, words_near = misspelt(node_id, described), misspelt(node_id, words)
         # a tag with an end tag can't be changed alone
         fix = None if first.children and place.text == node_id else respelling(place, near)
         times = {1: "once", 2: "twice"}.get(len(found), f"{len(found)} times")

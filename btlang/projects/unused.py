@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
@@ -11,18 +11,24 @@ from btlang.engine.script.names import READS, SETS, uses_of_names
 from btlang.frontends.btcpp.project import XmlProject
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
 from btlang.projects.places import attribute_value
-from btlang.tree.catalogue import CATALOGUE, KEY, SCRIPT, SUBTREE, held
+from btlang.tree.catalogue import KEY, SCRIPT, SUBTREE, held
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import subtree_names, used_subtrees
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    OutputsOf: TypeAlias = Callable[[Node], Container[str]]
 
 _WORD = re.compile(r"[^\W\d]\w*")
 
 
-def keys_read(nodes: Iterable[Node], project: XmlProject) -> frozenset[str]:
+def keys_read(nodes: Iterable[Node], outputs_of: OutputsOf) -> frozenset[str]:
     """Every key that a port, a script or a SubTree may read, in whatever tree: a key has other names in other trees."""
     read: set[str] = set()
     for node in nodes:
-        outputs = _outputs(node, project)
+        outputs = outputs_of(node)
         for name, text in node.ports:
             if held(node.id, name) == SCRIPT:
                 read.update(name.lstrip("@") for name, uses in uses_of_names(text).items() if READS in uses)
@@ -34,10 +40,10 @@ def keys_read(nodes: Iterable[Node], project: XmlProject) -> frozenset[str]:
     return frozenset(read)
 
 
-def unread_values(nodes: Iterable[Node], project: XmlProject, read: frozenset[str]) -> Iterator[Diagnostic]:
+def unread_values(nodes: Iterable[Node], outputs_of: OutputsOf, read: frozenset[str]) -> Iterator[Diagnostic]:
     """BT235 for the keys that only output ports name, and that scripts only assign to."""
     for node in nodes:
-        outputs = _outputs(node, project)
+        outputs = outputs_of(node)
         for name, text in node.ports:
             for key in _keys_set(node.id, name, text, outputs):
                 if key not in read and key[:1] != "@":
@@ -79,11 +85,6 @@ def _named(root: Node, trees: Mapping[str, Node]) -> set[str]:
                 done.add(name)
                 waiting.append(trees[name])
     return words
-
-
-def _outputs(node: Node, project: XmlProject) -> set[str]:
-    model = project.model(node) if node.id not in CATALOGUE else None
-    return {port.name for port in model.ports if port.direction == "output"} if model is not None else set()
 
 
 def unused_trees(project: XmlProject) -> Iterator[Diagnostic]:

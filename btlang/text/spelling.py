@@ -68,6 +68,13 @@ def is_misspelling(written: str, meant: str, others: Iterable[str]) -> bool:
     return is_near and not any(distance(written, other) <= distance(written, meant) for other in others)
 
 
+def misspelt(written: str, known: Iterable[str]) -> list[str]:
+    """Up to three of the known words of which few slips make what was written, the likeliest first."""
+    most = _most_slips(written)
+    names = [name for name in known if abs(len(name) - len(written)) <= most]
+    return [name for name in nearest(written.lower(), names) if is_misspelling(written, name, ())]
+
+
 def fewest_slips(written: str, known: Iterable[str]) -> int:
     """How many slips away the nearest of the known words is; as many as a word may have where none is nearer."""
     from rapidfuzz import process

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
@@ -112,25 +112,28 @@ class _Nearest:
     def names(self, file: XmlFile) -> dict[str, str]:
         """The names of the trees by such IDs, and of its own ones."""
         if file.path not in self._names:
-            self._names[file.path] = {**self._near(file, self._trees), **file.names}
+            self._names[file.path] = {**self._near(file, self._trees, file.names), **file.names}
         return self._names[file.path]
 
     def models(self, file: XmlFile) -> Mapping[str, NodeModel]:
         """The models of nodes that files describe differently, by id."""
         if file.path not in self._models:
-            self._models[file.path] = self._near(file, self._described)
+            own = {node_id: model for node_id, model in file.models.items() if node_id in self._described}
+            self._models[file.path] = {**self._near(file, self._described, own), **own}
         return self._models[file.path]
 
-    def _near(self, file: XmlFile, defined: Mapping[str, dict[str, Defined]]) -> dict[str, Defined]:
-        """What the nearest file says of each ID that is named in a file."""
-        if not defined:
+    def _near(
+        self, file: XmlFile, defined: Mapping[str, dict[str, Defined]], own: Collection[str]
+    ) -> dict[str, Defined]:
+        """What the nearest file says of each ID that is named in a file and isn't its own."""
+        left = defined.keys() - own
+        if not left:
             return {}
         named = {file.attributes.get(MAIN, "")}
         for tag, flat, *_ in file.document.elements:
             named.add(tag)
             named.update(flat[1::2] if "ID" in flat else ())
-        return {each: by_file[self._scopes.nearest(file.path, by_file)[0]]
-                for each, by_file in defined.items() if each in named}  # fmt: skip
+        return {each: defined[each][self._scopes.nearest(file.path, defined[each])[0]] for each in left & named}
 
     def repeated(self, mains: Mapping[str, str], used: set[str]) -> dict[str, str]:
         """The names of trees that can be confused with an earlier one, each with the name of that.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 
 
 class Scopes:
@@ -55,6 +56,7 @@ class Scopes:
         return self._programs.get(file, {file})
 
 
+@cache
 def _steps(start: str, end: str) -> int:
     """How many folders one goes up and down between two folders."""
     parts, others = start.split(os.sep), end.split(os.sep)

@@ -23,7 +23,7 @@ EITHER: Ends = SUCCESS | FAILURE
 
 def ends_of(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> Ends:
     """The ways in which a node can end, given those of its children and those of the defined names."""
-    decided, may_start = _before(node) if node.ports else (0, True)
+    decided, may_start = _before(node) if any(port in PRE_CONDITIONS for port, _ in node.ports) else (0, True)
     return decided | _ends(node, children, named) if may_start else decided
 
 
