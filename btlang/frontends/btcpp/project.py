@@ -106,6 +106,7 @@ class _Nearest:
             for node_id, by_file in _defined(described).items()
             if node_id not in palette and any(model != next(iter(by_file.values())) for model in by_file.values())
         }
+        self._nearest: dict[tuple[str, str, bool], list[str]] = {}
         self._names: dict[str, dict[str, str]] = {}
         self._models: dict[str, dict[str, NodeModel]] = {}
 
@@ -133,7 +134,15 @@ class _Nearest:
         for tag, flat, *_ in file.document.elements:
             named.add(tag)
             named.update(flat[1::2] if "ID" in flat else ())
-        return {each: defined[each][self._scopes.nearest(file.path, defined[each])[0]] for each in left & named}
+        return {each: defined[each][self._files_near(file, each, defined)[0]] for each in left & named}
+
+    def _files_near(self, file: XmlFile, each: str, defined: Mapping[str, dict[str, Defined]]) -> list[str]:
+        """The files nearest to one that define an ID; for files that no include joins, only the folder decides."""
+        place = file.path if self._scopes.is_joined(file.path) else os.path.dirname(file.path)
+        key = place, each, defined is self._trees
+        if key not in self._nearest:
+            self._nearest[key] = self._scopes.nearest(file.path, defined[each])
+        return self._nearest[key]
 
     def repeated(self, mains: Mapping[str, str], used: set[str]) -> dict[str, str]:
         """The names of trees that can be confused with an earlier one, each with the name of that.
@@ -148,15 +157,18 @@ class _Nearest:
                 first = own.setdefault(head.id, head.name)
                 if first != head.name:
                     found[head.name] = first
-        for by_file in self._trees.values():
-            for at, (path, name) in enumerate(by_file.items()):
-                for earlier, first in list(by_file.items())[:at]:
+        for program in self._scopes.programs:
+            firsts: dict[str, str] = {}
+            for path in (path for path in self._files if path in program):
+                for tree_id, name in self._files[path].names.items():
+                    first = firsts.setdefault(tree_id, name)
                     apart = {name, first} <= starts and used.isdisjoint((name, first))
-                    if not apart and self._scopes.are_together(path, earlier):
+                    if first != name and not apart:
                         found.setdefault(name, first)
         for file in self._files.values():
             for tree_id in self._foreign(file):
-                first, *others = self._scopes.nearest(file.path, by_file := self._trees[tree_id])
+                by_file = self._trees[tree_id]
+                first, *others = self._files_near(file, tree_id, self._trees)
                 for path in others:
                     # which of several folders is installed isn't known here
                     if os.path.dirname(path) == os.path.dirname(first):

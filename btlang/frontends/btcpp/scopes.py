@@ -7,7 +7,7 @@ A repository holds many programs. The files that are joined by includes are one 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import cache
 
 
@@ -25,15 +25,22 @@ class Scopes:
         least = min(distances.values(), default=(0, 0))
         return [file for file, distance in distances.items() if distance == least]
 
-    def are_together(self, first: str, second: str) -> bool:
-        """Whether a program includes both files, or one of them includes the other."""
-        return not self._programs_with(first).isdisjoint(self._programs_with(second))
+    @property
+    def programs(self) -> list[Collection[str]]:
+        """The files of each program, a file with all that it includes, if these are several."""
+        return [self._reached_from(file) for file, included in self._includes.items() if included]
+
+    def is_joined(self, file: str) -> bool:
+        """Whether a file includes another one, or is included."""
+        return bool(self._includes.get(file)) or len(self._programs_with(file)) > 1
 
     def _distance(self, user: str, file: str) -> tuple[int, int]:
         hops = self._reached_from(user).get(file)
         if hops is not None:
             return 0, hops
-        return (1, 0) if self.are_together(user, file) else (2, _steps(os.path.dirname(user), os.path.dirname(file)))
+        if not self._programs_with(user).isdisjoint(self._programs_with(file)):
+            return 1, 0
+        return 2, _steps(os.path.dirname(user), os.path.dirname(file))
 
     def _reached_from(self, user: str) -> dict[str, int]:
         """The file itself and all that it includes, with the number of includes on the way."""
