@@ -84,3 +84,11 @@ def test_ports_that_are_left_out_are_optional(tmp_path: Path, capsys: pytest.Cap
     assert [problem["message"] for problem in problems(capsys, str(tmp_path))] == [
         "The port speed of Drive is missing."
     ]
+
+
+def test_a_file_of_models_may_be_empty(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Tools make such files for models to come."""
+    write(tmp_path, "nodes.xml", "<TreeNodesModel><!-- to come --></TreeNodesModel>")
+    assert problems(capsys, str(tmp_path)) == []
+    write(tmp_path, "nodes.xml", "")
+    assert [problem["code"] for problem in problems(capsys, str(tmp_path))] == ["BT122"]

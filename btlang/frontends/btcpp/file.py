@@ -72,6 +72,8 @@ class XmlFile:
         self.origins: dict[str, TreeOrigin] = {}
         self.uses: dict[str, list[Node]] = {}
         """The SubTree nodes of each tree."""
+        self.describes_nodes = False
+        """Whether it has a TreeNodesModel, if only an empty one."""
         self._parts: list[int] = []
         self._described: dict[str, int] = {}  # the elements of the models
         self.attributes = document.attributes(0)
@@ -113,6 +115,7 @@ class XmlFile:
                 self._wrong("BT122", document.span(at), what=f"A second <{tag}>", problem="isn't allowed", advice=help)
             elif tag == MODEL:
                 described = at
+                self.describes_nodes = True
                 for element, model in models.read(at):
                     if self.models.setdefault(model.id, model) is model:
                         self._described[model.id] = element

@@ -66,7 +66,7 @@ def read_project(read: XmlFiles, palettes: XmlFiles, main: str = "") -> XmlProje
     trees = read.trees
     circles = read.circles()
     problems = [*read.problems, *_once(read.warnings), *palettes.problems, *circles]
-    problems += [empty_file(file) for file in sound if not (file.heads or file.models or file.includes)]
+    problems += [empty_file(file) for file in sound if not (file.heads or file.describes_nodes or file.includes)]
     mains = {file.path: own for file in sound if (own := _main_of(file, read.names | nearest.names(file))) in trees}
     for name, first in nearest.repeated(mains, read.used).items():
         problems.append(same_id(heads[name], heads[first]))
