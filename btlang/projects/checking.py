@@ -119,7 +119,7 @@ class _Check:
                 if model is not None and model.kind == SUBTREE and self._dialect(node) == 4:
                     yield from subtree_problems(node, model)
             elif node.id in CATALOGUE:
-                if self._dialect(node) == 4:
+                if len(node.children) > 1 and self._dialect(node) == 4:
                     yield from several_alone(node)
             elif node.id not in self._vocabulary.entries:
                 model = self._model(node)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
@@ -51,10 +51,14 @@ class EntryUse(Record):
 
 
 class TreeEntries(Record):
-    """The entries that a tree names, in the order in which its nodes are made, and its SubTree nodes."""
+    """The entries that a tree names, in the order in which its nodes are made, and its SubTree nodes.
+
+    `named` are entries that outputs name without braces, as in version 3.
+    """
 
     uses: tuple[EntryUse, ...]
     subtrees: tuple[Node, ...]
+    named: frozenset[str] = frozenset()
 
     @property
     def shares(self) -> bool:
@@ -69,10 +73,15 @@ def entries_of(root: Node, ports_of: PortsOf, older: Collection[str] = ()) -> Tr
     """
     uses: list[EntryUse] = []
     subtrees: list[Node] = []
+    named: set[str] = set()
     for node in Tree(root).walk():
         if node.id == SUBTREE:
             subtrees.append(node)
-        is_built_in, is_older = node.id in CATALOGUE, place_of(node).source.name in older
+        is_built_in = node.id in CATALOGUE
+        is_older = not is_built_in and node.ports and place_of(node).source.name in older
+        ports: Mapping[str, PortModel] = {}
+        if not is_built_in and (is_older or any("{" in text for _, text in node.ports)):
+            ports = ports_of(node)
         for port, text in node.ports:
             may_hold = is_built_in or port[:1] == "_"
             if not (may_hold or is_older or "{" in text):
@@ -82,11 +91,13 @@ def entries_of(root: Node, ports_of: PortsOf, older: Collection[str] = ()) -> Tr
                 uses += _script_uses(node, port, text)
             elif "{" in text:
                 key = blackboard_key(port, text)
-                if key is not None:
-                    uses.append(_port_use(node, port, key, ports_of))
-            elif holds or (is_older and _is_output(node, port, ports_of)):
+                if key is not None and key[:1] != "@":
+                    uses.append(_port_use(node, port, key, ports.get(port)))
+            elif holds:
                 uses.append(EntryUse(node, port, text, reads=False))
-    return TreeEntries(tuple(use for use in uses if use.key[:1] != "@"), tuple(subtrees))
+            elif is_older and (port not in ports or ports[port].direction != "input"):
+                named.add(text)
+    return TreeEntries(tuple(uses), tuple(subtrees), frozenset(named))
 
 
 def _script_uses(node: Node, port: str, code: str) -> list[EntryUse]:
@@ -95,28 +106,18 @@ def _script_uses(node: Node, port: str, code: str) -> list[EntryUse]:
         uses = {} if blackboard_key(port, code) is not None else uses_in_script(code)
     except ScriptError:
         return []
-    return [EntryUse(node, port, name, READS in how, SETS in how) for name, how in uses.items()]
+    return [EntryUse(node, port, name, READS in how, SETS in how) for name, how in uses.items() if name[:1] != "@"]
 
 
-def _port_use(node: Node, port: str, key: str, ports_of: PortsOf) -> EntryUse:
+def _port_use(node: Node, port: str, key: str, described: PortModel | None) -> EntryUse:
     kind = CATALOGUE.get(node.id)
-    if kind is not None:
-        known = kind.ports.get(port)
-        if known is None:
-            return EntryUse(node, port, key)
+    if kind is not None and port in kind.ports:
+        known = kind.ports[port]
         return EntryUse(node, port, key, not known.holds, known.holds != "" or known.direction != "input", known.type)
-    described = ports_of(node).get(port)
     if described is None:
         return EntryUse(node, port, key)
     direction = described.direction
     return EntryUse(node, port, key, direction != "output", direction != "input", described.type)
-
-
-def _is_output(node: Node, port: str, ports_of: PortsOf) -> bool:
-    if node.id in CATALOGUE:
-        return False
-    described = ports_of(node).get(port)
-    return described is None or described.direction != "input"
 
 
 def unset_entries(entries: Mapping[str, TreeEntries], mains: Collection[str]) -> Iterator[Diagnostic]:
@@ -129,12 +130,12 @@ def unset_entries(entries: Mapping[str, TreeEntries], mains: Collection[str]) ->
         if name not in entries or name in mains or any(node.port(AUTOREMAP) in TRUE for node in nodes):
             continue
         if not entries[name].shares:
-            yield from _unset(entries[name].uses, nodes)
+            yield from _unset(entries[name], nodes)
 
 
-def _unset(uses: Sequence[EntryUse], users: Iterable[Node]) -> Iterator[Diagnostic]:
-    done = {use.key for use in uses if use.sets}
-    for use in uses:
+def _unset(entries: TreeEntries, users: Iterable[Node]) -> Iterator[Diagnostic]:
+    done = {use.key for use in entries.uses if use.sets} | entries.named
+    for use in entries.uses:
         if use.key in done or use.may_be_enum:
             continue
         done.add(use.key)
@@ -150,7 +151,8 @@ def unset_enums(entries: Mapping[str, TreeEntries], enums: Collection[str], are_
     If these may not be all, only for misspelt ones.
     """
     known = {*enums, *(use.key for each in entries.values() for use in each.uses if not use.may_be_enum)}
-    known.update(port for each in entries.values() for node in each.subtrees for port, _ in node.ports)
+    for each in entries.values():
+        known.update(each.named, (port for node in each.subtrees for port, _ in node.ports))
     for use in (use for each in entries.values() for use in each.uses):
         if use.may_be_enum and use.key not in known:
             near = misspelt(use.key, enums)
