@@ -131,19 +131,19 @@ class _Check:
             uses = DescribedUses(model, NOWHERE, tuple(nodes))
             if model.id not in self._project.models:
                 yield from misspelt_ports(uses)
-            elif any(port_problems(uses)):
-                yield from port_problems(self._with_others(uses))
+            elif any(port_problems(uses)) and any(port_problems(uses := self._with_others(uses))):
+                yield from port_problems(self._with_sources(uses))
 
     def _wrong_entries(self) -> Iterator[Diagnostic]:
-        older = {name for name, dialect in self._project.dialects.items() if dialect == 3}
-        entries = {name: entries_of(root, self._ports, older) for name, root in self._project.trees.items()}
+        entries = {name: entries_of(root, self._ports, self._dialect(root) == 3)
+                   for name, root in self._project.trees.items()}  # fmt: skip
         yield from unset_entries(entries, self._project.mains)
         if any(use.may_be_enum for each in entries.values() for use in each.uses):
             types = {port.type for model in self._project.models.values() for port in model.ports}
             registered, are_all = self._sources.enums
             described = {name for type in types for name in enum_names(type)}
             yield from unset_enums(entries, registered | described, are_all)
-        yield from conflicting_types(entries, older)
+        yield from conflicting_types(entries)
 
     def _ports(self, node: Node) -> Mapping[str, PortModel]:
         """The ports of a node by name, as far as they are known."""
@@ -177,14 +177,15 @@ class _Check:
         return known
 
     def _with_others(self, uses: DescribedUses) -> DescribedUses:
-        """With the other models of the same nodes, and what C++ says of them."""
+        """With the place of the model, and the other models of the same nodes."""
         models = self._project.described[uses.model.id]
         place = next(place for each, place in models if each is uses.model)
-        others = [other for other in models if other[0] is not uses.model]
-        if uses.model.id in self._sources.models:
-            others.append(self._sources.models[uses.model.id])
-        made: DescribedUses = uses.replace(place=place, others=tuple(others))
-        return made
+        return uses.replace(place=place, others=tuple(other for other in models if other[0] is not uses.model))  # type: ignore[no-any-return]
+
+    def _with_sources(self, uses: DescribedUses) -> DescribedUses:
+        """With what C++ says of the nodes, too."""
+        found = self._sources.models.get(uses.model.id)
+        return uses if found is None else uses.replace(others=(*uses.others, found))
 
     def _dialect(self, node: Node) -> int:
         return self._project.dialects.get(node.span.source.name, 4) if node.span is not None else 4

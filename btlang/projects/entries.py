@@ -53,12 +53,13 @@ class EntryUse(Record):
 class TreeEntries(Record):
     """The entries that a tree names, in the order in which its nodes are made, and its SubTree nodes.
 
-    `named` are entries that outputs name without braces, as in version 3.
+    If it `is_older`, it is of version 3, where outputs may name an entry without braces: `named`.
     """
 
     uses: tuple[EntryUse, ...]
     subtrees: tuple[Node, ...]
-    named: frozenset[str] = frozenset()
+    named: frozenset[str]
+    is_older: bool
 
     @property
     def shares(self) -> bool:
@@ -66,11 +67,8 @@ class TreeEntries(Record):
         return any(node.port(AUTOREMAP) in TRUE for node in self.subtrees)
 
 
-def entries_of(root: Node, ports_of: PortsOf, older: Collection[str] = ()) -> TreeEntries:
-    """What a tree says of its blackboard; a port of which nothing is known may read and set an entry.
-
-    In the files `older`, of version 3, an output names its entry without braces.
-    """
+def entries_of(root: Node, ports_of: PortsOf, is_older: bool) -> TreeEntries:
+    """What a tree says of its blackboard; a port of which nothing is known may read and set an entry."""
     uses: list[EntryUse] = []
     subtrees: list[Node] = []
     named: set[str] = set()
@@ -78,7 +76,6 @@ def entries_of(root: Node, ports_of: PortsOf, older: Collection[str] = ()) -> Tr
         if node.id == SUBTREE:
             subtrees.append(node)
         is_built_in = node.id in CATALOGUE
-        is_older = not is_built_in and node.ports and place_of(node).source.name in older
         ports: Mapping[str, PortModel] = {}
         if not is_built_in and (is_older or any("{" in text for _, text in node.ports)):
             ports = ports_of(node)
@@ -95,9 +92,9 @@ def entries_of(root: Node, ports_of: PortsOf, older: Collection[str] = ()) -> Tr
                     uses.append(_port_use(node, port, key, ports.get(port)))
             elif holds:
                 uses.append(EntryUse(node, port, text, reads=False))
-            elif is_older and (port not in ports or ports[port].direction != "input"):
+            elif is_older and not is_built_in and (port not in ports or ports[port].direction != "input"):
                 named.add(text)
-    return TreeEntries(tuple(uses), tuple(subtrees), frozenset(named))
+    return TreeEntries(tuple(uses), tuple(subtrees), frozenset(named), is_older)
 
 
 def _script_uses(node: Node, port: str, code: str) -> list[EntryUse]:
@@ -167,10 +164,10 @@ def _nothing_sets(use: EntryUse, help: str, notes: tuple[tuple[Span, str], ...] 
     return diagnostic("BT241", place, notes, None, key=use.key, port=use.port, id=use.node.id, help=help)
 
 
-def conflicting_types(entries: Mapping[str, TreeEntries], older: Collection[str]) -> Iterator[Diagnostic]:
+def conflicting_types(entries: Mapping[str, TreeEntries]) -> Iterator[Diagnostic]:
     """BT132 for ports whose entry has another type since an earlier port, as BehaviorTree.CPP 4 refuses them.
 
-    Entries that another tree may see are left out, as they may have their type from there; so are files of version 3.
+    Entries that another tree may see are left out, as they may have their type from there; so is version 3.
     """
     outside: dict[str, set[str]] = {}
     shared: set[str] = set()
@@ -180,14 +177,14 @@ def conflicting_types(entries: Mapping[str, TreeEntries], older: Collection[str]
             if node.port(AUTOREMAP) in TRUE:
                 shared.add(node.port("ID"))
     for name, each in entries.items():
-        if each.shares or name in shared:
+        if each.is_older or each.shares or name in shared:
             continue
         first: dict[str, EntryUse] = {}
         for use in each.uses:
             if use.key in outside.get(name, ()) or held(use.node.id, use.port) == SCRIPT:
                 continue
             before = first.setdefault(use.key, use)
-            if place_of(use.node).source.name not in older and _differ(before.type, use.type):
+            if _differ(before.type, use.type):
                 reason = f"'{use.key}' is of type {before.type}, and its port {use.port} is of type {use.type}"
                 notes = ((attribute_value(before.node, before.port), f"here '{use.key}' gets its type"),)
                 yield diagnostic(
