@@ -46,8 +46,8 @@ def left_out(
         if match is None or match.last <= len(front) or match.meaning.role not in ("command", "name"):
             continue
         is_particle = match.last == len(front) + 1 and text.words[at] in particles
-        if is_particle and (len(said) > kept + 1 or text.words[said[-1]] not in particles):
-            continue  # `from the lab to the hall and back`: not backwards; `look up, down` says another one
+        if is_particle and len(said) > kept + 1:
+            continue  # `from the lab to the hall and back`: not backwards; `look right, up` says another one
         if len(added) == 1 and added[0].first == len(front) and _may_be_theme(match, added[0]):
             continue  # `put the cup on the table and the book`
         if all(context.types[value.type].kind != "text" for value in match.values):
