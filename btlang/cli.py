@@ -82,6 +82,8 @@ def _run(options: argparse.Namespace) -> int:
     if options.preflight:
         ready = print_preflight(mission.tree, mission.vocabulary, read_world(mission.world, robot.body), robot)
         return SUCCESS if ready else FAILED
+    if options.text is not None and robot.over == "simulated":
+        _note_robots_up()
     if not options.watch:
         return _run_shown(options, mission, robot)
     from btlang.server.watching import watched
@@ -119,6 +121,19 @@ def _run_shown(options: argparse.Namespace, mission: Mission, robot: Connector, 
             sinks=[*sinks, *recorders, *voices],
             scans=options.record_scans if recorders else None,
             open_monitors=[*_groot(options.groot), *monitors],
+        )
+
+
+def _note_robots_up() -> None:
+    """Says that what is typed moves none of the robots that are up: somebody may want to stop one."""
+    from btlang.task.paths import names_up
+
+    if names := names_up():
+        who = f"robot '{names[0]}', which is up" if len(names) == 1 else "robots that are up"
+        show(
+            f"note: this runs in a simulation of its own, not on the {who}. To stop that: btc robot stop. "
+            "To give it work: btc task add -c '...'",
+            sys.stderr,
         )
 
 

@@ -96,15 +96,20 @@ class Companion:
                 return
 
 
+def require_companions(options: argparse.Namespace) -> None:
+    """Raises MissionError (BT200) if a package for what the options of `add_companion_options` ask isn't installed."""
+    if options.serve or options.join:
+        require_server()
+
+
 @contextmanager
 def companions(options: argparse.Namespace, robot: str, report: Callable[[str], object]) -> Iterator[int]:
     """Those that the options of `add_companion_options` ask for; the exit code of one that can't come up, else 0.
 
     Raises MissionError (BT200).
     """
+    require_companions(options)
     started: list[Companion] = []
-    if options.serve or options.join:
-        require_server()
     try:
         if options.serve:
             words = ["btlang", "serve", "--until-eof", "--host", options.host, "--port", str(options.port)]

@@ -23,7 +23,7 @@ from btlang.task.applicable import check_robot_words
 from btlang.task.backup import restore_backup
 from btlang.task.client import Client, emergency_stop
 from btlang.task.command import print_answer
-from btlang.task.companion import companions
+from btlang.task.companion import companions, require_companions
 from btlang.task.house import furnished_layer
 from btlang.task.layer import KEPT, TaskLayer
 from btlang.task.library_handler import kept_text
@@ -122,6 +122,7 @@ def _up(options: argparse.Namespace) -> int:
         lambda *wanted: layer.feed.watch(*wanted),
     )
     try:  # the name is ours before the store and the robot are touched
+        require_companions(options)
         kept = layer_options(options, name)
         robot, world = _from_library(options, kept)
         if options.speed != "real" and runs_in_real_time(robot.body, robot.over, options.simulate):

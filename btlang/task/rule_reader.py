@@ -166,7 +166,7 @@ class _RuleReader:
         every = bool(words.takes(*_EVERY))
         if every:
             self._refuse_counted(first)
-        if words.takes("daily", "everyday") or (every and words.takes("day")):
+        if words.takes("daily", "everyday") or (every and words.takes("day", *words.parts_of_day)):
             self._set_days(first, Days())
         elif (single := words.calendar_date()) is not None:
             if not (single[0] or every or words.takes(*_EVERY_YEAR)):

@@ -98,6 +98,11 @@ class ScheduleWords:
         """Whether that is the last word, and isn't read yet."""
         return self.at < self._last and self._text.words[self._last - 1] == word
 
+    @property
+    def parts_of_day(self) -> Collection[str]:
+        """The words of `every morning at 8`."""
+        return self._values.parts_of_day
+
     def takes(self, *phrases: str) -> str:
         """The phrase that is next, behind which it reads on; "" if none of them is."""
         return next((phrase for phrase in phrases if self._takes(phrase.split())), "")

@@ -327,3 +327,15 @@ def test_only_what_waits_gets_another_place(robot: TaskLayer) -> None:
     assert "either 'priority' or 'before'" in refusal(robot, "reorder", task=waiting, priority=1, before=begun)
     assert "a label must have a text" in refusal(robot, "submit", text="wave", labels=["tour", " "])
     assert "a label must have a text" in refusal(robot, "schedule", rule="hourly", text="wave", labels=[""])
+
+
+def test_what_is_typed_while_a_robot_is_up_says_that_it_moves_another_one(robot: TaskLayer, btc: Btc) -> None:
+    code, text = btc("run", "-c", "stop", "--speed", "max")
+    assert code == 0
+    assert "not on the robot 'robot', which is up. To stop that: btc robot stop." in text
+
+
+def test_without_a_robot_nothing_is_said_of_one(btc: Btc, monkeypatch: pytest.MonkeyPatch) -> None:
+    with tempfile.TemporaryDirectory() as short:
+        monkeypatch.setenv("XDG_RUNTIME_DIR", short)
+        assert "btc robot stop" not in btc("run", "-c", "stop", "--speed", "max")[1]

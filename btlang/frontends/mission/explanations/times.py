@@ -56,9 +56,10 @@ def explain_time(text: Words, at: int, wanted: bool, vocabulary: Lexicon) -> Dia
 def without_hour(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic | None:
     """BT160 for a part of the day without an hour among words: `until the morning`, `during the night`."""
     values = vocabulary.values
-    place = next((i for i in range(at, min(end + 1, len(text.words))) if text.words[i] in values.parts_of_day), None)
+    places = (i for i in range(at, min(end + 1, len(text.words))) if text.words[i] in values.parts_of_day)
+    place = next((i for i in places if i in text.articles or text.words[i - 1] in vocabulary.quantifiers), None)
     if place is None or values.time_of_day(text, place) is not None:
-        return None
+        return None  # `good morning Alice` is something to say
     return _problem(text.span(place, place + 1), "says no hour", _USUAL)
 
 
