@@ -41,7 +41,6 @@ def moment(wall: str, zone: str = BERLIN) -> float:
     ("text", "canonical", "first", "second"),
     [
         ("every day at 9:00", "every day at 09:00", "Tue 2026-11-24 09:00", "Wed 2026-11-25 09:00"),
-        ("every morning at 9", "every day at 09:00", "Tue 2026-11-24 09:00", "Wed 2026-11-25 09:00"),
         ("daily at 9 am", "every day at 09:00", "Tue 2026-11-24 09:00", "Wed 2026-11-25 09:00"),
         ("everyday at 9:00 am", "every day at 09:00", "Tue 2026-11-24 09:00", "Wed 2026-11-25 09:00"),
         ("  EVERY day,\n at 9:00. ", "every day at 09:00", "Tue 2026-11-24 09:00", "Wed 2026-11-25 09:00"),

@@ -189,3 +189,11 @@ def test_long_texts(text: str) -> None:
     with pytest.raises(MissionError) as refused:
         read_rule(text)
     assert len(str(refused.value)) < 2000
+
+
+@pytest.mark.parametrize(
+    ("text", "rule"),
+    [("every morning at 7", "every day at 07:00"), ("each evening at 8", "every day at 20:00")],
+)
+def test_parts_of_the_day_say_which_half_an_hour_is_in(text: str, rule: str) -> None:
+    assert str(read_rule(text, "UTC")) == rule
