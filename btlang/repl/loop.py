@@ -98,6 +98,7 @@ class Repl:
         if self._commands.is_saved:
             self._store.forget()
         else:
+            self._keep()  # without the word that left
             show("This session is saved: after the next start, 'restore' brings it back.")
 
     def read(self, lines: Iterable[str]) -> int:

@@ -140,6 +140,20 @@ def test_a_killed_session_is_offered_again(repl: Callable[..., Terminal], tmp_pa
     assert again.wait_for_end() == 0
 
 
+def test_the_word_that_leaves_is_no_line_of_the_session(repl: Callable[..., Terminal]) -> None:
+    user = repl("--speed", "max")
+    user.type("nod")
+    user.wait_for("The mission succeeded")
+    user.type("quit")
+    assert user.wait_for_end() == 0
+    again = repl()
+    again.wait_for("The last session had 1 line: 'restore' brings it back")
+    again.type("restore")
+    again.wait_for("Back: 1 line")
+    again.type("show")
+    again.wait_for("> show\nnod")
+
+
 def test_a_choice_between_two_readings(repl: Callable[..., Terminal]) -> None:
     user = repl()
     user.type("nod then wave 3 times within 1 min")

@@ -175,6 +175,7 @@ charge [to {percent}]
           charge/recharge [fully] until it is full/charged
           charge/recharge [fully] until you are full/charged
           charge/recharge [fully] until robot is full/charged
+          charge/recharge yourself
           charge/recharge fully
           charge/recharge completely
     {percent}: a number and one of %; 100% if left out
