@@ -84,13 +84,23 @@ if TYPE_CHECKING:
 _MISSION_OF = "btlang.api", "mission_of"
 
 
+def _words_of(body: Body | None) -> list[str]:
+    """The keyword files of a body."""
+    if body is None or not (body.components or body.gestures):
+        return []
+    from btlang.components.words import words_of  # most robots have none
+
+    return words_of(body)
+
+
 class Session:
     """A robot for many runs, one after the other. Its world continues from run to run; a mission's own names don't.
 
     `robot` is "simulated", "ros", "actions", the path of a robot file or the name of one that ships, or a function that
     takes a World and returns a btlang.run.connection.Connection. `over` is what the robot in a file runs on, by default
     what the file says. `world` is the path of a world file, or its text, by default the world that ships. `keywords`
-    are further words of the texts that it runs, as for `btlang.parse_tree`. Raises MissionError if the world or the
+    are further words of the texts that it runs, as for `btlang.parse_tree`; those of the robot's components and
+    gestures are known. Raises MissionError if the world or the
     robot can't be read (BT070, BT071) or ROS 2 can't be used (BT100), ValueError for other names.
     """
 
@@ -106,8 +116,9 @@ class Session:
             raise TypeError(f"robot is a name, a path or a function of a World, not {robot!r}")
         connect = robot if callable(robot) else connector(os.fspath(robot), over)
         given = os.fspath(world) if isinstance(world, os.PathLike) else world
-        self._read_with = {"keywords": keywords, "world": given}
-        self.world = read_world(given, getattr(connect, "body", None))
+        body = getattr(connect, "body", None)
+        self._read_with = {"keywords": [*_words_of(body), *keywords], "world": given}
+        self.world = read_world(given, body)
         self.connection: Connection = connect(self.world)
         self._is_simulated = getattr(connect, "over", "") == "simulated"
         self.current: Run | None = None

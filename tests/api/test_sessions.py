@@ -146,3 +146,10 @@ def test_an_outcome_is_printed_as_the_command_line_does() -> None:
     stopped = btlang.parse_tree("wait 9 s").run(speed="max", time_limit=1)
     assert str(stopped) == "Stopped after 1.0 s, as asked; the robot stands still."
     assert repr(stopped) == "<Outcome time limit after 1.0 s>"
+
+
+def test_the_words_of_the_robot_are_known_to_its_session() -> None:
+    with btlang.Session(Path(__file__).parents[2] / "examples" / "guide" / "robot.toml") as session:
+        assert session.run("applaud", speed="max").outcome.succeeded  # type: ignore[union-attr]
+    with pytest.raises(btlang.MissionError, match="BT010"), btlang.Session() as session:
+        session.run("applaud", speed="max")
