@@ -12,6 +12,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.tree.visit import fold
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.value_type import TEXT
 
 ASK, ANSWERED, UNANSWERED = "Ask", "AnswerIs", "NobodyAnswered"
@@ -24,6 +25,11 @@ _EXAMPLE = 'ask Alice "Tea?". If so, wave'
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+
+def asking_verbs(vocabulary: Lexicon) -> frozenset[str]:
+    """The words with which somebody is asked."""
+    return frozenset(phrase.split()[0] for entry in vocabulary.entries.get(ASK, ()) for phrase in entry.phrases)
 
 
 def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:

@@ -66,7 +66,7 @@ class Likenesses:
     def so_many(self, sets: Iterable[tuple[Description, int]], count: float) -> Iterator[tuple[Description, int]]:
         """The sets, without a number, of which the world has just so many: `all three shelves`."""
         for meant, end in sets:
-            every = meant.replace(parts=tuple(part for part in meant.parts if part[0] != COUNT))
+            every = meant.uncounted()
             if len(self.described(every)) == count:
                 yield every, end
 

@@ -9,7 +9,7 @@ from btlang.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.adjectives import UNSLOTTED, Adjectives
 from btlang.vocabulary.pattern import Form, Slot, forms
-from btlang.vocabulary.references import ALL, CHOICES, DENIED, PLACED, SIZED, Parts, ordinal
+from btlang.vocabulary.references import ALL, CHOICES, COUNT, DENIED, PLACED, SIZED, Parts, ordinal
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE, WORLD
 from btlang.vocabulary.word_tree import END, SLOTS, WordTree, find, insert
 
@@ -46,6 +46,11 @@ class Description(Record):
     type: str
     how: str
     parts: Parts = ()
+
+    def uncounted(self) -> Description:
+        """The same without a number: all of them."""
+        every: Description = self.replace(parts=tuple(part for part in self.parts if part[0] != COUNT))
+        return every
 
 
 class Nouns:

@@ -9,7 +9,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.nouns import Description
-from btlang.vocabulary.references import ALL, COUNT, LATEST, NAMES, SELF, Choice, Parts, choice_of, is_one
+from btlang.vocabulary.references import ALL, LATEST, NAMES, SELF, Choice, Parts, choice_of, is_one
 from btlang.vocabulary.value_type import DOOR, OBJECT, PLACE, WORLD, format_number
 from btlang.vocabulary.values import Values, key_of
 from btlang.vocabulary.word_tree import find
@@ -137,7 +137,7 @@ class ReadingContext:
         self.lacked = True
         first = here.earlier(place)[1]
         first = here.earlier(first - 1)[1] if first else 0
-        every = meant.replace(parts=tuple(part for part in meant.parts if part[0] != COUNT))
+        every = meant.uncounted()
         names = self.values.likenesses.described(every)
         led = [name for where, kind, name in self.reached if where >= first and kind == meant.type and name in names]
         spoken = tuple(dict.fromkeys(led))

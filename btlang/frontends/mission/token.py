@@ -23,7 +23,7 @@ grouped tokens, which need no look-ahead any more:
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 
 from btlang.record import Record
 from btlang.text.source import Span
@@ -39,6 +39,8 @@ WAITING = {"until": "wait_until", "for": "wait", "until_time": "wait_time"}
 
 RULES = ("whenever", "first_time")
 """Raw kinds that begin standing rules."""
+STATEMENT_ENDS = frozenset(("newline", "semi", "stop"))
+"""Raw kinds at the end of a statement, also where the next word goes on with it."""
 LINES = frozenset(("newline", "semi", "indent", "dedent", "define"))
 """Behind these kinds of tokens a statement begins, out of brackets."""
 JOINTS = frozenset(("and", "comma", "then"))
@@ -174,9 +176,7 @@ class Token:
 
 def go_on(tokens: list[Token]) -> None:
     """The stops at the end become one token "stop", if they end something: the next word goes on with it."""
-    kept = len(tokens)
-    while kept and tokens[kept - 1].kind in ("newline", "semi"):
-        kept -= 1
+    kept = run_start(tokens, len(tokens), ("newline", "semi"))
     if 0 < kept < len(tokens) and tokens[kept - 1].kind not in ("indent", "open", "define"):
         end = tokens[kept - 1].end
         tokens[kept:] = [Token("stop", end, end)]
@@ -185,6 +185,13 @@ def go_on(tokens: list[Token]) -> None:
 def statement_start(tokens: Sequence[Token], end: int) -> int:
     """Where the statement begins in which the tokens before one stand."""
     return next((at + 1 for at in reversed(range(end)) if tokens[at].kind in LINES), 0)
+
+
+def run_start(tokens: Sequence[Token], end: int, kinds: Container[str]) -> int:
+    """Where the tokens of some kinds begin that stand right before one; `end` if none does."""
+    while end > 0 and tokens[end - 1].kind in kinds:
+        end -= 1
+    return end
 
 
 def arguments_of(said: Called | Listed) -> tuple[tuple[tuple[str, str], ...], ...]:

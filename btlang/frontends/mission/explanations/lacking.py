@@ -6,7 +6,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.references import COUNT, DENIED
+from btlang.vocabulary.references import DENIED
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import OBJECT, PLACE, ValueType
 from btlang.vocabulary.word_tree import find
@@ -35,7 +35,7 @@ def not_two(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic |
     values = vocabulary.values
     for i in (i for i in range(at, end + 1) if text.words[i] in values.both):
         for meant, last in values.groups(text, i):
-            every = meant.replace(parts=tuple(part for part in meant.parts if part[0] != COUNT))
+            every = meant.uncounted()
             names, span = values.likenesses.described(every), text.span(i, last)
             if names and len(names) != 2:
                 reason = f"this world has {len(names)} of them" if len(names) > 1 else f"there is only '{names[0]}'"

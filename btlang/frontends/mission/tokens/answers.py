@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from btlang.frontends.mission.token import BEFORE_CONDITIONS, Called, Listed, Token, statement_start
+from btlang.frontends.mission.token import BEFORE_CONDITIONS, Called, Listed, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
-from btlang.tree.asked import ABOUT_ANSWERS, ANSWERED, ASK, UNANSWERED
+from btlang.tree.asked import ABOUT_ANSWERS, ANSWERED, ASK, UNANSWERED, asking_verbs
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import PERSON, TEXT
 from btlang.vocabulary.word_tree import find
@@ -94,9 +94,8 @@ class Answers(AddressedTexts):
 
     def _end_reply(self, token: Token) -> None:
         """`if he says yes, A, and if he says no, B`: the second answer ends what is done for the first."""
-        tokens, last = self._tokens, len(self._tokens) - 1
-        while last > 0 and tokens[last - 1].kind in ("and", "comma"):
-            last -= 1
+        tokens = self._tokens
+        last = run_start(tokens, len(tokens) - 1, ("and", "comma"))
         first = statement_start(tokens, last)
         asked = [each.value for each in (*tokens[first : first + 2], token) if isinstance(each.value, Called)]
         if last == len(tokens) - 1 or tokens[-1].kind != "if" or tokens[first].kind != "if" or len(asked) != 2:
@@ -150,15 +149,11 @@ class Answers(AddressedTexts):
     @cached_property
     def _may_ask(self) -> bool:
         """Whether anybody may be asked in the text."""
-        asking = {phrase.split()[0] for entry in self._vocabulary.entries.get(ASK, ()) for phrase in entry.phrases}
-        return not asking.isdisjoint(self._text.distinct)
+        return not asking_verbs(self._vocabulary).isdisjoint(self._text.distinct)
 
     def _asked_person(self) -> str:
         """Who is asked by the question that a condition may be about whose form has begun; "" if nobody alone is."""
-        last = len(self._tokens)
-        while last and self._tokens[last - 1].kind in _OF_REPLY:
-            last -= 1
-        asked = self._question(last, right_before=False)
+        asked = self._question(run_start(self._tokens, len(self._tokens), _OF_REPLY), right_before=False)
         if not isinstance(asked, Called):
             return ""
         persons = {slot.name for slot in asked.entry.slots if slot.type == PERSON}
@@ -182,8 +177,7 @@ class Answers(AddressedTexts):
             while first and tokens[first - 1].kind not in _STOPS:
                 first -= 1
             values = [token.value for token in tokens[first:last] if isinstance(token.value, Called | Listed)]
-            while tokens[last - 1].kind in _LIMITS:
-                last -= 1
+            last = run_start(tokens, last, _LIMITS)
             if tokens[last - 1].kind == "command" and values and values[-1].entry.id == ASK:
                 return values[-1]
             if right_before or tokens[first].kind != "if" or not values or values[0].entry.id not in ABOUT_ANSWERS:

@@ -18,6 +18,7 @@ from btlang.frontends.mission.token import (
     Listed,
     Token,
     constraint_of,
+    run_start,
     statement_start,
 )
 from btlang.frontends.mission.tokens.clock_words import ClockWords
@@ -204,9 +205,7 @@ class OrderWords(ClockWords):
     def _start_over(self) -> None:
         """`A, B and start over`: as a sentence of its own, unless the commands before may be left out."""
         tokens, last = self._tokens, len(self._tokens) - 1
-        first = last
-        while first and tokens[first - 1].kind in JOINTS:
-            first -= 1
+        first = run_start(tokens, last, JOINTS)
         kinds = {token.kind for token in tokens[statement_start(tokens, first) : first]}
         if first < last and kinds and FORMS.isdisjoint(kinds) and kinds.isdisjoint(("repeat", "colon")):
             tokens[first:last] = [Token("semi", tokens[first].start, tokens[first].start)]

@@ -12,10 +12,12 @@ from btlang.frontends.mission.token import (
     JOINTS,
     LINES,
     RULES,
+    STATEMENT_ENDS,
     Called,
     Listed,
     Token,
     go_on,
+    run_start,
     statement_start,
     texts_of,
 )
@@ -29,8 +31,7 @@ from btlang.vocabulary.value_type import PLACE
 from btlang.vocabulary.word_tree import find
 
 _HEARS = "ears"
-_ENDS = frozenset(("newline", "semi", "stop"))
-_JOINTS = JOINTS | _ENDS
+_JOINTS = JOINTS | STATEMENT_ENDS
 _FAILS, _WORKS, _UNANSWERED = "if_fails", "if_works", "if_unanswered"
 _MEASURES = frozenset(("for", "up_to", "within", "count"))
 _ASKING = frozenset(("if", "as_soon_as", "once"))
@@ -87,9 +88,8 @@ class Outcomes(SentenceReader):
     def if_works(self, end: int) -> None:
         """`look for the key, and bring it to me if you find it`: words that end there go before their command."""
         tokens = self._tokens
-        first = command = len(tokens) - 2
-        while first > 0 and tokens[first - 1].kind in ("comma", "and", "then"):
-            first -= 1
+        command = len(tokens) - 2
+        first = run_start(tokens, command, JOINTS)
         found = tokens[first - 1].value if 0 < first < command else None
         if not self._is_end(end) or tokens[command].kind != "command" or not isinstance(found, Called | Listed):
             return
@@ -134,7 +134,7 @@ class Outcomes(SentenceReader):
         tokens, command = self._tokens, form - 1
         while command >= 0 and tokens[command].kind in _JOINTS:
             command -= 1
-        is_new = any(token.kind in _ENDS for token in tokens[command + 1 : form])
+        is_new = any(token.kind in STATEMENT_ENDS for token in tokens[command + 1 : form])
         while command > 0 and tokens[command].kind in _MEASURES:
             command -= 1
         if command < 0 or tokens[command].kind != "command":
@@ -148,7 +148,7 @@ class Outcomes(SentenceReader):
         tokens, behind = self._tokens, command + 1
         while tokens[behind].kind in _MEASURES:
             behind += 1
-        is_new = any(token.kind in _ENDS for token in tokens[behind:form])
+        is_new = any(token.kind in STATEMENT_ENDS for token in tokens[behind:form])
         meaning = self._meaning(tokens[form], denied, is_new)
         if meaning is None:
             return
@@ -165,9 +165,8 @@ class Outcomes(SentenceReader):
 
     def _join_otherwise(self, form: int) -> None:
         """`look for the cup. If it is there, A. If it isn't there, B`: the second is `otherwise`."""
-        tokens, before = self._tokens, form
-        while before and tokens[before - 1].kind in _ENDS:
-            before -= 1
+        tokens = self._tokens
+        before = run_start(tokens, form, STATEMENT_ENDS)
         start, end = tokens[form].start, tokens[-1].end
         if before < form and _WORKS in self._statement(before)[1]:
             if self._denies_what_worked(Span(self._text.source, start, end)):
@@ -218,13 +217,10 @@ class Outcomes(SentenceReader):
         between.
         """
         tokens, count, joints = self._tokens, len(self._tokens), list[tuple[int, int]]()
-        while end and tokens[end - 1].kind in _ENDS:
-            end -= 1
+        end = run_start(tokens, end, STATEMENT_ENDS)
         first = statement_start(tokens, end)
         while not any(map(_searches, tokens[first:end])):
-            behind = first
-            while first and tokens[first - 1].kind in _ENDS:
-                first -= 1
+            behind, first = first, run_start(tokens, first, STATEMENT_ENDS)
             if first == behind or not first or not _FORMS.isdisjoint(token.kind for token in tokens[behind:end]):
                 if any(map(_searches, tokens[:behind])):
                     self._unclear(words)
@@ -261,9 +257,7 @@ class Outcomes(SentenceReader):
 
     def doubt_rule(self, role: str, at: int, last: int) -> None:
         """BT151 for what may be a part of the rule before it: `whenever bumped, wave. Then dock`."""
-        end = len(self._tokens)
-        while end and self._tokens[end - 1].kind in _ENDS:
-            end -= 1
+        end = run_start(self._tokens, len(self._tokens), STATEMENT_ENDS)
         words, text = self._text.span(at, last), self._text
         if not end or "\n" in text.source.text[self._tokens[end - 1].end : words.start]:
             return

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import LINES, Called, Listed, Token, constraint_of, statement_start
+from btlang.frontends.mission.token import LINES, Called, Listed, Token, constraint_of, run_start, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import NAMES, choice_of
@@ -92,9 +92,7 @@ class Places(SentenceReader):
 
     def _repeats(self, journey: Match) -> bool:
         """`go to A and B three times. In each room, wave`: whether the rooms are those of a loop, three times each."""
-        choice, last = choice_of(journey.values[0].group), len(self._tokens)
-        while last and self._tokens[last - 1].kind in LINES:
-            last -= 1
+        choice, last = choice_of(journey.values[0].group), run_start(self._tokens, len(self._tokens), LINES)
         first = statement_start(self._tokens, last)
         is_spoken_of = choice is not None and NAMES in dict(choice.parts)
         return is_spoken_of and any(token.kind not in _PLAIN for token in self._tokens[first:last])

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import JOINTS, Called, Listed, Token, statement_start
+from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Listed, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
-from btlang.tree.asked import ASK
+from btlang.tree.asked import ASK, asking_verbs
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
@@ -18,7 +18,6 @@ _JOINTS = JOINTS | {"stop"}
 _BLOCKED = frozenset(("WallInFront", "SomethingInTheWay", "SomeoneInTheWay"))
 _STATEMENT_ENDS = (END_OF_STATEMENT, END_OF_TEXT)
 _OPERANDS = frozenset(("command", "name", "close", "wait", "nothing", "fail", "node"))
-_ENDS = frozenset(("semi", "newline", "stop"))
 _IN_ALL = frozenset(("count", "at_most", "up_to_times", "tries"))
 _TWICE = "2"
 
@@ -109,15 +108,13 @@ class Tries(SentenceReader):
         return match.last
 
     @cached_property
-    def _asking_verbs(self) -> set[str]:
-        """The words with which somebody is asked."""
-        return {phrase.split()[0] for entry in self._vocabulary.entries.get(ASK, ()) for phrase in entry.phrases}
+    def _asking_verbs(self) -> frozenset[str]:
+        return asking_verbs(self._vocabulary)
 
     def _try_that(self, match: Match, at: int) -> int:
         """`pick up the cup. Try it 3 times`: tries what the statement before does, so many times in all."""
-        tokens, last = self._tokens, len(self._tokens)
-        while last and tokens[last - 1].kind in _ENDS:
-            last -= 1
+        tokens = self._tokens
+        last = run_start(tokens, len(tokens), STATEMENT_ENDS)
         first = statement_start(tokens, last)
         kinds = {token.kind for token in tokens[first:last]}
         amount = longest(self._vocabulary.trie, self._text, match.last, self._context)
@@ -148,9 +145,7 @@ class Tries(SentenceReader):
 
     def _behind(self, end: int) -> int:
         """Where the tokens before a place end without what joins them."""
-        while end and self._tokens[end - 1].kind in _JOINTS:
-            end -= 1
-        return end
+        return run_start(self._tokens, end, _JOINTS)
 
     def _condition(self, end: int) -> int:
         """Where `if that fails` begins that ends at a place, or `if the way is blocked` behind a journey; else 0."""
