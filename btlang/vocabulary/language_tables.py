@@ -37,14 +37,13 @@ CHANGING = ("increase", "decrease")
 """Roles whose words change the value that is named behind them, wherever they are found."""
 
 ASKING = (
-    "journey", "search", "whereabouts", "whether", "any_place", "making_sure", "counting", "asking_be", "asking_do",
-    "answers", "silence", "any_answer", "feeling", "there", "very", "states", "subject", "been", "towards", "going",
-    "finding_out",
-    "inspecting", "telling", "whole", "located", "wishing", "wished", "fetching", "begging", "home",
-    "pleading", "saying_that", "plea", "reminding", "reminder", "addressed", "informing", "informed", "staying",
-    "resuming", "interrupting",
-    "if_yes", "if_no", "told_of", "standing", "unable", "waiting", "apiece", "between_joint", "standing_verbs",
-    "events", "duties", "reasons", "performing", "naming", "named_as",
+    "journey", "search", "whereabouts", "whether", "any_place", "searching", "making_sure", "counting", "asking_be",
+    "asking_do", "answers", "silence", "any_answer", "feeling", "there", "very", "states", "subject", "been", "towards",
+    "going", "finding_out", "inspecting", "telling", "whole", "located", "wishing", "wished", "fetching", "begging",
+    "home", "pleading", "saying_that", "plea", "reminding", "reminder", "addressed", "informing", "informed", "staying",
+    "resuming", "interrupting", "and_back",
+    "if_yes", "if_no", "told_of", "standing", "able", "unable", "reaching", "waiting", "apiece", "between_joint",
+    "standing_verbs", "events", "duties", "reasons", "performing", "naming", "named_as",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 

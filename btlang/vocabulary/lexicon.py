@@ -124,6 +124,8 @@ class Lexicon:
         """The words of a journey that is behind somebody: `have been in`."""
         self.staying = tree_of((words, True) for words in self.asking["staying"])
         """What does nothing where it stands alone: `stay here`."""
+        self.and_back = tree_of((words, True) for words in self.asking["and_back"])
+        """The words for a journey back: `to the lab and back`."""
         self.going = tree_of((words, True) for words in self.asking["going"])
         """The words that say nothing before another command: `go and`."""
         self.asides: tuple[WordTree, ...] = tuple(
@@ -132,8 +134,9 @@ class Lexicon:
         """What says in a standing rule that the rest waits, and that it goes on."""
         self.telling = tree_of((words, True) for words in self.asking["telling"])
         """The words before a text in quotes that is to be said: `tell me`."""
-        self.duties, self.reasons, self.unable = (
-            tree_of((words, True) for words in self.asking[name]) for name in ("duties", "reasons", "unable")
+        self.duties, self.reasons, self.able, self.unable, self.reaching = (
+            tree_of((words, True) for words in self.asking[name])
+            for name in ("duties", "reasons", "able", "unable", "reaching")
         )
         """What no sentence has that only tells something, and what begins a reason, and what couldn't be done."""
         self.replies = tree_of((words, is_yes) for name, is_yes in _REPLIES for words in self.asking[name])

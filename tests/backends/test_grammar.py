@@ -31,6 +31,7 @@ WORDS = world_vocabulary()
 UNKNOWABLE = {
     "BT044": "`ball` alone is a thing, behind `count` a kind of things",
     "BT050": "`look for Bob for 5 minutes` goes on when he is found",
+    "BT141": "the zone of a side is said by the name of a place that is one",
     "BT144": "whose answer is meant",
     "BT162": "a place that is avoided and gone to",
     "BT052": "what comes before goes on for ever",

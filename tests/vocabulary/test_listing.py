@@ -129,10 +129,14 @@ def heads(lines: list[str]) -> list[str]:
         ("Undock", ["undock"]),
         ("recharge", ["charge [to {percent}]"]),
         ("twice", ["twice"]),
-        ("retry", ["retry"]),
+        ("retry", ["try [it/that/this] again", "retry"]),
         (
             "kitchen",
-            ["{place}     dock, door, hall, kitchen, lab, living room, lobby, office", "{door}      kitchen door"],
+            [
+                "{place}     dock, door, hall, kitchen, lab, living room, lobby, office",
+                "{zone}      hall, kitchen, lab, living room, lobby, office, reading corner",
+                "{door}      kitchen door",
+            ],
         ),
         ("spot towards person", ["face {person}"]),
         ("round robin", ["do"]),

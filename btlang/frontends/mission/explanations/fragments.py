@@ -29,17 +29,23 @@ class _Gap(Record):
     behind: Form
     entry: Entry
 
+    @property
+    def said(self) -> Form:
+        """What is left of the phrase."""
+        return (*self.before, *self.behind)
+
 
 def explain_fragment(
     text: Words, at: int, end: int, is_condition: bool, vocabulary: Lexicon, context: ReadingContext
 ) -> Diagnostic | None:
     """A diagnostic for words `at` to `end` that a phrase has beside others, None where there is no such phrase."""
     sort = "condition" if is_condition else "action"
-    found = [each for each in _found(text, at, end, vocabulary, context) if each[0].entry.sort == sort]
+    all_found = _found(text, at, end, vocabulary, context)
+    found = [each for each in all_found if each[0].entry.sort == sort and not each[0].entry.constrains]
     if not found:
         return None
     span, whole = text.span(at, end), _with_article(text, at, end)
-    inside = [each for each in found if each[0].before]
+    inside = [each for each in found if each[0].before and any(isinstance(part, str) for part in each[0].said)]
     if inside:
         place = max(place for _, place in inside)
         fewest = min(len(gap.missing) for gap, other in inside if other == place)
@@ -54,7 +60,7 @@ def explain_fragment(
     first = {gap.entry.id: " ".join(gap.missing) for gap, _ in reversed(found)}
     offered = sorted(first, key=lambda node_id: -ways[node_id])[:_MOST_OFFERED]
     example = ", or: ".join(f"{first[node_id]} {whole.text}" for node_id in offered)
-    is_value = all(not isinstance(part, str) for part in found[0][0].behind)
+    is_value = all(not isinstance(part, str) for part in found[0][0].said)
     return diagnostic("BT019" if is_value else "BT154", span, words=span.text, example=example)
 
 
@@ -121,7 +127,7 @@ def _without_words(entry: Entry, form: Form) -> Iterator[_Gap]:
 
 
 def _begins_with(gap: _Gap, start: str) -> bool:
-    part = (*gap.before, *gap.behind)[0]
+    part = gap.said[0]
     return start == (part if isinstance(part, str) else f"{{{gap.entry.slot(part.name).type}}}")
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from btlang.record import Record
 from btlang.text.words import Words
-from btlang.vocabulary.entry import MANNER
+from btlang.vocabulary.entry import MANNER, RECIPIENT, UNMARKED
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode
 from btlang.vocabulary.verbs import Frame
@@ -59,5 +59,7 @@ def _empty_roles(
             if length and role.name != MANNER:
                 yield role.type, at + length
             theme = context.read(role.type, text, at) if role.is_direct and not has_theme else None
+            if theme is not None and role.name == RECIPIENT:  # `give him the medicine`
+                yield from ((each.type, theme[1]) for each in frame.roles if each.name in UNMARKED)
             if theme is not None:
                 yield from _empty_roles((frame,), text, theme[1], context, True)

@@ -1,16 +1,25 @@
-"""What is said where a name is missing: of `every place except the hall` (BT152), and of points (BT153)."""
+"""What is said where a name is missing: of things that nobody knows (BT013), of
+`every place except the hall` (BT152), and of points (BT153)."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.explanations.spelling_rule import is_respelling
+from btlang.text.enumeration import joined
+from btlang.text.source import Span
 from btlang.text.spelling import nearest
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import ALL
+from btlang.vocabulary.value_type import ValueType
 
-_MOST_SHOWN = 5
+_MOST_NAMES = 12  # that a message lists
+_KIND_NAMES = {"kinds": "kind"}
+"""What messages call types whose names are no words for people."""
 
 
 def explained(text: Words, value: SlotValue, vocabulary: Lexicon, context: ReadingContext) -> Diagnostic:
@@ -28,7 +37,7 @@ def explained(text: Words, value: SlotValue, vocabulary: Lexicon, context: Readi
     after = context.values.exception(text, at)
     if after and context.read(kind, text, after) is None:
         unknown = text.span(after, max(value.last, after + 1)).text
-        near = nearest(unknown.lower(), names) or names[:_MOST_SHOWN]
+        near = nearest(unknown.lower(), names) or names[:_MOST_NAMES]
         return diagnostic(
             "BT152", span, words=span.text, reason=f"there's no {kind} called '{unknown}'",
             advice=f"Known: {', '.join(near)}",
@@ -49,3 +58,22 @@ def explained(text: Words, value: SlotValue, vocabulary: Lexicon, context: Readi
 def _misfit(text: Words, value: SlotValue, reason: str, advice: str) -> Diagnostic:
     span = text.span(value.first, value.last)
     return diagnostic("BT152", span, words=span.text, reason=reason, advice=advice)
+
+
+def unnamed(span: Span, kinds: Sequence[ValueType], understood: str, vocabulary: Lexicon) -> Diagnostic:
+    """BT013: nothing of these kinds has such a name."""
+    known = list(dict.fromkeys(name for kind in kinds for name in vocabulary.values.said_names(kind.name)))
+    said = joined(list(dict.fromkeys(_KIND_NAMES.get(kind.name, kind.name) for kind in kinds)), "or")
+    words = span.text.lower()
+    near = [name for name in nearest(words, known) if is_respelling(words, name.lower(), vocabulary)]
+    fix = (span, near[0]) if near else None
+    return diagnostic("BT013", span, fix=fix, type=said, words=span.text, help=understood + near_names(near, known))
+
+
+def near_names(near: list[str], known: list[str]) -> str:
+    """The advice that lists the names that were probably meant, or those that there are."""
+    if near:
+        return "Similar: " + ", ".join(near[:_MOST_NAMES])
+    if len(known) > _MOST_NAMES:
+        return f"Known: {', '.join(known[:_MOST_NAMES])} and {len(known) - _MOST_NAMES} more"
+    return "Known: " + ", ".join(known) if known else "This world has none."

@@ -12,13 +12,22 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.explanations.fragments import explain_fragment
 from btlang.frontends.mission.explanations.lacking import not_two, unreferred, untold, value_example
 from btlang.frontends.mission.explanations.misfits import Misfit, misfits_of
+from btlang.frontends.mission.explanations.nameless import near_names, unnamed
 from btlang.frontends.mission.explanations.roles import explain_role
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
 from btlang.frontends.mission.explanations.times import explain_time, without_hour
 from btlang.frontends.mission.symbols.definitions import Definitions
 from btlang.frontends.mission.symbols.nodes import misread_node
 from btlang.frontends.mission.symbols.prefixes import span_of
-from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Called, Token
+from btlang.frontends.mission.token import (
+    CORRELATIVES,
+    QUANTIFIERS,
+    Called,
+    Listed,
+    Token,
+    arguments_of,
+    run_start,
+)
 from btlang.text.enumeration import joined
 from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start
@@ -33,9 +42,6 @@ from btlang.vocabulary.value_type import OBJECT, PLACE, WORLD, ValueType, with_u
 from btlang.vocabulary.verbs import canonical
 from btlang.vocabulary.word_tree import SLOTS, find
 
-_MOST_NAMES = 6  # that a message lists
-_KIND_NAMES = {"kinds": "kind"}
-"""What messages call types whose names are no words for people."""
 _LIST = "list of names"
 """What a word in the plural needs before it."""
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
@@ -114,7 +120,7 @@ def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
     """BT043: a name in braces that no value has."""
     name, names = (key.replace("_", " ").strip(), [other.replace("_", " ").strip() for other in known])
     near = nearest(name, names)
-    advice = _near_names(near, names) if names else "This mission has no named values yet."
+    advice = near_names(near, names) if names else "This mission has no named values yet."
     braces = re.search(r"\{(\s*" + r"[\W_]+".join(map(re.escape, key.split("_"))) + r"\s*)\}", span.text, re.IGNORECASE)
     fix = None
     if near and braces:
@@ -182,17 +188,21 @@ def _misfit(
             example=value_example(named[0], vocabulary),
         )
     if named:
-        known = [name for kind in named for name in vocabulary.values.said_names(kind.name)]
-        kinds = joined(list(dict.fromkeys(_KIND_NAMES.get(kind.name, kind.name) for kind in named)), "or")
-        near = nearest(span.text.lower(), known)
-        fix = (span, near[0]) if near else None
-        understood = f"I understood '{head} ...'. " if at > first else ""
-        advice = understood + _near_names(near, known)
-        return diagnostic("BT013", span, fix=fix, type=kinds, words=span.text, help=advice)
+        return unnamed(span, named, f"I understood '{head} ...'. " if at > first else "", vocabulary)
     if text.words[at][0] != '"':  # `turn leftt` lacks no angle
         part = explain_fragment(text, first, end, False, vocabulary, context)
         return part or _unknown_phrase(text, first, max(end, at + 1), vocabulary, definitions, [])
     return diagnostic("BT011", span, words=span.text, wanted=f"{wanted} is needed", example=example)
+
+
+def _listed(text: Words, at: int, before: list[Token], vocabulary: Lexicon) -> ValueType | None:
+    """What one more thing of a list is: `visit the lab and the attic`."""
+    last = run_start(before, len(before), ("and", "or", "comma"))
+    said = before[last - 1].value if 0 < last < len(before) and at in text.articles else None
+    if not isinstance(said, Called | Listed) or not arguments_of(said)[-1]:
+        return None
+    kind = said.entry.slot(arguments_of(said)[-1][-1][0]).type
+    return vocabulary.types[kind] if kind in WORLD else None
 
 
 def _wrong_type(span: Span, known: Known, wanted: str) -> Diagnostic:
@@ -259,7 +269,7 @@ def _unknown_phrase(
         places = vocabulary.values.said_names(PLACE) if PLACE in vocabulary.types else []
         advice = "".join(f'A line of the world file says which place it is: home = "{place}"' for place in places[:1])
         home = text.span(unknown_home, unknown_home + 1)
-        return diagnostic("BT013", home, type=PLACE, words=home.text, help=advice or _near_names([], places))
+        return diagnostic("BT013", home, type=PLACE, words=home.text, help=advice or near_names([], places))
     is_node = text.words[at] in (phrase for role in NODE_ROLES for phrase in vocabulary.roles[role])
     meant = longest(vocabulary.trie, text, at + 1, vocabulary.context) if is_node else None
     is_phrase = meant is not None and meant.meaning.entry is not None
@@ -282,6 +292,9 @@ def _unknown_phrase(
         name = text.span(at + 1, end)  # `do the round`
         advice = f"To give commands this name, write them in a line of their own: {name.text} is ..."
         return diagnostic("BT010", name, kind="name", words=name.text, help=advice)
+    listed = _listed(text, at, before, vocabulary)
+    if listed is not None:
+        return unnamed(span, [listed], "", vocabulary)
     inside = [(name, end - at) for name in names if f" {name} " in written]
     near = dict(inside) | dict(_nearest_phrases(tuple(text.words[at:end]), vocabulary, tuple(names))) | dict(inside)
     if not near:  # a value alone, in a list or where the other words are left out: `if Allice or Bob is near`
@@ -373,14 +386,6 @@ def _begins_like(written: list[str], start: list[str], vocabulary: Lexicon) -> b
     first, joined = written[0], "".join(start)
     pairs = (first, start[0]), (first, joined), ("".join(written), joined)
     return any(one == other or is_respelling(one, other, vocabulary) for one, other in pairs)
-
-
-def _near_names(near: list[str], known: list[str]) -> str:
-    if near:
-        return "Similar: " + ", ".join(near[:_MOST_NAMES])
-    if len(known) > _MOST_NAMES:
-        return f"Known: {', '.join(known[:_MOST_NAMES])} and {len(known) - _MOST_NAMES} more"
-    return "Known: " + ", ".join(known) if known else "This world has none."
 
 
 def _article(word: str) -> str:

@@ -34,6 +34,10 @@ class Unreadable(Exception):
         self.wanted = wanted
 
 
+class GivenTwice(Unreadable):
+    """A port that has a value already."""
+
+
 def read_node(
     text: Words,
     at: int,
@@ -78,7 +82,7 @@ def read_details(
 ) -> tuple[NodeCall, int] | None:
     """What is said behind a phrase that has the ports `taken`: `called "first" with speed 2`, and where it ends.
 
-    It has no id. None where nothing of that kind follows, or it can't be read.
+    It has no id. None where nothing of that kind follows, or it can't be read. Raises GivenTwice.
     """
     reader, ports, name, first = _Reader(text, vocabulary, names), dict(taken), "", at
     try:
@@ -86,6 +90,8 @@ def read_details(
         if called:
             name, at = reader.text(called)
         outputs, at = reader.ports(at, ports)
+    except GivenTwice:
+        raise
     except Unreadable:
         return None
     own = tuple((port, value) for port, value in ports.items() if port not in taken)
@@ -192,7 +198,7 @@ class _Reader:
                 value, at = self.text(value_at)
             begins, gives = True, bool(giving_at) or (gives and not with_at)
             if key in ports:
-                raise Unreadable(following, f"another port than {key}")
+                raise GivenTwice(following, f"another port than {key}")
             ports[key] = value
             outputs += [key] if gives else []
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.symbols.nodes import read_details
-from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.symbols.nodes import GivenTwice, read_details, unreadable
+from btlang.frontends.mission.token import Called, Listed, Token, arguments_of
 from btlang.frontends.mission.tokens.two_goals import two_goals
 from btlang.text.source import Span
-from btlang.text.words import END_OF_TEXT, Words
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.adjectives import OWNER
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.entry import MANNER, Entry
@@ -24,6 +24,7 @@ from btlang.vocabulary.word_tree import find
 
 NEGATED = frozenset(("negated", "negated_twice"))
 """The roles of conditions that say `not` themselves."""
+_ENDS = (END_OF_STATEMENT, END_OF_TEXT, ";", ")")
 _ODD = ("", "{", "(")  # how texts begin that are no plain values: of unknown names, references, choices and points
 
 
@@ -89,7 +90,11 @@ class Calls:
             return at
         if longest(self._vocabulary.trie, self._text, at, self._context) is not None:
             return at  # `with 5 s in between`
-        read = read_details(self._text, at, dict(said.arguments), self._vocabulary, names)
+        try:
+            read = read_details(self._text, at, dict(said.arguments), self._vocabulary, names)
+        except GivenTwice as problem:
+            self.problems.append(unreadable(self._text, at, problem))
+            return next(end for end in range(problem.at, len(self._text.words)) if self._text.words[end] in _ENDS)
         if read is None:
             return at
         token.value, token.end = said.replace(details=read[0]), self._text.ends[read[1] - 1]
@@ -141,6 +146,29 @@ class Calls:
     def is_alternative(self, token: Token, reference: str) -> bool:
         """Whether a value is the one of a command's alternatives that succeeds."""
         return reference in self._alternatives and self._alternatives[reference][0] is token
+
+    def search_on(self, search: Token, further: Match) -> bool | None:
+        """`look for the cup in the kitchen, then in the lab`: one search, which ends where it succeeds.
+
+        Returns whether it is one, None where it isn't clear.
+        """
+        said, entry = search.value, further.meaning.entry
+        if not isinstance(said, Called | Listed) or entry is not said.entry or not entry.first:
+            return False
+        places = [value for value in further.values if value.type == PLACE]
+        before = [dict(each) for each in arguments_of(said)]
+        names = {value.name for value in places}
+        added = dict(self.arguments(entry, [value.replace(more=()) for value in further.values]))
+        if any(added[name] != each.get(name) for each in before for name in added.keys() - names):
+            return False if all(text[:1] not in _ODD for text in added.values()) else None
+        if len(places) != 1 or any(text[:1] in _ODD for each in (*before, added) for text in each.values()):
+            return None
+        name = places[0].name
+        more = (tuple({**added, name: text}.items()) for text in places[0].texts)
+        reference = self._reference(PLACE)
+        search.value = Listed(entry, (*arguments_of(said), *more), "or")
+        self._alternatives[reference], self._context.latest[PLACE] = (search, places[0]), reference
+        return True
 
     def _write_down(self, reference: str) -> None:
         """A pronoun stands for the alternative that succeeds, which is written down."""

@@ -6,12 +6,10 @@ The command fails where the condition doesn't hold. So its denial means that the
 
 from __future__ import annotations
 
-from btlang.diagnostics.diagnostic import diagnostic
+from collections.abc import Container
+
 from btlang.frontends.mission.token import (
-    FORMS,
     JOINTS,
-    LINES,
-    RULES,
     STATEMENT_ENDS,
     Called,
     Listed,
@@ -21,81 +19,219 @@ from btlang.frontends.mission.token import (
     statement_start,
     texts_of,
 )
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.frontends.mission.tokens.going_on import BRANCHES, GoingOn
+from btlang.frontends.mission.tokens.sentence_reader import hears, may_fail, searches
+from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, WORKS, asked_about, settle
+from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.text.source import Span
-from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import PLACE
+from btlang.vocabulary.value_type import PERSON
 from btlang.vocabulary.word_tree import find
 
-_HEARS = "ears"
-_JOINTS = JOINTS | STATEMENT_ENDS
-_FAILS, _WORKS, _UNANSWERED = "if_fails", "if_works", "if_unanswered"
-_MEASURES = frozenset(("for", "up_to", "within", "count"))
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.frontends.mission.token import Value
+
 _ASKING = frozenset(("if", "as_soon_as", "once"))
-_FORMS = FORMS | {"every_day"}
+_DONE = ("command", "name")
 
 
-class Outcomes(SentenceReader):
+class Outcomes(GoingOn):
     """Those of one text, behind the tokens that it has so far."""
 
-    _looked: tuple[int, Token | None, int, frozenset[str]] = 0, None, 0, frozenset()
-    """How many tokens have been looked at, the last of them, where its statement begins, and the kinds in that."""
+    def settle(self, end: int) -> int:
+        """What the condition asks that ends at a word is left out where the command before it has settled it.
 
-    def settle(self, end: int) -> None:
-        """What the condition asks that ends at a word is left out where the command before it has settled it."""
+        Returns where to go on: behind a time that says how long the command may take.
+        """
         tokens, roles = self._tokens, self._vocabulary.roles
         if self._text.words[end] in (*roles["or"], *roles["and"]):
-            return  # `go to Bob. If he isn't there or bumped, A` asks more
-        denied = tokens[-2].kind == "not"
+            return end  # `go to Bob. If he isn't there or bumped, A` asks more
+        denied, asked = tokens[-2].kind == "not", tokens[-1]
         form = len(tokens) - (3 if denied else 2)
         if form < 1 or tokens[form].kind not in _ASKING:
-            return
+            return end
+        if denied and tokens[form].kind == "if" and tokens[form - 1].kind in ("semi", "newline"):
+            at = asked_about(tokens, form, lambda token: self._is_settled(token, asked))
+            if (
+                at is not None
+                and not self._may_ask_again(at, form, end)
+                and BRANCHES.isdisjoint(self._statement(form - 1)[1])
+            ):
+                return self._settle(at, form, asked.end, end)
         command = self._before(form)
         if command is None:
             if denied and tokens[form].kind == "if":
                 self._join_otherwise(form)
-            return
+            return end
         first = self._statement(command)[0] if denied else command
-        if any(_achieves(tokens[at], tokens[-1]) for at in range(command, first - 1, -1)):
-            self._join(command, form, tokens[-1].end, denied)
+        if any(_achieves(tokens[at], asked) for at in range(command, first - 1, -1)):
+            self._join(command, form, asked.end, denied)
+        return end
 
-    def unable(self, at: int) -> int:
-        """`if you can't grab it`, behind a command about it: if that fails."""
-        front, form = find(self._vocabulary.unable, self._text.words, at), len(self._tokens) - 1
-        command = self._before(form) if front is not None and form > 0 else None
-        if front is None or command is None:
-            return 0
-        match = longest(self._vocabulary.trie, self._text, front[1], self._context)
-        if match is None or match.meaning.entry is None or match.meaning.entry.sort != "action":
-            return 0
-        if match.meaning.entry.first:
-            form += self._reach_search(form, self._text.span(at, match.last))
-            command = self._before(form)
-            if command is None:
-                return 0
-        asked = {name for value in match.values for name in _names(value.text)}
-        for token in self._tokens[self._statement(command)[0] : command + 1]:
-            value = token.value
-            if isinstance(value, Called | Listed) and (asked or value.entry.id == match.meaning.entry.id):
-                if asked <= _named(value):
-                    self._join(command, form, self._text.ends[match.last - 1], True)
-                    return match.last
-        return 0
-
-    def if_works(self, end: int) -> None:
-        """`look for the key, and bring it to me if you find it`: words that end there go before their command."""
+    def _may_ask_again(self, at: int, form: int, end: int) -> bool:
+        """Whether a condition behind `wait up to 5 min until C` asks what is so then."""
         tokens = self._tokens
-        command = len(tokens) - 2
-        first = run_start(tokens, command, JOINTS)
-        found = tokens[first - 1].value if 0 < first < command else None
-        if not self._is_end(end) or tokens[command].kind != "command" or not isinstance(found, Called | Listed):
+        last = run_start(tokens, form, STATEMENT_ENDS)
+        limits = [token.kind for token in (tokens[at - 1], *tokens[at + 1 : last])]
+        waits = tokens[at].kind == "condition" and (limits == ["wait_up_to"] or limits[1:] in (["for"], ["up_to"]))
+        return waits and self._time_behind(end) is None
+
+    def _time_behind(self, end: int) -> Match | None:
+        """The time that stands at a word."""
+        limit = longest(self._vocabulary.trie, self._text, end, self._context)
+        return limit if limit is not None and limit.meaning.role in ("within", "delay") else None
+
+    def _is_settled(self, token: Token, asked: Token) -> bool:
+        """Whether a command, or what is waited for, is what a condition asks."""
+        if token.kind == "command":
+            return _achieves(token, asked)
+        somebody = self._vocabulary.negative_subjects
+        return token.value == asked.value or all(_is_presence(each.value, somebody) for each in (token, asked))
+
+    def _settle(self, at: int, form: int, stop: int, end: int) -> int:
+        """Makes words from a form up to a character, and a word, ask whether the command at a place failed."""
+        tokens, start = self._tokens, self._tokens[form].start
+        del tokens[form:]
+        go_on(tokens)
+        command = tokens[at]
+        if command.kind == "condition":  # `wait up to 5 min until C` alone works in any case
+            wait = tokens[at - 1]
+            if wait.kind == "wait_up_to":
+                tokens.insert(at + 1, Token("within", wait.start, wait.end, wait.value))
+                wait.kind, wait.value = "wait_until", None
+            elif at + 1 < len(tokens) and tokens[at + 1].kind in ("for", "up_to"):
+                tokens[at + 1].kind = "within"
+        role = settle(tokens, at)
+        self._looked = 0, None, 0, frozenset()
+        if not role:
+            self._unclear(Span(self._text.source, start, stop))
+        tokens.append(Token("otherwise", start, stop) if role == "otherwise" else Token("or", start, stop, FAILS))
+        return self._limit(command, end)
+
+    def _limit(self, command: Token, end: int) -> int:
+        """`if he doesn't come within 5 min`: how long a command may take is said behind the words that ask about it."""
+        limit = self._time_behind(end)
+        if limit is None:
+            return end
+        at = self._tokens.index(command) + 1
+        if self._tokens[at].kind in MEASURES:
+            return end
+        said = self._calls.token(limit, end)
+        self._tokens.insert(at, Token("within", said.start, said.end, said.value))
+        return limit.last
+
+    def unanswered(self, end: int) -> int:
+        """`if she doesn't answer within 20 s`: how long the question waits."""
+        asked = (token for token in reversed(self._tokens) if token.kind == "command" and hears(token))
+        question = next(asked, None)
+        return self._limit(question, end) if question is not None else end
+
+    def read(self, at: int) -> int:
+        """Words that go on with what has happened to the command before them. Returns where to go on, 0 for others."""
+        if self._tokens and self._tokens[-1].kind == "if":
+            return self._unable(at)
+        if able := find(self._vocabulary.able, self._text.words, at):
+            return self._able(at, able[1])
+        return self._search_elsewhere(at) if self._text.words[at] in self._vocabulary.asking["searching"] else 0
+
+    def _search_elsewhere(self, at: int) -> int:
+        """`look for the cup in the lab. If it isn't there, look in the hall`: for the same thing."""
+        behind = run_start(self._tokens, len(self._tokens), JOINTS)
+        if not behind or self._tokens[behind - 1].value != FAILS:
+            return 0
+        search = next(filter(searches, reversed(self._tokens)), None)
+        return self._partial.add_further(search, at + 1) if search is not None else 0
+
+    def _able(self, at: int, end: int) -> int:
+        """`if you can pick it up, bring it to me`: picks it up unless it just has, and asks if that worked."""
+        asked = longest(self._vocabulary.trie, self._text, at + 1, self._context)
+        if asked is not None and asked.last > end:
+            return self._begin_if(at)  # `if you can see it`
+        match = longest(self._vocabulary.trie, self._text, end, self._context)
+        if match is None or match.meaning.role != "command":
+            match = self._partial.doing(end)
+        if match is None or match.meaning.entry is None or self._text.words[match.last] != ",":
+            return 0
+        if not begins(self._tokens):
+            return 0
+        self._try(match, end, Token(WORKS, self._text.starts[at], self._text.ends[end - 1]))
+        return match.last + 1
+
+    def _begin_if(self, at: int) -> int:
+        self._tokens.append(Token("if", self._text.starts[at], self._text.ends[at]))
+        return at + 1
+
+    def _try(self, match: Match, at: int, form: Token) -> None:
+        """A command and the form that asks how it goes; without the command where it is the one before."""
+        tokens, before = self._tokens, self._before(len(self._tokens))
+        self._partial.append(match, at)
+        if before is not None and tokens[before].value == tokens[-1].value:
+            tokens.pop()
+            go_on(tokens)
+        else:
+            tokens.append(Token("stop", form.start, form.start))
+        tokens.append(form)
+
+    def _unable(self, at: int) -> int:
+        """`if you can't grab it`, behind a command about it: if that fails. Else it is tried first."""
+        front, form = find(self._vocabulary.unable, self._text.words, at), len(self._tokens) - 1
+        match = longest(self._vocabulary.trie, self._text, front[1], self._context) if front is not None else None
+        if front is not None and match is None:
+            reaching = find(self._vocabulary.reaching, self._text.words, front[1])
+            match = self._with_front(front[1], reaching[1], "journey") if reaching is not None else None
+        if front is None or match is None or match.meaning.entry is None or match.meaning.entry.sort != "action":
+            return 0
+        asked, entry = {name for value in match.values for name in _names(value.text)}, match.meaning.entry
+        is_free = BRANCHES.isdisjoint(self._statement(form)[1])
+        stop, is_new = self._text.ends[match.last - 1], form > 0 and self._tokens[form - 1].kind in STATEMENT_ENDS
+        command = asked_about(self._tokens, form, lambda token: _is_about(token, asked, entry))
+        if command is not None and is_free and is_new:
+            return self._settle(command, form, stop, match.last)
+        command = self._before(form) if form else None
+        first = self._statement(command)[0] if command is not None else form
+        if command is not None and any(_is_about(token, asked) for token in self._tokens[first : command + 1]):
+            self._join(command, form, stop, True)
+            return match.last
+        if form and (not is_new or self._tokens[form - 1].kind != "newline"):
+            return 0
+        start = self._tokens.pop().start
+        self._try(match, front[1], Token("or", start, self._text.ends[front[1] - 1], FAILS))
+        return match.last + (self._text.words[match.last] == ",")
+
+    def trailing(self, end: int) -> None:
+        """Words behind a command that ask how the one before went, stand before it: `pick it up. Wave if that worked`.
+
+        BT168 where the one before can't fail: `wave and say "done" if that worked`.
+        """
+        tokens, form, command = self._tokens, self._tokens[-1], len(self._tokens) - 2
+        role = FAILS if form.value == FAILS else form.kind
+        further = end + (self._text.words[end] == ",")
+        behind = longest(self._vocabulary.trie, self._text, further, self._context)
+        is_last = self._is_end(end) or (behind is not None and behind.meaning.role == "otherwise")
+        if not is_last or role not in (FAILS, WORKS, "if_possible") or tokens[command].kind not in _DONE:
             return
-        if found.entry.achieves:
-            start = tokens[command].start
-            tokens[first:] = [Token("stop", start, start), Token(_WORKS, start, start), tokens[command]]
+        first = run_start(tokens, command, JOINTS)
+        said = tokens[first - 1] if first else None
+        if said is None or (role == "if_possible" and may_fail(tokens[command])):
+            return
+        words = Span(self._text.source, form.start, form.end)
+        form.kind = WORKS if role == "if_possible" else form.kind
+        if first < command and said.kind in _DONE:
+            if not may_fail(said):
+                self._unclear(words)
+            at = tokens[command].start
+            tokens[first:] = [Token("stop", at, at), form, tokens[command]]
+        elif said.kind in STATEMENT_ENDS and tokens[statement_start(tokens, first - 1) - 1].kind != "define":
+            done = tokens[command]
+            del tokens[command:]
+            go_on(tokens)
+            asked = FAILS if role == FAILS else WORKS
+            going = self.going_on(asked, words)
+            tokens += [form if going == asked else Token(going, form.start, form.end), done]
 
     def found(self, match: Match, at: int) -> None:
         """`look for the key. When you find it, A, if not B`: with the `if not` it is `if that works`."""
@@ -111,177 +247,22 @@ class Outcomes(SentenceReader):
             form = tokens.pop()
             while tokens and tokens[-1].kind in ("comma", "stop"):
                 tokens.pop()
-            tokens += [Token("stop", form.start, form.start), Token(_WORKS, form.start, form.end)]
-
-    def _statement(self, end: int) -> tuple[int, frozenset[str]]:
-        """Where the statement begins in which the tokens before one stand, and their kinds.
-
-        A statement that goes on and on is looked at from where it was looked at last.
-        """
-        tokens, (done, latest, start, kinds) = self._tokens, self._looked
-        is_known = 0 < done <= end and tokens[done - 1] is latest
-        at, found = end, set[str]()
-        while at > (done if is_known else 0) and tokens[at - 1].kind not in LINES:
-            at -= 1
-            found.add(_FAILS if tokens[at].value == _FAILS else tokens[at].kind)
-        if is_known and at == done:
-            at, found = start, found | kinds
-        self._looked = end, tokens[end - 1] if end else None, at, frozenset(found)
-        return at, self._looked[3]
-
-    def _before(self, form: int) -> int | None:
-        """The command right before a form, with measures of it between them; None where it may not have run."""
-        tokens, command = self._tokens, form - 1
-        while command >= 0 and tokens[command].kind in _JOINTS:
-            command -= 1
-        is_new = any(token.kind in STATEMENT_ENDS for token in tokens[command + 1 : form])
-        while command > 0 and tokens[command].kind in _MEASURES:
-            command -= 1
-        if command < 0 or tokens[command].kind != "command":
-            return None
-        if is_new and not _FORMS.isdisjoint(self._statement(command)[1]):
-            return None  # `If bumped, look for the cup. If it isn't there, A`
-        return command
-
-    def _join(self, command: int, form: int, end: int, denied: bool) -> None:
-        """Makes a form that ends at a character the word between the command and what comes behind."""
-        tokens, behind = self._tokens, command + 1
-        while tokens[behind].kind in _MEASURES:
-            behind += 1
-        is_new = any(token.kind in STATEMENT_ENDS for token in tokens[behind:form])
-        meaning = self._meaning(tokens[form], denied, is_new)
-        if meaning is None:
-            return
-        meaning.end = end
-        del tokens[form:]
-        if is_new:
-            go_on(tokens)
-            role = meaning.kind if meaning.value is None else str(meaning.value)
-            if role != (role := self.going_on(role, Span(self._text.source, meaning.start, end))):
-                meaning = Token(role, meaning.start, end)
-        else:
-            del tokens[behind:]
-        tokens.append(meaning)
-
-    def _join_otherwise(self, form: int) -> None:
-        """`look for the cup. If it is there, A. If it isn't there, B`: the second is `otherwise`."""
-        tokens = self._tokens
-        before = run_start(tokens, form, STATEMENT_ENDS)
-        start, end = tokens[form].start, tokens[-1].end
-        if before < form and _WORKS in self._statement(before)[1]:
-            if self._denies_what_worked(Span(self._text.source, start, end)):
-                del tokens[form:]
-                go_on(tokens)
-                tokens.append(Token("otherwise", start, end))
-
-    def _meaning(self, form: Token, denied: bool, is_new: bool) -> Token | None:
-        """What a form says that asks what the command has settled: that it failed, or worked, or `then`."""
-        word, at = self._text.source.text[form.start : form.end].lower(), form.start
-        if denied:
-            return Token("or", at, at, _FAILS) if form.kind == "if" else None
-        if form.kind != "if" or word in self._vocabulary.asked_once:
-            return Token("then", at, at)
-        return Token(_WORKS, at, at) if is_new else None
-
-    def going_on(self, role: str, words: Span) -> str:
-        """The role of words that go on with the statement before: `if you don't find it` denies `if you find it`.
-
-        BT168 for what goes on with a failure where something stands between: `A. If that fails, B. Otherwise C`.
-        BT145 for silence behind what is no question: `ask "Tea?". If she says no, A. If she says nothing, B`.
-        """
-        word = self._vocabulary.word
-        if role == _UNANSWERED and not self._asks():
-            example = f'ask "Tea?". {word(_WORKS).capitalize()}, wave. {word("otherwise").capitalize()} nod'
-            self._calls.problems.append(diagnostic("BT145", words, words=words.text.rstrip(","), example=example))
-        if role not in ("otherwise", _FAILS, _WORKS):
-            return role
-        if role == _FAILS and not set(self._vocabulary.asking["search"]).isdisjoint(_words(words.text)):
-            self._reach_search(len(self._tokens), words)
-        kinds = self._statement(len(self._tokens))[1]
-        if role == _FAILS and _WORKS in kinds and self._denies_what_worked(words):
-            return "otherwise"
-        if _WORKS in kinds if role == _FAILS else _FAILS in kinds and _WORKS not in kinds:
-            self._unclear(words)
-        return role
-
-    def _unclear(self, words: Span) -> None:
-        """BT168: about which command the words are."""
-        word = self._vocabulary.word
-        example = f"dock. {word(_WORKS)}, wave. {word('otherwise')} nod"
-        self._calls.problems.append(diagnostic("BT168", words, words=words.text, example=example))
-
-    def _reach_search(self, end: int, words: Span) -> int:
-        """`Look for the key. Pick it up. If you can't find it, A`: the statements up to the search become one.
-
-        `end` is behind the last of them. Returns by how many tokens there are more or fewer. BT168 where forms stand
-        between.
-        """
-        tokens, count, joints = self._tokens, len(self._tokens), list[tuple[int, int]]()
-        end = run_start(tokens, end, STATEMENT_ENDS)
-        first = statement_start(tokens, end)
-        while not any(map(_searches, tokens[first:end])):
-            behind, first = first, run_start(tokens, first, STATEMENT_ENDS)
-            if first == behind or not first or not _FORMS.isdisjoint(token.kind for token in tokens[behind:end]):
-                if any(map(_searches, tokens[:behind])):
-                    self._unclear(words)
-                return 0
-            joints.append((first, behind))
-            first, end = statement_start(tokens, first), first
-        if _FORMS.isdisjoint(token.kind for token in tokens[first:end]):
-            for before, behind in joints:
-                at = tokens[before].start
-                tokens[before:behind] = [] if tokens[behind].kind == "then" else [Token("then", at, at)]
-            self._looked = 0, None, 0, frozenset()
-        elif joints:
-            self._unclear(words)
-        return len(tokens) - count
-
-    def _denies_what_worked(self, words: Span) -> bool:
-        """Whether the words deny the latest ones by which the statement asked whether its command worked."""
-        at = next(at for at in reversed(range(len(self._tokens))) if self._tokens[at].kind == _WORKS)
-        worked, pronouns = self._tokens[at], self._vocabulary.values.pronouns
-        asked, said = _words(self._text.source.text[worked.start : worked.end]), _words(words.text)
-        if any(PLACE in pronouns.get(word, ()) for word in said) and any(map(_moves, self._tokens[at:])):
-            return False  # `if he is there, go to the lab. If he isn't there, A`: it may be about the lab
-        denied = (
-            [*asked[:at], *way.split(), *asked[at + 1 :]]
-            for at, verb in enumerate(asked)
-            for way in self._vocabulary.negations.get(verb, ())
-        )
-        return any(said[-len(each) :] == each for each in denied)
-
-    def _asks(self) -> bool:
-        """Whether the latest command waits for what somebody says."""
-        said = next((token.value for token in reversed(self._tokens) if token.kind == "command"), None)
-        return isinstance(said, Called | Listed) and _HEARS in said.entry.needs
-
-    def doubt_rule(self, role: str, at: int, last: int) -> None:
-        """BT151 for what may be a part of the rule before it: `whenever bumped, wave. Then dock`."""
-        end = run_start(self._tokens, len(self._tokens), STATEMENT_ENDS)
-        words, text = self._text.span(at, last), self._text
-        if not end or "\n" in text.source.text[self._tokens[end - 1].end : words.start]:
-            return
-        kinds = self._statement(end)[1]
-        if kinds.isdisjoint(RULES) or (role == "otherwise" and "if" in kinds):
-            return
-        last += text.words[last] == ","
-        rest = self._end_of_statement(last)
-        said = text.span(last, rest).text if rest > last else "..."
-        word = self._vocabulary.word(_FAILS if role == "otherwise" else role)
-        one = f"... {word} {said}" if role == "then" else f"{word}, {said}"
-        self._calls.problems.append(diagnostic("BT151", words, words=words.text, one=one, other=said))
+            tokens += [Token("stop", form.start, form.start), Token(WORKS, form.start, form.end)]
 
 
-def _words(text: str) -> list[str]:
-    return text.lower().rstrip(",").split()
+def _is_about(token: Token, asked: set[str], entry: Entry | None = None) -> bool:
+    """Whether a command is about the same things, and the one that an entry says."""
+    value = token.value
+    if not isinstance(value, Called | Listed) or not (asked or entry is not None):
+        return False
+    return (entry is None or value.entry.id == entry.id) and asked <= _named(value)
 
 
-def _searches(token: Token) -> bool:
-    return isinstance(token.value, Called | Listed) and token.value.entry.first
-
-
-def _moves(token: Token) -> bool:
-    return isinstance(token.value, Called | Listed) and MOVES in token.value.entry.resources
+def _is_presence(value: Value, somebody: Container[str]) -> bool:
+    """Whether a condition is about somebody whom it doesn't name."""
+    if not isinstance(value, Called) or any(slot.type == PERSON for slot in value.entry.slots):
+        return False
+    return any(word in somebody for phrase in value.entry.phrases[:1] for word in phrase.split())
 
 
 def _achieves(command: Token, asked: Token) -> bool:

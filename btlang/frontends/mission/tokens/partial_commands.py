@@ -8,7 +8,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cached_property
 
-from btlang.frontends.mission.token import LINES, Called, Listed, Remembered, Token, arguments_of, constraint_of
+from btlang.frontends.mission.token import (
+    LINES,
+    Called,
+    Listed,
+    Remembered,
+    Token,
+    arguments_of,
+    constraint_of,
+    run_start,
+)
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.left_out import left_out
 from btlang.frontends.mission.tokens.word_matches import (
@@ -208,10 +217,29 @@ class PartialCommands:
         read = self._left_out(at)
         if read is None or read[0].last < least:
             return 0
-        token = self._token_of(read[0], at)
+        token, before = self._token_of(read[0], at), said_before(self._tokens)
+        is_further = before is not None and self._calls.search_on(before, read[0])
+        if is_further is None:
+            return 0
+        if before is not None and is_further:
+            del self._tokens[run_start(self._tokens, len(self._tokens), JOINTS) :]
+            before.end = token.end
+            return read[0].last
         self._said[token.start] = read[1]
         self._share_recipient(token)
         enlist(self._tokens, token)
+        return read[0].last
+
+    def add_further(self, before: Token, at: int) -> int:
+        """The same command as another one, with words of that left out."""
+        words = self._said.get(before.start) or words_of(self._text, before)
+        read = left_out(self._text, words, at, self._tries, self._context) if words else None
+        value = before.value
+        if read is None or not isinstance(value, Called | Listed) or read[0].meaning.entry is not value.entry:
+            return 0
+        token = self._token_of(read[0], at)
+        self._said[token.start] = read[1]
+        self._tokens.append(token)
         return read[0].last
 
     def _share_recipient(self, last: Token) -> None:

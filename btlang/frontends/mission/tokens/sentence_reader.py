@@ -13,6 +13,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
 
+_HEARS = "ears"
 _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ")")
 
 
@@ -61,3 +62,19 @@ def leads_to(journey: Token, place: str) -> bool:
     """Whether a command drives to a place."""
     value = journey.value
     return isinstance(value, Called) and place in [text for _, text in value.arguments]
+
+
+def may_fail(token: Token) -> bool:
+    """Whether a command is a task, or a name whose commands may have one."""
+    value = token.value
+    return token.kind == "name" or (isinstance(value, Called | Listed) and not value.entry.accompaniment)
+
+
+def hears(token: Token) -> bool:
+    """Whether a command waits for what somebody says."""
+    return isinstance(token.value, Called | Listed) and _HEARS in token.value.entry.needs
+
+
+def searches(token: Token) -> bool:
+    """Whether a command looks for something in one place after the other."""
+    return isinstance(token.value, Called | Listed) and token.value.entry.first

@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Listed, Token, run_start, statement_start
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.frontends.mission.token import (
+    FORMS,
+    JOINTS,
+    STATEMENT_ENDS,
+    Called,
+    Listed,
+    Token,
+    run_start,
+    statement_start,
+)
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, may_fail
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.tree.asked import ASK, asking_verbs
 from btlang.vocabulary.capabilities import MOVES
@@ -20,6 +30,7 @@ _STATEMENT_ENDS = (END_OF_STATEMENT, END_OF_TEXT)
 _OPERANDS = frozenset(("command", "name", "close", "wait", "nothing", "fail", "node"))
 _IN_ALL = frozenset(("count", "at_most", "up_to_times", "tries"))
 _TWICE = "2"
+_REPAIRS = _OPERANDS | JOINTS | {"open"}
 
 
 class Tries(SentenceReader):
@@ -36,19 +47,19 @@ class Tries(SentenceReader):
         is_closed = any(token.kind in ("try", "retry", "repeat") for token in tokens[first:])
         if last < 0 or (tokens[last].kind not in _OPERANDS and not is_closed):
             return 0
-        may_fail = True
+        fails = True
         if not is_closed:
             whole = last < len(tokens) - 1
             first = _first_of_form(tokens, first, last) if whole else _first_of_operand(tokens, last)
-            may_fail = match.meaning.role == "tries" or any(map(_may_fail, tokens[first : last + 1]))
-            if may_fail:
+            fails = match.meaning.role == "tries" or any(map(may_fail, tokens[first : last + 1]))
+            if fails:
                 tokens.insert(first, Token("retry", tokens[first].start, tokens[first].start))
             elif match.meaning.role == "at_most":
                 span = self._text.span(at, match.last)
                 fixed = self._text.source.text[tokens[first].start : tokens[last].end]
                 fixed += f" {match.values[0].text} {self._vocabulary.word('count').split()[-1]}"
                 self._calls.problems.append(diagnostic("BT167", span, words=span.text, fixed=fixed))
-        if may_fail and tokens[-1].kind == "comma":
+        if fails and tokens[-1].kind == "comma":
             tokens.pop()
         count = self._calls.token(match, at)
         count.kind = "count"
@@ -69,20 +80,11 @@ class Tries(SentenceReader):
         asks = self._text.words[at] in self._asking_verbs
         tried = tokens[last - 1] if form and last else None
         if tried is None or tried.kind not in _OPERANDS or (asks and not _is_question(tried)):
-            return self._ask_again(match, at) if asks else self._try_that(match, at)
+            return self._ask_again(match, at) if asks else self._after_repair(match, at) or self._try_that(match, at)
         first = _first_of_form(tokens, statement_start(tokens, last), last)
-        start, stop, number = self._text.starts[at], self._text.ends[match.last - 1], _TWICE
-        behind = match.last + (self._text.words[match.last] == ",")
-        behind += self._text.words[behind] in self._vocabulary.roles["but"]
-        amount = longest(self._vocabulary.trie, self._text, behind, self._context)
-        if amount is not None and amount.meaning.role in ("at_most", "up_to_times", "tries", "count", "more"):
-            stop, number = self._text.ends[amount.last - 1], str(self._calls.token(amount, behind).value)
-            if amount.meaning.role in ("count", "more") and number != "-1":  # `try again twice` is three times in all
-                if not number.isdecimal():
-                    return 0
-                number = str(int(number) + 1)
-        else:
-            amount = None
+        number, end = self._attempts(match)
+        if not number:
+            return 0
         delay = longest(self._vocabulary.trie, self._text, match.last, self._context)
         if delay is not None and delay.meaning.role == "delay":
             return 0  # `try again after 5 minutes`
@@ -90,12 +92,48 @@ class Tries(SentenceReader):
         if tokens[first].kind in ("try", "retry"):
             del tokens[first]
         tokens.insert(first, Token("retry", tokens[first].start, tokens[first].start))
-        tokens.append(Token("count", start, stop, number))
+        tokens.append(Token("count", self._text.starts[at], self._text.ends[end - 1], number))
         if pause is not None:
             tokens.append(Token("every", pause.start, pause.end, pause.value))
-        end = amount.last if amount is not None else match.last
         self._doubt(end)
         return end
+
+    def _attempts(self, match: Match) -> tuple[str, int]:
+        """How many attempts `try again` makes in all with the number behind it, and where that ends; "" for none."""
+        behind = match.last + (self._text.words[match.last] == ",")
+        behind += self._text.words[behind] in self._vocabulary.roles["but"]
+        amount = longest(self._vocabulary.trie, self._text, behind, self._context)
+        if amount is None or amount.meaning.role not in (*_IN_ALL, "once", "more"):
+            return _TWICE, match.last
+        if amount.meaning.role == "once":
+            return _TWICE, amount.last
+        number = str(self._calls.token(amount, behind).value)
+        if amount.meaning.role in ("count", "more") and number != "-1":  # `try again twice` is three times in all
+            number = str(int(number) + 1) if number.isdecimal() else ""
+        return number, amount.last
+
+    def _after_repair(self, match: Match, at: int) -> int:
+        """`A. If that fails, open the door and try again`: A behind what is done in between, so often in all."""
+        tokens = self._tokens
+        end = self._behind(len(tokens))
+        form = next((i for i in reversed(range(statement_start(tokens, end), end)) if tokens[i].value == "if_fails"), 0)
+        last = self._behind(form)
+        if not form or not last or any(token.kind not in _REPAIRS for token in tokens[form + 1 : end]):
+            return 0
+        number, behind = self._attempts(match)
+        first = _first_of_form(tokens, statement_start(tokens, last), last)
+        first += tokens[first].kind in ("try", "retry")
+        tried = [copy(token) for token in tokens[first:last]]
+        start, stop = self._text.starts[at], self._text.ends[behind - 1]
+        if not number or any(token.kind in FORMS for token in tried):
+            return 0
+        tokens[end:] = [Token("then", start, start), Token("open", start, start), *tried, Token("close", stop, stop)]
+        if number != _TWICE:
+            repair = form + 1 + (tokens[form + 1].kind == "comma")
+            tokens[repair:repair] = [Token("retry", start, start), Token("open", start, start)]
+            left = str(int(number) - 1) if number.isdecimal() else number
+            tokens += [Token("close", stop, stop), Token("count", start, stop, left)]
+        return behind
 
     def _ask_again(self, match: Match, at: int) -> int:
         """`ask Bob "Tea?". If he says no, ask again`: what was asked before."""
@@ -177,9 +215,3 @@ def _first_of_operand(tokens: Sequence[Token], last: int) -> int:
         if not depth:
             return at
     return last
-
-
-def _may_fail(token: Token) -> bool:
-    """Whether a command is a task, or a name whose commands may have one."""
-    value = token.value
-    return token.kind == "name" or (isinstance(value, Called | Listed) and not value.entry.accompaniment)

@@ -42,10 +42,17 @@ class UnknownWords:
         self.before_doing = {phrase.split()[0] for phrase in vocabulary.roles["without_entering"]}
         """The words before the forms of verbs that a constraint forbids."""
 
-    def is_reported(self, start: int, end: int) -> bool:
-        """Whether the latest problem is about these characters already."""
+    def report(self, at: int, end: int, match: Match | None) -> None:
+        """Adds why words aren't understood to the problems, unless these tell it already."""
+        start, stop = self._text.starts[at], self._text.ends[end - 1]
         latest = self._problems[-1].span if self._problems else None
-        return latest is not None and latest.source is self._text.source and latest.start <= start and end <= latest.end
+        if latest is not None and latest.source is self._text.source and latest.start <= start and stop <= latest.end:
+            return
+        why = self.why(at, end, match)
+        if why.code == "BT038" and any(problem.code == "BT013" for problem in self._problems):
+            return  # `it` stands for the unknown thing
+        if why.fix is not None or not self._tokens or self._tokens[-1].kind != "never":  # which is told as a whole
+            self._problems.append(why)
 
     def lack_name(self, at: int, last: int) -> bool:
         """Whether a phrase begins that only lacks a name: `without entering the kitchen`, where that is no zone.

@@ -12,7 +12,7 @@ from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.names import Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
-from btlang.frontends.mission.token import BEFORE_CONDITIONS, JOINTS, RULES, Token, constraint_of, go_on
+from btlang.frontends.mission.token import BEFORE_CONDITIONS, JOINTS, RULES, Token, constraint_of, go_on, run_start
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
 from btlang.frontends.mission.tokens.order_words import OrderWords
@@ -183,13 +183,13 @@ class WordReader:
     def _sentence(self, match: Match | None, role: str, at: int) -> int:
         """Replies, prohibitions, questions, wishes and remarks."""
         tokens, text = self._tokens, self._text
-        if tokens and tokens[-1].kind == "if" and (end := self._outcomes.unable(at)):
+        if end := self._outcomes.read(at):
             return end
         is_first = begins(tokens)
         if is_first and (end := self._requests.reply(at, role)):
             return end
         if match is not None and role == "if_unanswered" and (end := self._requests.silence(match, at)):
-            return end
+            return self._outcomes.unanswered(end)
         if match is not None and role == "never" and (end := self._partial.add_forbidden(at, match.last)):
             return end
         if role != "command":
@@ -254,10 +254,8 @@ class WordReader:
         else:
             end = self._unknown.end(at, last)
             end += role == INCLUDE and text.words[end][0] == '"'
-            if self._explain and not self._unknown.is_reported(text.starts[at], text.ends[end - 1]):
-                why = self._unknown.why(at, end, match)
-                if why.fix is not None or not tokens or tokens[-1].kind != "never":  # which is told as a whole
-                    self._problems.append(why)
+            if self._explain:
+                self._unknown.report(at, end, match)
         tokens.append(Token("unknown", text.starts[at], text.ends[end - 1]))
         return end
 
@@ -274,24 +272,25 @@ class WordReader:
         if end := self._read_otherwise(match, role, at):
             return end
         if role in _CONDITIONS:
-            self._condition(match, at)
+            if (end := self._condition(match, at)) > match.last:
+                return end
         elif end := self._operand(match, role, at):
             return end
         if self._text.words[match.last] in self._details and match.meaning.entry is not None:
             end = self._calls.with_details(tokens[-1], match.last, self._named)
             self._calls.note(match)
             return end
-        if match.meaning.entry is None:
-            self._connect(match, role, at)
+        end = self._connect(match, role, at) if match.meaning.entry is None else match.last
         if match.values or self._calls.speaks_of_people:
             self._calls.note(match, len(tokens) > 1 and tokens[-2].kind in ("or", "otherwise"))
-        return match.last
+        return end
 
     def _read_otherwise(self, match: Match, role: str, at: int) -> int:
         """Phrases that are a part of a command where they stand."""
         tokens = self._tokens
         if role == "condition":
-            if len(tokens) > 1 and tokens[-2].kind == "command":
+            before = run_start(tokens, len(tokens), JOINTS)
+            if 0 < before < len(tokens) and tokens[before - 1].kind == "command":
                 if end := self._partial.add_left_out(at, match.last):  # `go to the kitchen and then in the lab`
                     return end
             return self._places.before(at) or self._partial.add_third(at + 1, None) if begins(tokens) else 0
@@ -303,8 +302,8 @@ class WordReader:
             return self._partial.add_left_out(at, match.last)
         return 0
 
-    def _condition(self, match: Match, at: int) -> None:
-        """The tokens of a condition, and what it says of the command before it."""
+    def _condition(self, match: Match, at: int) -> int:
+        """The tokens of a condition, and what it says of the command before it. Returns where to go on."""
         tokens, start = self._tokens, self._text.starts[at]
         if match.meaning.role != "condition":
             tokens.append(Token("not", start, start))
@@ -316,8 +315,7 @@ class WordReader:
         if match.meaning.role != "negated_twice":
             shared = self._origin if self._shares else None
             self._origin = (token, *shared[1:]) if shared is not None else (token, at, match, self._root)
-        if len(tokens) > 2:
-            self._outcomes.settle(match.last)
+        return self._outcomes.settle(match.last) if len(tokens) > 2 else match.last
 
     def _operand(self, match: Match, role: str, at: int) -> int:
         """The token of a command or connective; where a value in it is asked for, the commands that say it."""
@@ -335,8 +333,8 @@ class WordReader:
             tokens[-2].kind = "while_doing"  # `while avoiding the kitchen`
         return 0
 
-    def _connect(self, match: Match, role: str, at: int) -> None:
-        """What the token of a connective is where it stands."""
+    def _connect(self, match: Match, role: str, at: int) -> int:
+        """What the token of a connective is where it stands. Returns where to go on."""
         tokens = self._tokens
         if role in self._meanings_of:
             words = " ".join(self._text.words[at : match.last])
@@ -348,12 +346,13 @@ class WordReader:
         self._order.connect(role)
         if role == "then" and len(tokens) > 1:
             self._outcomes.found(match, at)
-        if role == "if_works":
-            self._outcomes.if_works(match.last)
         if role in ("if_fails", "if_unanswered", "otherwise"):
             tokens[-1].kind, tokens[-1].value = ("or", "if_fails") if role != "otherwise" else (role, None)
         if role in _ROLES:
             tokens[-1].kind = _ROLES[role][len(tokens) > 1 and tokens[-2].kind == "stop"]
+        if role in ("if_works", "if_it_works", "if_fails"):
+            self._outcomes.trailing(match.last)
+        return self._outcomes.unanswered(match.last) if role == "if_unanswered" else match.last
 
     def _statement(self, prefix: Prefix, at: int) -> int:
         """A statement about a value of the mission. Returns where to go on."""

@@ -1,0 +1,191 @@
+"""Words that go on with the statement before them: `if that fails`, `otherwise`, `if you don't find it`."""
+
+from __future__ import annotations
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.frontends.mission.token import (
+    FORMS,
+    JOINTS,
+    LINES,
+    RULES,
+    STATEMENT_ENDS,
+    Called,
+    Listed,
+    Token,
+    go_on,
+    run_start,
+)
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, hears, searches
+from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, WORKS, asked_about, settle
+from btlang.text.source import Span
+from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.value_type import PLACE
+
+_JOINTS = JOINTS | STATEMENT_ENDS
+_UNANSWERED = "if_unanswered"
+BRANCHES = FORMS | {"every_day"}
+"""Raw kinds with which it is open whether a command of the statement has run."""
+
+
+class GoingOn(SentenceReader):
+    """Those of one text, behind the tokens that it has so far."""
+
+    _looked: tuple[int, Token | None, int, frozenset[str]] = 0, None, 0, frozenset()
+    """How many tokens have been looked at, the last of them, where its statement begins, and the kinds in that."""
+
+    def _statement(self, end: int) -> tuple[int, frozenset[str]]:
+        """Where the statement begins in which the tokens before one stand, and their kinds.
+
+        A statement that goes on and on is looked at from where it was looked at last.
+        """
+        tokens, (done, latest, start, kinds) = self._tokens, self._looked
+        is_known = 0 < done <= end and tokens[done - 1] is latest
+        at, found = end, set[str]()
+        while at > (done if is_known else 0) and tokens[at - 1].kind not in LINES:
+            at -= 1
+            found.add(FAILS if tokens[at].value == FAILS else tokens[at].kind)
+        if is_known and at == done:
+            at, found = start, found | kinds
+        self._looked = end, tokens[end - 1] if end else None, at, frozenset(found)
+        return at, self._looked[3]
+
+    def _before(self, form: int) -> int | None:
+        """The command right before a form, with measures of it between them; None where it may not have run."""
+        tokens, command = self._tokens, form - 1
+        while command >= 0 and tokens[command].kind in _JOINTS:
+            command -= 1
+        is_new = any(token.kind in STATEMENT_ENDS for token in tokens[command + 1 : form])
+        while command > 0 and tokens[command].kind in MEASURES:
+            command -= 1
+        if command < 0 or tokens[command].kind != "command":
+            return None
+        if is_new and not BRANCHES.isdisjoint(self._statement(command)[1]):
+            return None  # `If bumped, look for the cup. If it isn't there, A`
+        return command
+
+    def _join(self, command: int, form: int, end: int, denied: bool) -> None:
+        """Makes a form that ends at a character the word between the command and what comes behind."""
+        tokens, behind = self._tokens, command + 1
+        while tokens[behind].kind in MEASURES:
+            behind += 1
+        is_new = any(token.kind in STATEMENT_ENDS for token in tokens[behind:form])
+        meaning = self._meaning(tokens[form], denied, is_new)
+        if meaning is None:
+            return
+        meaning.end = end
+        del tokens[form:]
+        if is_new:
+            go_on(tokens)
+            role = meaning.kind if meaning.value is None else str(meaning.value)
+            if role != (role := self.going_on(role, Span(self._text.source, meaning.start, end))):
+                meaning = Token(role, meaning.start, end)
+        else:
+            del tokens[behind:]
+        tokens.append(meaning)
+
+    def _join_otherwise(self, form: int) -> None:
+        """`look for the cup. If it is there, A. If it isn't there, B`: the second is `otherwise`."""
+        tokens = self._tokens
+        before = run_start(tokens, form, STATEMENT_ENDS)
+        start, end = tokens[form].start, tokens[-1].end
+        if before < form and WORKS in self._statement(before)[1]:
+            if self._denies_what_worked(Span(self._text.source, start, end)):
+                del tokens[form:]
+                go_on(tokens)
+                tokens.append(Token("otherwise", start, end))
+
+    def _meaning(self, form: Token, denied: bool, is_new: bool) -> Token | None:
+        """What a form says that asks what the command has settled: that it failed, or worked, or `then`."""
+        word, at = self._text.source.text[form.start : form.end].lower(), form.start
+        if denied:
+            return Token("or", at, at, FAILS) if form.kind == "if" else None
+        if form.kind != "if" or word in self._vocabulary.asked_once:
+            return Token("then", at, at)
+        return Token(WORKS, at, at) if is_new else None
+
+    def going_on(self, role: str, words: Span) -> str:
+        """The role of words that go on with the statement before: `if you don't find it` denies `if you find it`.
+
+        BT168 for what goes on with a failure where something stands between: `A. If that fails, B. Otherwise C`.
+        BT145 for silence behind what is no question: `ask "Tea?". If she says no, A. If she says nothing, B`.
+        """
+        word = self._vocabulary.word
+        if role == _UNANSWERED and not self._asks():
+            example = f'ask "Tea?". {word(WORKS).capitalize()}, wave. {word("otherwise").capitalize()} nod'
+            self._calls.problems.append(diagnostic("BT145", words, words=words.text.rstrip(","), example=example))
+        if role not in ("otherwise", FAILS, WORKS):
+            return role
+        if role != "otherwise" and not set(self._vocabulary.asking["search"]).isdisjoint(_words(words.text)):
+            role = self._about_search(role, words)
+        kinds = self._statement(len(self._tokens))[1]
+        if role == FAILS and WORKS in kinds and self._denies_what_worked(words):
+            return "otherwise"
+        if WORKS in kinds if role == FAILS else FAILS in kinds and WORKS not in kinds:
+            self._unclear(words)
+        return role
+
+    def _unclear(self, words: Span) -> None:
+        """BT168: about which command the words are."""
+        word = self._vocabulary.word
+        example = f"dock. {word(WORKS)}, wave. {word('otherwise')} nod"
+        self._calls.problems.append(diagnostic("BT168", words, words=words.text, example=example))
+
+    def _about_search(self, role: str, words: Span) -> str:
+        """The role of words that ask whether something was found, which are about the search alone."""
+        at = asked_about(self._tokens, len(self._tokens), searches)
+        start, kinds = self._statement(len(self._tokens))
+        if at is None or not BRANCHES.isdisjoint(kinds):
+            if at is not None and at < start and role == FAILS:
+                self._unclear(words)  # `look for the book. If bumped, wave. If you can't find it, nod`
+            return role
+        end = run_start(self._tokens, len(self._tokens), STATEMENT_ENDS)
+        if role == WORKS and any(token.kind not in MEASURES for token in self._tokens[at + 1 : end]):
+            return role
+        made = settle(self._tokens, at)
+        self._looked = 0, None, 0, frozenset()
+        if not made:
+            self._unclear(words)
+        return made if made == "otherwise" else role
+
+    def _denies_what_worked(self, words: Span) -> bool:
+        """Whether the words deny the latest ones by which the statement asked whether its command worked."""
+        at = next(at for at in reversed(range(len(self._tokens))) if self._tokens[at].kind == WORKS)
+        worked, pronouns = self._tokens[at], self._vocabulary.values.pronouns
+        asked, said = _words(self._text.source.text[worked.start : worked.end]), _words(words.text)
+        if any(PLACE in pronouns.get(word, ()) for word in said) and any(map(_moves, self._tokens[at:])):
+            return False  # `if he is there, go to the lab. If he isn't there, A`: it may be about the lab
+        denied = (
+            [*asked[:at], *way.split(), *asked[at + 1 :]]
+            for at, verb in enumerate(asked)
+            for way in self._vocabulary.negations.get(verb, ())
+        )
+        return any(said[-len(each) :] == each for each in denied)
+
+    def _asks(self) -> bool:
+        """Whether the latest command waits for what somebody says."""
+        said = next((token for token in reversed(self._tokens) if token.kind == "command"), None)
+        return said is not None and hears(said)
+
+    def doubt_rule(self, role: str, at: int, last: int) -> None:
+        """BT151 for what may be a part of the rule before it: `whenever bumped, wave. Then dock`."""
+        end = run_start(self._tokens, len(self._tokens), STATEMENT_ENDS)
+        words, text = self._text.span(at, last), self._text
+        if not end or "\n" in text.source.text[self._tokens[end - 1].end : words.start]:
+            return
+        kinds = self._statement(end)[1]
+        if kinds.isdisjoint(RULES) or (role == "otherwise" and "if" in kinds):
+            return
+        last += text.words[last] == ","
+        rest = self._end_of_statement(last)
+        said = text.span(last, rest).text if rest > last else "..."
+        word = self._vocabulary.word(FAILS if role == "otherwise" else role)
+        one = f"... {word} {said}" if role == "then" else f"{word}, {said}"
+        self._calls.problems.append(diagnostic("BT151", words, words=words.text, one=one, other=said))
+
+
+def _words(text: str) -> list[str]:
+    return text.lower().rstrip(",").split()
+
+
+def _moves(token: Token) -> bool:
+    return isinstance(token.value, Called | Listed) and MOVES in token.value.entry.resources

@@ -1,0 +1,154 @@
+"""Journeys that are said in other words: `from the lab, go to the hall`, `wait at the desk until somebody comes`."""
+
+from __future__ import annotations
+
+from btlang.frontends.mission.token import JOINTS, RULES, Token, run_start, statement_start
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.frontends.mission.tokens.silent_words import BEGINS, begins_item
+from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.language_tables import NOT_ALONE
+from btlang.vocabulary.match import Match, SlotValue
+from btlang.vocabulary.trie import longest
+from btlang.vocabulary.value_type import DOOR, PERSON, PLACE
+from btlang.vocabulary.word_tree import find
+
+_COMES, _COMES_BACK, _DURATION = "WaitForPerson", "ComeBack", "duration"
+
+
+class JourneyWords(SentenceReader):
+    """Those of one text."""
+
+    def _start(self, at: int, end: int) -> int:
+        """`from the lab, go to the hall`, `go from the lab to the hall`: to the first place, then on."""
+        tokens, words = self._tokens, self._text.words
+        if tokens and tokens[-1].kind not in (*BEGINS, *JOINTS):
+            return 0
+        journey = self._with_front(at, end, "journey")
+        if journey is None or self._is_end(journey.last) or any("{" in value.text for value in journey.values):
+            return 0  # `from your room` isn't where it starts
+        behind = journey.last + (words[journey.last] == ",")
+        joint = longest(self._vocabulary.trie, self._text, behind, self._context)
+        self._partial.append(journey, at)
+        tokens.append(Token("then", self._text.ends[journey.last - 1], self._text.ends[journey.last - 1]))
+        return joint.last if joint is not None and joint.meaning.role in ("and", "then") else behind
+
+    def _start_of_leg(self, at: int) -> int:
+        """`go from the lab to the hall`, by the verb at a word."""
+        if self._text.words[at] not in self._vocabulary.journey_verbs:
+            return 0
+        match = longest(self._vocabulary.trie, self._text, at + 1, self._context)
+        return self._start(at, match.last) if match is not None and match.meaning.role == "start_at" else 0
+
+    def _back(self, at: int) -> int:
+        """`go to the lab and back`: to where the journey before it ended, else to where the mission began."""
+        found = find(self._vocabulary.and_back, self._text.words, at)
+        journey = run_start(self._tokens, len(self._tokens), JOINTS) - 1
+        if found is None or journey < 0 or self._journey(self._tokens[: journey + 1]) is not self._tokens[journey]:
+            return 0
+        behind = longest(self._vocabulary.trie, self._text, found[1], self._context)
+        joins = behind is not None and behind.meaning.role in ("and", "then", "count")
+        if not (joins or self._is_end(found[1]) or self._text.words[found[1]] == ","):
+            return 0
+        tokens, first = self._tokens, statement_start(self._tokens, journey)
+        before, entry = self._journey(tokens[:journey]), self._vocabulary.entry(_COMES_BACK)
+        start, end = self._text.starts[at], self._text.ends[found[1] - 1]
+        if before is not None and before in tokens[first:]:
+            journey = tokens.index(before)
+            back = Token("command", start, end, before.value)
+        elif before is None and entry is not None and self._is_first(first):
+            back = self._calls.token(Match(Meaning("command", entry), found[1]), at)
+        else:
+            return 0  # from where it leaves is open
+        tokens.insert(journey, Token("open", tokens[journey].start, tokens[journey].start))
+        del tokens[run_start(tokens, len(tokens), JOINTS) :]
+        tokens += [Token("then", start, start), back, Token("close", end, end)]
+        return found[1]
+
+    def _is_first(self, first: int) -> bool:
+        """Whether a statement without a journey before it begins where the mission does."""
+        is_defined = first > 0 and self._tokens[first - 1].kind == "define"
+        return not is_defined and all(token.kind not in RULES for token in self._tokens[first:])
+
+    def _back_and_forth(self, at: int, end: int) -> int:
+        """`go back and forth between the lab and the hall`: to each of them, again and again."""
+        journey = self._with_front(at, end, "journey")
+        if journey is None or not any(value.more for value in journey.values):
+            return 0
+        if not self._tokens or self._tokens[-1].kind != "repeat":
+            self._tokens.append(Token("repeat", self._text.starts[at], self._text.ends[end - 1]))
+        self._partial.append(journey, at)
+        return journey.last
+
+    def _go_and_see(self, at: int) -> int:
+        """`go and see if Bob is in the lab`: there, and then what is asked."""
+        going = find(self._vocabulary.going, self._text.words, at)
+        check = longest(self._vocabulary.trie, self._text, going[1], self._context) if going is not None else None
+        if going is None or check is None or check.meaning.role != "check":
+            return 0
+        asked = longest(self._vocabulary.trie, self._text, check.last, self._context)
+        places = [value for value in asked.values if value.type in (PLACE, DOOR)] if asked is not None else []
+        journey = self._with_front(at, places[0].first, "journey") if len(places) == 1 else None
+        if journey is None or journey.last != places[0].last:
+            return 0
+        self._partial.append(journey, at)
+        joint = self._text.ends[going[1] - 1]
+        self._tokens.append(Token("then", joint, joint))
+        return going[1]
+
+    def _pace(self, at: int) -> int:
+        """`drive slowly` before all journeys: how they are made."""
+        words = self._text.words
+        manner = find(self._context.manners, words, at + 1) if words[at] in self._vocabulary.journey_verbs else None
+        if manner is None or not begins_item(self._tokens) or self._journey() is not None:
+            return 0
+        behind = longest(self._vocabulary.trie, self._text, manner[1], self._context)
+        joins = behind is not None and behind.meaning.role in ("and", "then")
+        if not (self._is_end(manner[1]) or words[manner[1]] == "," or joins):
+            return 0
+        self._calls.manner = manner[0]
+        return behind.last if behind is not None and joins else manner[1] + (words[manner[1]] == ",")
+
+    def _wait_at(self, match: Match, at: int) -> int:
+        """`wait at the desk until somebody comes`: goes there, then waits."""
+        journey = self._with_front(at, match.last, "journey")
+        if journey is None:
+            return 0
+        waiting = self._with_front(at, journey.last, "waiting")
+        self._partial.append(journey, at)
+        if waiting is None:
+            return journey.last
+        joint = self._text.ends[journey.last - 1]
+        self._tokens.append(Token("then", joint, joint))
+        if waiting.meaning.role == "wait_for":
+            self._tokens.append(Token("wait_for", self._text.starts[journey.last], self._text.ends[waiting.last - 1]))
+            return waiting.last
+        self._partial.append(waiting, journey.last)
+        return waiting.last
+
+    def _wait_for(self, at: int) -> int:
+        """`wait for Bob`, `wait up to 5 min for Bob`: until he comes."""
+        tokens, entry = self._tokens, self._vocabulary.entry(_COMES)
+        waits = bool(tokens) and tokens[-1].kind in ("wait_for", "wait_up_to")
+        found = self._context.read(PERSON, self._text, at) if waits else None
+        if found is None or entry is None or not found[0]:
+            return 0
+        wait = tokens.pop()
+        said = {PERSON: found[0], **({_DURATION: wait.value} if isinstance(wait.value, str) else {})}
+        values = [
+            SlotValue(slot.name, slot.type, said[slot.type], at, found[1]) for slot in entry.slots if slot.type in said
+        ]
+        self._partial.append(Match(Meaning("command", entry), found[1], tuple(values)), at)
+        tokens[-1].start = wait.start
+        return found[1]
+
+    def inspection(self, at: int, end: int) -> int:
+        """`check the lab`: no condition, but a place that is looked at."""
+        found = self._with_front(at, end, "inspecting")
+        if found is None:
+            return 0
+        behind = longest(self._vocabulary.trie, self._text, found.last, self._context)
+        joins = behind is not None and behind.meaning.entry is None and behind.meaning.role not in NOT_ALONE
+        if not (joins or self._is_end(found.last) or self._text.words[found.last] == ","):
+            return 0
+        self._partial.append(found, at)
+        return found.last

@@ -1,0 +1,96 @@
+"""What is done only if a command works: `find the key and bring it to me. If you can't find it, A`.
+
+The condition is about the search alone, so that A isn't done where the key was found and could not be brought.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from btlang.frontends.mission.token import (
+    JOINTS,
+    STATEMENT_ENDS,
+    Called,
+    Listed,
+    Token,
+    run_start,
+    statement_start,
+)
+from btlang.vocabulary.capabilities import MOVES
+
+FAILS, WORKS = "if_fails", "if_works"
+MEASURES = frozenset(("for", "up_to", "within", "count"))
+"""What may stand between a command and the words that ask how it went."""
+_WAITING = ("wait_until", "wait_for", "wait_up_to")
+_SIMPLE = frozenset(("command", "name", "wait", "nothing", *JOINTS))
+_BETWEEN = _SIMPLE | STATEMENT_ENDS | MEASURES | {"open", "close", "meanwhile"}
+_HEADS = frozenset(("every", "every_day", "at", "repeat", "comma", "colon", "open"))
+"""What may stand before the first command of a statement."""
+_OUTSIDE = frozenset(("define", "indent", "dedent"))
+
+
+def asked_about(tokens: Sequence[Token], end: int, is_it: Callable[[Token], bool]) -> int | None:
+    """The place of the latest command before one that words may ask about."""
+    for at in reversed(range(end)):
+        if tokens[at].kind in _OUTSIDE:
+            return None
+        waits = tokens[at].kind == "condition" and at > 0 and tokens[at - 1].kind in _WAITING
+        if (waits or tokens[at].kind == "command") and is_it(tokens[at]):
+            return at
+    return None
+
+
+def settle(tokens: list[Token], at: int) -> str:
+    """Makes the tokens behind a command, up to the end, what is done if it works; the next token asks if it fails.
+
+    Returns the role of that: "otherwise", or "if_fails" where nothing stands between, or "" where it isn't clear
+    whether the rest belongs to the command. A statement before the command ends there.
+    """
+    end = run_start(tokens, len(tokens), STATEMENT_ENDS)
+    first, behind = statement_start(tokens, at), at + 1
+    while behind < end and tokens[behind].kind in MEASURES:
+        behind += 1
+    start = at - 1 if tokens[at].kind == "condition" else at
+    before, rest = tokens[first:start], tokens[behind:end]
+    is_tried = before[:1] != [] and before[0].kind == "try"
+    before = before[is_tried:]
+    if any(token.kind not in _BETWEEN or token.value == FAILS for token in rest):
+        return ""
+    splits = _is_sequence(before)
+    if not splits and not all(token.kind in _HEADS for token in before):
+        return "" if rest else FAILS
+    if not rest and not (splits and before):
+        return FAILS
+    here = tokens[at].end
+    made = [*tokens[start:behind]]
+    if rest:
+        tried = [Token("try", here, here)] if is_tried else []
+        made += [Token("stop", here, here), Token(WORKS, here, here), *tried, *_one_statement(rest)]
+    elif is_tried:
+        made.insert(0, tokens[first])
+    if splits and before:
+        joint = run_start(before, len(before), JOINTS)
+        before = [*before[:joint], Token("semi", before[joint - 1].end, before[joint - 1].end)]
+    tokens[first:end] = [*before, *made]
+    return "otherwise" if rest else FAILS
+
+
+def _is_sequence(before: Sequence[Token]) -> bool:
+    """Whether commands are done before another one, whatever they are joined with."""
+    if any(token.kind not in _SIMPLE for token in before) or not before:
+        return not before
+    last = run_start(before, len(before), JOINTS)
+    value = before[last - 1].value if last else None
+    moves = isinstance(value, Called | Listed) and MOVES in value.entry.resources
+    return 0 < last < len(before) and (moves or before[-1].kind != "and")
+
+
+def _one_statement(rest: Sequence[Token]) -> list[Token]:
+    """The same commands joined by `then` where statements ended."""
+    made: list[Token] = []
+    for token in rest:
+        if token.kind not in STATEMENT_ENDS:
+            made += [] if token.kind in JOINTS and (not made or made[-1].kind == "then") else [token]
+        elif made and made[-1].kind != "then":
+            made.append(Token("then", token.start, token.start))
+    return made
