@@ -14,7 +14,6 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import has_mark, read_source
 from btlang.frontends.table import frontend_of
 from btlang.mission_vocabulary import world_vocabulary
-from btlang.passes.lint.and_means_then import and_means_then_now
 from btlang.testing.names import is_test_file
 from btlang.text.output import show
 from btlang.text.source import Source
@@ -94,8 +93,6 @@ class _Check:
                     report.add(check_tests(source))
                 else:
                     mission = mission_of(self._options, source)
-                    if mission.syntax is not None and self._options.text is None:
-                        report.add(and_means_then_now(mission.syntax, mission.vocabulary))
                     mission.check(robot)
         if self._trees:
             with self._reporting():

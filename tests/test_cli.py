@@ -314,42 +314,6 @@ def test_notes_are_no_problems(btc: Screen) -> None:
     assert (btc.out, btc.err) == ("No problems found.\n", "")
 
 
-@pytest.mark.parametrize(
-    ("text", "both"),
-    [
-        ("go to the lab and wave\npick up the cup and nod", "go to the lab and wave at the same time"),
-        ("wave and nod\ngo to the lab, wave and say hi", "go to the lab, wave and say hi at the same time"),
-        ("go to the lab and if bumped, wave", "go to the lab and (if bumped, wave) at the same time"),
-        ("p is go to the lab\nif bumped:\n  p and wave", "p and wave at the same time"),
-        ("go to the lab and wave  # allow: and\ngo to the hall and nod", "go to the hall and nod at the same time"),
-        ("wave and nod", ""),
-        ("go to the lab and turn left", ""),
-        ("go to the lab then wave, nod", ""),
-        ("go to the lab and the hall", ""),
-        ("go to the lab and wave at the same time", ""),
-        ('ask Alice "Tea?" and remember the last answer as order\nsay {order}', ""),
-        ('here "and" means then\ngo to the lab and wave', ""),
-        ("# allow: and\ngo to the lab and wave", ""),
-    ],
-)
-def test_check_says_once_what_and_meant_before(btc: Screen, tmp_path: Path, text: str, both: str) -> None:
-    """For a text on the command line it says nothing, nor does another verb."""
-    file = tmp_path / "mission.txt"
-    file.write_text(text + "\n")
-    assert btc("check", str(file)) == 0
-    assert btc.err.count("note BT175:") == (1 if both else 0)
-    assert not both or f"  To do both at the same time, write: {both}\n" in btc.err
-    assert btc("tree", str(file)) == 0
-    assert "BT175" not in btc.err
-    assert btc("check", "-c", text) == 0
-    assert "BT175" not in btc.err
-
-
-def test_what_the_note_says_means_at_the_same_time(btc: Screen) -> None:
-    assert btc("tree", "-c", "go to the lab and (if bumped, wave) at the same time") == 0
-    assert btc.out.startswith("Parallel\n")
-
-
 def test_programs_get_notes_as_notes(btc: Screen, tmp_path: Path) -> None:
     file = tmp_path / "mission.txt"
     file.write_text("go to the lab and wave\n")

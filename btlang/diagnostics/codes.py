@@ -209,8 +209,6 @@ _ALL = (
     Code("BT173", "'{words}' has only rules, so it goes on for ever here, and other commands don't run meanwhile.",
          "To let it watch beside them, write: {fixed}", "warning", "only rules"),
     Code("BT174", "'{joint}' means '{then}' here: '{first}' and '{second}' both need the {resource}.", "", "note", "shared part"),
-    Code("BT175", "'{joint}' means '{then}' here since version 0.2; before, it meant at the same time.",
-         "To do both at the same time, write: {both}", "note", "and"),
     Code("BT176", "'{words}' only permits something, so it is left out.", "", "note", "permission"),
     Code("BT177", "'{words}' is left out: I don't know whose things are meant.",
          'The world file can say whose a thing is: owner = "Alice", or owner = "me"', "note", "owner"),

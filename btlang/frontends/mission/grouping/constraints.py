@@ -39,6 +39,11 @@ def taken(scan: Scan, token: Token) -> bool:
         scan.next(token, False)
         return True
     behind = _behind_joint(scan, constraint.kind == "keep in")
+    if not behind and constraint.kind == "keep in" and len(constraint.zones) > 1:
+        words, reason = scan.words(token), "alone it takes one zone"
+        advice = f"Say what is done there: {words} {scan.word('and')} ..."
+        scan.fail("BT152", scan.span(token), words=words, reason=reason, advice=advice)
+        return True
     if not behind:
         return False
     if scan.raw[behind - 1].kind in _UNTIL and scan.raw[behind + 1].kind not in ENDS:

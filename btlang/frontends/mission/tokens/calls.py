@@ -40,6 +40,12 @@ def _keys(text: str) -> Iterable[str]:
     return keys_in(text) if choice is None else (choice.key,)
 
 
+def _sets_of(token: Token) -> list[Choice]:
+    """The sets of all things of a kind that a command has."""
+    texts = [text for _, text in token.value.arguments] if isinstance(token.value, Called) else []
+    return [of for of in map(choice_of, texts) if of is not None and of.how == ALL]
+
+
 class Calls:
     """Makes tokens of the phrases of one text; what is wrong with their values becomes `problems`."""
 
@@ -108,17 +114,30 @@ class Calls:
         """Whether a command is done once for each thing of a set, or of a list that is made one: `goal`."""
         choice = choice_of(goal)
         if choice is not None and choice.type in self._lists and self._lists[choice.type][0] is token:
-            self._make_round(choice, self._lists.pop(choice.type))
+            self._make_round(choice, token, self._lists.pop(choice.type)[1].name)
             return True
-        said = token.value
-        texts = [text for _, text in said.arguments] if isinstance(said, Called) else []
-        return any(of is not None and of.how == ALL and f"{{{of.key}}}" == goal for of in map(choice_of, texts))
+        return any(f"{{{of.key}}}" == goal for of in _sets_of(token))
 
-    def _make_round(self, choice: Choice, made: tuple[Token, SlotValue]) -> None:
+    def make_round(self, token: Token, goal: str) -> bool:
+        """Makes a command that is done with a list, or a set, one round for each; False where these are others."""
+        choice, said = choice_of(goal), token.value
+        if choice is None or choice.how != ALL:
+            return False
+        if isinstance(said, Listed) and said.joiner in ("and", ""):
+            names = dict(choice.parts).get(NAMES, "").split(";")
+            slots = [
+                name for name, text in said.arguments[0] if any(dict(each)[name] != text for each in said.arguments)
+            ]
+            if len(slots) != 1 or [dict(each)[slots[0]] for each in said.arguments] != names:
+                return False
+            self._make_round(choice, token, slots[0])
+            return True
+        return any(of.text == choice.text for of in _sets_of(token))
+
+    def _make_round(self, choice: Choice, token: Token, slot: str) -> None:
         """Makes a set of the list that a command has, whose thing is from there on that of the round."""
-        token, value = made
         assert isinstance(token.value, Listed)
-        arguments = dict(token.value.arguments[0]) | {value.name: choice.text}
+        arguments = dict(token.value.arguments[0]) | {slot: choice.text}
         token.value = Called(token.value.entry, tuple(arguments.items()))
         self._context.latest[choice.type] = f"{{{choice.key}}}"
         self._context.listed.pop(choice.type, None)
@@ -131,7 +150,7 @@ class Calls:
                 choice, made = choice_of(value.text), self._lists.pop(value.type, None)
                 assert choice is not None
                 if made is not None and isinstance(made[0].value, Listed):
-                    self._make_round(choice, made)
+                    self._make_round(choice, made[0], made[1].name)
                     value = value.replace(text=f"{{{choice.key}}}")
                 else:
                     value = value.replace(group=value.text)
@@ -275,6 +294,8 @@ class Calls:
         each = [value.replace(text=text, more=()) for text in value.texts]
         before, behind = match.values[: lists[0]], match.values[lists[0] + 1 :]
         joiner = "or" if entry.first and value.type == PLACE else value.joiner
+        if entry.constrains == "keep out" and joiner == "or":
+            joiner = "and"  # `never enter the hall or the lab`: neither
         return Listed(entry, tuple(self.arguments(entry, (*before, one, *behind)) for one in each), joiner)
 
     def _anywhere(self, value: SlotValue) -> SlotValue:

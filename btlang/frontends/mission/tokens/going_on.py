@@ -16,13 +16,22 @@ from btlang.frontends.mission.token import (
     run_start,
 )
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, hears, searches
-from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, WORKS, asked_about, settle
+from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, WORKS, asked_about, is_about, settle
 from btlang.text.source import Span
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PLACE
+from btlang.vocabulary.word_tree import find
 
 _JOINTS = JOINTS | STATEMENT_ENDS
 _UNANSWERED = "if_unanswered"
+_STOP = "Stop"
+_ENDS = (END_OF_STATEMENT, END_OF_TEXT, ";", ")")
+_CHOICES = frozenset(("if", "unless", "otherwise", WORKS))
+_MEANWHILE = frozenset((*RULES, "while", "until", "meanwhile", "in_parallel"))
+_ENDLESS = frozenset(("every", "every_day", "weekly", "repeat"))
+_BOUNDS = frozenset(("until", "until_time", "for", "indent", *RULES))
 BRANCHES = FORMS | {"every_day"}
 """Raw kinds with which it is open whether a command of the statement has run."""
 
@@ -43,7 +52,7 @@ class GoingOn(SentenceReader):
         at, found = end, set[str]()
         while at > (done if is_known else 0) and tokens[at - 1].kind not in LINES:
             at -= 1
-            found.add(FAILS if tokens[at].value == FAILS else tokens[at].kind)
+            found |= {tokens[at].kind, *((FAILS,) if tokens[at].value == FAILS else ())}
         if is_known and at == done:
             at, found = start, found | kinds
         self._looked = end, tokens[end - 1] if end else None, at, frozenset(found)
@@ -132,8 +141,9 @@ class GoingOn(SentenceReader):
 
     def _about_search(self, role: str, words: Span) -> str:
         """The role of words that ask whether something was found, which are about the search alone."""
-        at = asked_about(self._tokens, len(self._tokens), searches)
         start, kinds = self._statement(len(self._tokens))
+        at = asked_about(self._tokens, len(self._tokens), searches)
+        at = at if at is not None else self._first_about(start, words)
         if at is None or not BRANCHES.isdisjoint(kinds):
             if at is not None and at < start and role == FAILS:
                 self._unclear(words)  # `look for the book. If bumped, wave. If you can't find it, nod`
@@ -146,6 +156,14 @@ class GoingOn(SentenceReader):
         if not made:
             self._unclear(words)
         return made if made == "otherwise" else role
+
+    def _first_about(self, start: int, words: Span) -> int | None:
+        """The first command of a statement about the thing that a pronoun among some words stands for."""
+        types = {kind for word in _words(words.text) for kind in self._vocabulary.values.pronouns.get(word, ())}
+        meant = {self._context.latest[kind] for kind in types if kind in self._context.latest}
+        tokens = self._tokens
+        found = (i for i in range(start, len(tokens)) if any(is_about(tokens[i], {each}) for each in meant))
+        return next(found, None)
 
     def _denies_what_worked(self, words: Span) -> bool:
         """Whether the words deny the latest ones by which the statement asked whether its command worked."""
@@ -165,6 +183,53 @@ class GoingOn(SentenceReader):
         """Whether the latest command waits for what somebody says."""
         said = next((token for token in reversed(self._tokens) if token.kind == "command"), None)
         return said is not None and hears(said)
+
+    def give_up(self, end: int) -> None:
+        """`A. If that fails, say "no" and stop`: the command that ends at a word ends the mission, which has failed.
+
+        BT151 for `if bumped, stop. Then dock`.
+        """
+        tokens, stop = self._tokens, self._tokens[-1]
+        if not isinstance(stop.value, Called) or stop.value.entry.id != _STOP or not self._is_end(end):
+            return
+        kinds = self._statement(len(tokens))[1]
+        if FAILS in kinds:
+            tokens[-1] = Token("fail", stop.start, stop.end)
+        elif not kinds.isdisjoint(_CHOICES) and kinds.isdisjoint(_MEANWHILE) and self._goes_on(end):
+            words, word = Span(self._text.source, stop.start, stop.end), self._vocabulary.word
+            one, other = f"{word('fail')}, which ends the mission", f"{word('nothing')}, and the mission goes on"
+            self._calls.problems.append(diagnostic("BT151", words, words=words.text, one=one, other=other))
+
+    def end_mission(self, at: int) -> int:
+        """`if that fails, end the mission`; at the end of a text it says nothing. Returns where to go on."""
+        found = find(self._vocabulary.finishing, self._text.words, at)
+        if found is None or not self._is_end(found[1]):
+            return 0
+        tokens, kinds = self._tokens, self._statement(len(self._tokens))[1]
+        if kinds.isdisjoint(BRANCHES) and FAILS not in kinds and tokens and not self._goes_on(found[1]):
+            del tokens[run_start(tokens, len(tokens), JOINTS) :]
+        else:
+            tokens.append(Token("fail", self._text.starts[at], self._text.ends[found[1] - 1]))
+        return found[1]
+
+    def _goes_on(self, end: int) -> bool:
+        """Whether anything but `otherwise` is said behind the end of a statement."""
+        words = self._text.words
+        at = next((at for at in range(end, len(words)) if words[at] not in _ENDS), None)
+        behind = longest(self._vocabulary.trie, self._text, at, self._context) if at is not None else None
+        return at is not None and (behind is None or behind.meaning.role not in ("otherwise", FAILS))
+
+    def goes_on_endlessly(self) -> bool:
+        """`every day at 8, A. Then B`: whether A never ends, so that B is a part of each round, and goes on with it."""
+        tokens = self._tokens
+        end = run_start(tokens, len(tokens), STATEMENT_ENDS)
+        first, kinds = self._statement(end)
+        if not 0 < end < len(tokens) or not kinds.isdisjoint(_BOUNDS) or tokens[first].kind not in _ENDLESS:
+            return False
+        if tokens[first + 1].value != "-1" if tokens[first].kind == "repeat" else "count" in kinds:
+            return False
+        del tokens[end:]
+        return True
 
     def doubt_rule(self, role: str, at: int, last: int) -> None:
         """BT151 for what may be a part of the rule before it: `whenever bumped, wave. Then dock`."""

@@ -17,16 +17,22 @@ from btlang.frontends.mission.token import (
     go_on,
     run_start,
     statement_start,
-    texts_of,
 )
 from btlang.frontends.mission.tokens.going_on import BRANCHES, GoingOn
 from btlang.frontends.mission.tokens.sentence_reader import hears, may_fail, searches
-from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, WORKS, asked_about, settle
+from btlang.frontends.mission.tokens.settling import (
+    FAILS,
+    MEASURES,
+    WORKS,
+    asked_about,
+    is_about,
+    named_by,
+    names_of,
+    settle,
+)
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.text.source import Span
-from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PERSON
 from btlang.vocabulary.word_tree import find
@@ -56,11 +62,8 @@ class Outcomes(GoingOn):
             return end
         if denied and tokens[form].kind == "if" and tokens[form - 1].kind in ("semi", "newline"):
             at = asked_about(tokens, form, lambda token: self._is_settled(token, asked))
-            if (
-                at is not None
-                and not self._may_ask_again(at, form, end)
-                and BRANCHES.isdisjoint(self._statement(form - 1)[1])
-            ):
+            is_free = BRANCHES.isdisjoint(self._statement(form - 1)[1])
+            if at is not None and is_free and not self._may_ask_again(at, form, end):
                 return self._settle(at, form, asked.end, end)
         command = self._before(form)
         if command is None:
@@ -109,7 +112,7 @@ class Outcomes(GoingOn):
         self._looked = 0, None, 0, frozenset()
         if not role:
             self._unclear(Span(self._text.source, start, stop))
-        tokens.append(Token("otherwise", start, stop) if role == "otherwise" else Token("or", start, stop, FAILS))
+        tokens.append(Token("otherwise" if role == "otherwise" else "or", start, stop, FAILS))
         return self._limit(command, end)
 
     def _limit(self, command: Token, end: int) -> int:
@@ -136,6 +139,8 @@ class Outcomes(GoingOn):
             return self._unable(at)
         if able := find(self._vocabulary.able, self._text.words, at):
             return self._able(at, able[1])
+        if end := self.end_mission(at):
+            return end
         return self._search_elsewhere(at) if self._text.words[at] in self._vocabulary.asking["searching"] else 0
 
     def _search_elsewhere(self, at: int) -> int:
@@ -185,15 +190,23 @@ class Outcomes(GoingOn):
             match = self._with_front(front[1], reaching[1], "journey") if reaching is not None else None
         if front is None or match is None or match.meaning.entry is None or match.meaning.entry.sort != "action":
             return 0
-        asked, entry = {name for value in match.values for name in _names(value.text)}, match.meaning.entry
+        asked, entry = {name for value in match.values for name in names_of(value.text)}, match.meaning.entry
         is_free = BRANCHES.isdisjoint(self._statement(form)[1])
         stop, is_new = self._text.ends[match.last - 1], form > 0 and self._tokens[form - 1].kind in STATEMENT_ENDS
-        command = asked_about(self._tokens, form, lambda token: _is_about(token, asked, entry))
+        finds = self._text.words[front[1]] in self._vocabulary.asking["search"]
+        command = asked_about(
+            self._tokens,
+            form,
+            lambda token: is_about(token, asked, entry) or (finds and searches(token) and is_about(token, asked)),
+        )
         if command is not None and is_free and is_new:
             return self._settle(command, form, stop, match.last)
         command = self._before(form) if form else None
         first = self._statement(command)[0] if command is not None else form
-        if command is not None and any(_is_about(token, asked) for token in self._tokens[first : command + 1]):
+        about = [i for i in range(first, (command or first) + 1) if is_about(self._tokens[i], asked)]
+        if about and is_free and is_new:
+            return self._settle(about[0], form, stop, match.last)
+        if command is not None and about:
             self._join(command, form, stop, True)
             return match.last
         if form and (not is_new or self._tokens[form - 1].kind != "newline"):
@@ -250,14 +263,6 @@ class Outcomes(GoingOn):
             tokens += [Token("stop", form.start, form.start), Token(WORKS, form.start, form.end)]
 
 
-def _is_about(token: Token, asked: set[str], entry: Entry | None = None) -> bool:
-    """Whether a command is about the same things, and the one that an entry says."""
-    value = token.value
-    if not isinstance(value, Called | Listed) or not (asked or entry is not None):
-        return False
-    return (entry is None or value.entry.id == entry.id) and asked <= _named(value)
-
-
 def _is_presence(value: Value, somebody: Container[str]) -> bool:
     """Whether a condition is about somebody whom it doesn't name."""
     if not isinstance(value, Called) or any(slot.type == PERSON for slot in value.entry.slots):
@@ -270,15 +275,4 @@ def _achieves(command: Token, asked: Token) -> bool:
     value, condition = command.value, asked.value
     if not isinstance(value, Called | Listed) or not isinstance(condition, Called):
         return False
-    return condition.entry.id in value.entry.achieves and {text for _, text in condition.arguments} <= _named(value)
-
-
-def _named(value: Called | Listed) -> set[str]:
-    """What refers to the values of a command."""
-    return {name for text in texts_of(value) for name in _names(text)}
-
-
-def _names(text: str) -> set[str]:
-    """What refers to the value of a port: its text, and the key of what is chosen."""
-    choice = choice_of(text)
-    return {text} if choice is None else {text, f"{{{choice.key}}}"}
+    return condition.entry.id in value.entry.achieves and {text for _, text in condition.arguments} <= named_by(value)

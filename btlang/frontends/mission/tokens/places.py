@@ -2,8 +2,19 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import LINES, Called, Listed, Token, constraint_of, run_start, statement_start
+from btlang.frontends.mission.token import (
+    JOINTS,
+    LINES,
+    STATEMENT_ENDS,
+    Called,
+    Listed,
+    Token,
+    constraint_of,
+    run_start,
+    statement_start,
+)
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
+from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import NAMES, choice_of
 from btlang.vocabulary.trie import longest
@@ -14,6 +25,8 @@ _TRAVELS = "navigation"
 """What a command needs that drives by itself: it takes a place in its own way, or none."""
 _HOLD = "Hold"
 _JOINS = ("and", "then", "or")
+_COMMANDS = frozenset(("command", "name", "wait", "nothing"))
+_DONE = ("command", "name", "close", "wait")
 _PLAIN = frozenset(("command", "name", "comma", "open", "close", *_JOINS))
 """The kinds of tokens of a statement that does each of its commands once."""
 
@@ -60,6 +73,8 @@ class Places(SentenceReader):
         is_to_speaker = self._text.words[at - 1] in self._vocabulary.values.role_words.speaker
         if isinstance(value, Called | Listed) and _TRAVELS in value.entry.needs and not is_to_speaker:
             return 0
+        if self._goes_there(journey, len(tokens) - 1):
+            return journey.last
         said = tokens.pop()
         end = said.end = self._text.ends[journey.last - 1]
         tokens.append(Token("open", said.start, said.start))
@@ -72,14 +87,27 @@ class Places(SentenceReader):
         tokens += [Token("and", said.start, said.start), said, Token("close", end, end)]
         return journey.last
 
-    def before(self, at: int) -> int:
-        """`in the kitchen, wave`: goes there first."""
+    def in_place_of_command(self, match: Match, at: int) -> int:
+        """A condition where a command stands: where one is done, or the rest of a command that leaves words out."""
+        tokens = self._tokens
+        before = run_start(tokens, len(tokens), JOINTS)
+        goes_on = 0 < before < len(tokens) and tokens[before - 1].kind in _DONE
+        if (goes_on or begins(tokens)) and (end := self._before(at)):
+            return end
+        if goes_on and tokens[before - 1].kind == "command":  # `go to the kitchen and then in the lab`
+            return self._partial.add_left_out(at, match.last)
+        return self._partial.add_third(at + 1, None) if begins(tokens) else 0
+
+    def _before(self, at: int) -> int:
+        """`in the kitchen, wave`: goes there first, unless it just did: `visit A and B. In each room, wave`."""
         journey = self._to(at)
         if journey is None:
             return 0
         behind = journey.last + (self._text.words[journey.last] == ",")
+        if self._goes_there(journey, len(self._tokens)):
+            return behind
         following = longest(self._vocabulary.trie, self._text, behind, self._context)
-        if following is None or following.meaning.role != "command":
+        if following is None or following.meaning.role not in _COMMANDS:
             return 0
         if any(value.group or value.more for value in journey.values) and not self._are_commands(behind):
             return 0  # `in every room, look around, and if you see Alice, greet her`
@@ -89,6 +117,23 @@ class Places(SentenceReader):
         end = self._text.ends[journey.last - 1]
         self._tokens.append(Token("and", end, end))
         return behind
+
+    def _goes_there(self, journey: Match, end: int) -> bool:
+        """Whether the journey before some token is to the same places: what comes behind is done at each of them."""
+        tokens, goal = self._tokens, journey.values[0].group or journey.values[0].text
+        last = run_start(tokens, end, JOINTS | STATEMENT_ENDS)
+        if not goal or not 0 < last < end or self._journey(tokens[:last]) is not tokens[last - 1]:
+            return False
+        if any(token.kind == "then" for token in tokens[last:end]):
+            return False  # `go to A and B, then wave in each room`
+        first = statement_start(tokens, last)
+        if any(token.kind not in _PLAIN for token in tokens[first:last]):
+            return False
+        if not self._calls.make_round(tokens[last - 1], goal):
+            return False
+        at = tokens[last - 1].end
+        tokens[last:end] = [Token("and", at, at)]
+        return True
 
     def _repeats(self, journey: Match) -> bool:
         """`go to A and B three times. In each room, wave`: whether the rooms are those of a loop, three times each."""
@@ -102,7 +147,7 @@ class Places(SentenceReader):
         joints = self._vocabulary.roles["and"]
         while True:
             command = longest(self._vocabulary.trie, self._text, at, self._context)
-            if command is None or command.meaning.role != "command":
+            if command is None or command.meaning.role not in _COMMANDS:
                 return False
             if self._is_end(command.last):
                 return True

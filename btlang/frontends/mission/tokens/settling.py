@@ -15,8 +15,11 @@ from btlang.frontends.mission.token import (
     Token,
     run_start,
     statement_start,
+    texts_of,
 )
 from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.references import choice_of
 
 FAILS, WORKS = "if_fails", "if_works"
 MEASURES = frozenset(("for", "up_to", "within", "count"))
@@ -24,7 +27,7 @@ MEASURES = frozenset(("for", "up_to", "within", "count"))
 _WAITING = ("wait_until", "wait_for", "wait_up_to")
 _SIMPLE = frozenset(("command", "name", "wait", "nothing", *JOINTS))
 _BETWEEN = _SIMPLE | STATEMENT_ENDS | MEASURES | {"open", "close", "meanwhile"}
-_HEADS = frozenset(("every", "every_day", "at", "repeat", "comma", "colon", "open"))
+_HEADS = frozenset(("every", "every_day", "at", "repeat", "comma", "then", "colon", "open"))
 """What may stand before the first command of a statement."""
 _OUTSIDE = frozenset(("define", "indent", "dedent"))
 
@@ -77,7 +80,7 @@ def settle(tokens: list[Token], at: int) -> str:
 
 def _is_sequence(before: Sequence[Token]) -> bool:
     """Whether commands are done before another one, whatever they are joined with."""
-    if any(token.kind not in _SIMPLE for token in before) or not before:
+    if any(token.kind not in _SIMPLE for token in before) or all(token.kind in JOINTS for token in before):
         return not before
     last = run_start(before, len(before), JOINTS)
     value = before[last - 1].value if last else None
@@ -94,3 +97,24 @@ def _one_statement(rest: Sequence[Token]) -> list[Token]:
         elif made and made[-1].kind != "then":
             made.append(Token("then", token.start, token.start))
     return made
+
+
+def is_about(token: Token, asked: set[str], entry: Entry | None = None) -> bool:
+    """Whether a command is about the same things, and the one that an entry says."""
+    value = token.value
+    if not isinstance(value, Called | Listed) or not (asked or entry is not None):
+        return False
+    return (entry is None or value.entry.id == entry.id) and asked <= named_by(value)
+
+
+def named_by(value: Called | Listed) -> set[str]:
+    """What refers to the values of a command, with the nouns of what is chosen."""
+    choices = [choice for text in texts_of(value) if (choice := choice_of(text)) is not None]
+    nouns = {noun for choice in choices for part, noun in choice.parts if part in ("named", "kind")}
+    return nouns.union(*(names_of(text) for text in texts_of(value)))
+
+
+def names_of(text: str) -> set[str]:
+    """What refers to the value of a port: its text, and the key of what is chosen."""
+    choice = choice_of(text)
+    return {text} if choice is None else {text, f"{{{choice.key}}}"}

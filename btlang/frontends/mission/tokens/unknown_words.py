@@ -19,7 +19,7 @@ from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
+from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE, WORLD
 from btlang.vocabulary.word_tree import find
 
 
@@ -61,7 +61,18 @@ class UnknownWords:
         """
         from btlang.frontends.mission.explanations.misfits import misfits_of  # most missions have nothing to explain
 
-        return any(each.at > last for each in misfits_of(self._text, at, (self._vocabulary.trie,), self._context))
+        text, first = self._as_constraint(at)
+        misfits = [each for each in misfits_of(text, first, (self._vocabulary.trie,), self._context) if each.at > last]
+        named = (kind for kind in WORLD if kind in self._context.types)
+        return bool(misfits) and all(self._context.read(kind, text, misfits[0].at) is None for kind in named)
+
+    def _as_constraint(self, at: int) -> tuple[Words, int]:
+        """The text with the word that constraints begin with in place of others that forbid, and where that is."""
+        never = self._vocabulary.word("never")
+        match = longest(self._vocabulary.trie, self._text, at, self._context)
+        if match is None or match.meaning.role != "never" or self._text.words[at] == never:
+            return self._text, at
+        return self._text.with_word(match.last - 1, never), match.last - 1
 
     def is_doubtful(self, match: Match, role: str, at: int) -> bool:
         """Whether words that are polite or forbid something could say something else where they stand."""
@@ -70,7 +81,8 @@ class UnknownWords:
             return is_asked or find(self._vocabulary.reasons, self._text.words, at) is not None
         if is_asked and self._partial.forbidden(at, match.last) is None:
             return True  # `if you can't lift it`
-        return self._text.words[at] in self.before_doing and self.lack_name(at, match.last)
+        forbids = role == "never" and match.last <= at + 2  # `don't`, `do not`
+        return (forbids or self._text.words[at] in self.before_doing) and self.lack_name(at, match.last)
 
     def why(self, at: int, end: int, match: Match | None) -> Diagnostic:
         """What is wrong with words that are no phrase, or one that stands where it cannot."""
@@ -82,7 +94,7 @@ class UnknownWords:
             drives = f"goes to {match.values[0].text}" if match.values else "drives"
             return diagnostic("BT156", span, words=span.text, drives=drives)
         if match is None or role in NOT_ALONE:
-            text = self._text
+            text, at = self._as_constraint(at)
             if text.words[at] in self._vocabulary.roles["define"] and begins(self._tokens):
                 return diagnostic("BT016", text.span(at, at + 1), word=text.words[at])
             if role == "ordinal" and len(self._tokens) > 2 and self._tokens[-1].kind == "command":

@@ -12,7 +12,7 @@ from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.names import Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
-from btlang.frontends.mission.token import BEFORE_CONDITIONS, JOINTS, RULES, Token, constraint_of, go_on, run_start
+from btlang.frontends.mission.token import BEFORE_CONDITIONS, JOINTS, RULES, Token, constraint_of, go_on
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
 from btlang.frontends.mission.tokens.order_words import OrderWords
@@ -263,7 +263,8 @@ class WordReader:
         """A phrase, a connective or a name."""
         tokens, role = self._tokens, match.meaning.role
         if role in ("then", "otherwise") and begins(tokens):
-            self._outcomes.doubt_rule(role, at, match.last)
+            if role == "otherwise" or not self._outcomes.goes_on_endlessly():
+                self._outcomes.doubt_rule(role, at, match.last)
         if role == "politeness" or (role in ("following", "then") and self._order.says_nothing(match, at)):
             return after_politeness(tokens, self._text.words, match)
         if at in self._text.going_on:
@@ -287,13 +288,8 @@ class WordReader:
 
     def _read_otherwise(self, match: Match, role: str, at: int) -> int:
         """Phrases that are a part of a command where they stand."""
-        tokens = self._tokens
         if role == "condition":
-            before = run_start(tokens, len(tokens), JOINTS)
-            if 0 < before < len(tokens) and tokens[before - 1].kind == "command":
-                if end := self._partial.add_left_out(at, match.last):  # `go to the kitchen and then in the lab`
-                    return end
-            return self._places.before(at) or self._partial.add_third(at + 1, None) if begins(tokens) else 0
+            return self._places.in_place_of_command(match, at)
         if role == "at":
             return self._order.times(match, at)
         if role == "check":
@@ -329,6 +325,7 @@ class WordReader:
         if (word in self._unknown.before_doing or word in self._verb_forms) and constraint_of(said) is not None:
             said.role = "fronted"
         tokens.append(said)
+        self._outcomes.give_up(match.last)
         if len(tokens) > 1 and tokens[-2].kind == "while" and constraint_of(said) is not None:
             tokens[-2].kind = "while_doing"  # `while avoiding the kitchen`
         return 0
@@ -347,7 +344,8 @@ class WordReader:
         if role == "then" and len(tokens) > 1:
             self._outcomes.found(match, at)
         if role in ("if_fails", "if_unanswered", "otherwise"):
-            tokens[-1].kind, tokens[-1].value = ("or", "if_fails") if role != "otherwise" else (role, None)
+            tokens[-1].kind = "or" if role != "otherwise" else role
+            tokens[-1].value = "if_fails" if match.meaning.role != "otherwise" else None
         if role in _ROLES:
             tokens[-1].kind = _ROLES[role][len(tokens) > 1 and tokens[-2].kind == "stop"]
         if role in ("if_works", "if_it_works", "if_fails"):
