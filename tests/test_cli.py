@@ -316,7 +316,7 @@ def test_notes_are_no_problems(btc: Screen) -> None:
 
 def test_programs_get_notes_as_notes(btc: Screen, tmp_path: Path) -> None:
     file = tmp_path / "mission.txt"
-    file.write_text("go to the lab and wave\n")
+    file.write_text("turn left and move forward\n")
     assert btc("check", "--format", "json", str(file)) == 0
     assert [each["severity"] for each in json.loads(btc.out)] == ["note"]
     assert btc("check", "--format", "sarif", str(file)) == 0

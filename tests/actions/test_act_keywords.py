@@ -65,7 +65,7 @@ def test_entries(entry):
         ("the wall is in front of the robot", "WallInFront", {}),
         ("there is a wall on the left", "WallOnLeft", {}),
         ("the way is free", "PathClear", {}),
-        ("the robot is in the kitchen", "AtPlace", {"place": "kitchen"}),
+        ("the robot is in the kitchen", "InZone", {"zone": "kitchen"}),
         ("pick the red ball up", "PickUp", {"object": "red ball"}),
         ("lift the arm", "RaiseArm", {}),
         ("open the left gripper", "OpenLeftHand", {}),

@@ -59,6 +59,10 @@ def _empty_roles(
             if length and role.name != MANNER:
                 yield role.type, at + length
             theme = context.read(role.type, text, at) if role.is_direct and not has_theme else None
+            if theme is None and not has_theme and role.name in UNMARKED and role.is_needed:
+                behind = at + (text.words[at] == frame.particle)  # `turn on the radio`
+                if behind in text.articles and (behind > at or not frame.particle):  # `grab the mug`
+                    yield role.type, behind
             if theme is not None and role.name == RECIPIENT:  # `give him the medicine`
                 yield from ((each.type, theme[1]) for each in frame.roles if each.name in UNMARKED)
             if theme is not None:

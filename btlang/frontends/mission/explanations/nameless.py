@@ -11,6 +11,7 @@ from btlang.text.enumeration import joined
 from btlang.text.source import Span
 from btlang.text.spelling import nearest
 from btlang.text.words import Words
+from btlang.vocabulary.correct_words import correct_words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
@@ -65,7 +66,9 @@ def unnamed(span: Span, kinds: Sequence[ValueType], understood: str, vocabulary:
     known = list(dict.fromkeys(name for kind in kinds for name in vocabulary.values.said_names(kind.name)))
     said = joined(list(dict.fromkeys(_KIND_NAMES.get(kind.name, kind.name) for kind in kinds)), "or")
     words = span.text.lower()
-    near = [name for name in nearest(words, known) if is_respelling(words, name.lower(), vocabulary)]
+    near = nearest(words, known)
+    if correct_words(vocabulary.word_list).issuperset(words.split()):  # `bedroom` is no slip of `door`
+        near = [name for name in near if is_respelling(words, name.lower(), vocabulary)]
     fix = (span, near[0]) if near else None
     return diagnostic("BT013", span, fix=fix, type=said, words=span.text, help=understood + near_names(near, known))
 

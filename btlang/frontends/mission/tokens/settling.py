@@ -33,10 +33,14 @@ _OUTSIDE = frozenset(("define", "indent", "dedent"))
 
 
 def asked_about(tokens: Sequence[Token], end: int, is_it: Callable[[Token], bool]) -> int | None:
-    """The place of the latest command before one that words may ask about."""
+    """The place of the latest command before one that words may ask about, out of brackets."""
+    depth = 0
     for at in reversed(range(end)):
-        if tokens[at].kind in _OUTSIDE:
+        depth += (tokens[at].kind == "close") - (tokens[at].kind == "open")
+        if tokens[at].kind in _OUTSIDE or depth < 0:
             return None
+        if depth:
+            continue
         waits = tokens[at].kind == "condition" and at > 0 and tokens[at - 1].kind in _WAITING
         if (waits or tokens[at].kind == "command") and is_it(tokens[at]):
             return at

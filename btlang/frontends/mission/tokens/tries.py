@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from copy import copy
 from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
@@ -123,7 +122,7 @@ class Tries(SentenceReader):
         number, behind = self._attempts(match)
         first = _first_of_form(tokens, statement_start(tokens, last), last)
         first += tokens[first].kind in ("try", "retry")
-        tried = [copy(token) for token in tokens[first:last]]
+        tried = [Token(each.kind, each.start, each.end, each.value, each.role) for each in tokens[first:last]]
         start, stop = self._text.starts[at], self._text.ends[behind - 1]
         if not number or any(token.kind in FORMS for token in tried):
             return 0
