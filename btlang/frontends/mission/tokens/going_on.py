@@ -15,6 +15,7 @@ from btlang.frontends.mission.token import (
     go_on,
     run_start,
 )
+from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, hears, searches
 from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, WORKS, asked_about, is_about, settle
 from btlang.text.source import Span
@@ -237,7 +238,9 @@ class GoingOn(SentenceReader):
         words, text = self._text.span(at, last), self._text
         if not end or "\n" in text.source.text[self._tokens[end - 1].end : words.start]:
             return
-        kinds = self._statement(end)[1]
+        first, kinds = self._statement(end)
+        if any(token.role == ON_WAY or token.kind == "while_doing" for token in self._tokens[first:end]):
+            return  # a rule for the time of a journey
         if kinds.isdisjoint(RULES) or (role == "otherwise" and "if" in kinds):
             return
         last += text.words[last] == ","

@@ -23,8 +23,9 @@ from btlang.frontends.mission.token import (
 )
 from btlang.frontends.mission.tokens.clock_words import ClockWords
 from btlang.frontends.mission.tokens.journey_words import JourneyWords
+from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import leads_to
-from btlang.frontends.mission.tokens.silent_words import BEGINS
+from btlang.frontends.mission.tokens.silent_words import BEGINS, begins
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import find
@@ -173,13 +174,14 @@ class OrderWords(ClockWords, JourneyWords):
             tokens[-2].kind = "then"
         return is_later
 
-    def _any_time(self, end: int) -> int:
+    def _any_time(self, end: int, role: str = "") -> int:
         """`if the battery is low at any time, A`: whenever it is."""
         for token in reversed(self._tokens):
             if token.kind in BEGINS and token.kind != "comma":
                 break
             if token.kind == "if":
                 self._watch(token)
+                token.role = role
                 return end
         return 0
 
@@ -218,7 +220,7 @@ class OrderWords(ClockWords, JourneyWords):
         """`A, and on the way B`, `A and B on the way`: with the journey, before it if it is a task."""
         tokens, text = self._tokens, self._text
         if tokens[-1:] and tokens[-1].kind == "condition":
-            return self._any_time(end)  # `if the battery gets low on the way, A`
+            return self._any_time(end, ON_WAY)  # `if the battery gets low on the way, A`
         if self._is_end(end):
             return end if self._goes_along() else 0
         journey = self._journey()
@@ -264,6 +266,11 @@ class OrderWords(ClockWords, JourneyWords):
             return journey.last
         behind = journey.last + (text.words[journey.last] == ",")
         match = longest(self._vocabulary.trie, text, behind, self._context)
+        if match is not None and match.meaning.role in RULES and begins(tokens):
+            tokens.append(Token("while_doing", text.starts[at], text.ends[end - 1]))
+            self._partial.append(journey, at)
+            tokens.append(Token("comma", text.starts[journey.last], text.starts[journey.last]))
+            return behind
         if match is not None and match.meaning.role == "never":
             match = self._partial.forbidden(behind, match.last)
         if (tokens and tokens[-1].kind not in BEGINS) or match is None or match.meaning.entry is None:

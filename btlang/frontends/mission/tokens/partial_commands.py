@@ -165,6 +165,8 @@ class PartialCommands:
             return 0
         spoken = (token.value for token in reversed(self._tokens) if isinstance(token.value, Called | Remembered))
         latest = next((entry for value in spoken if (entry := self._measured_by(value.entry)) is not None), None)
+        if latest is None and OBJECT in self._context.latest:
+            return 0  # `pick up the cup. If it is below 50%, A`
         found: dict[str, tuple[Match, Sequence[int]]] = {}
         for entry in [latest] if latest is not None else self._measuring:
             words = entry.quantity[0].split()

@@ -16,15 +16,15 @@ from btlang.frontends.mission.token import (
     run_start,
     statement_start,
 )
+from btlang.frontends.mission.tokens.rules_inside import asks_if_blocked
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, may_fail
+from btlang.frontends.mission.tokens.settling import FAILS
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.tree.asked import ASK, asking_verbs
-from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
 
 _JOINTS = JOINTS | {"stop"}
-_BLOCKED = frozenset(("WallInFront", "SomethingInTheWay", "SomeoneInTheWay"))
 _STATEMENT_ENDS = (END_OF_STATEMENT, END_OF_TEXT)
 _OPERANDS = frozenset(("command", "name", "close", "wait", "nothing", "fail", "node"))
 _IN_ALL = frozenset(("count", "at_most", "up_to_times", "tries"))
@@ -75,7 +75,7 @@ class Tries(SentenceReader):
         pause = tokens[end - 1] if end and tokens[end - 1].kind == "wait" else None
         end = self._behind(end - 1) if pause is not None else end
         form = self._condition(end)
-        last = self._behind(form)
+        last = self._before_form(form)
         asks = self._text.words[at] in self._asking_verbs
         tried = tokens[last - 1] if form and last else None
         if tried is None or tried.kind not in _OPERANDS or (asks and not _is_question(tried)):
@@ -97,6 +97,13 @@ class Tries(SentenceReader):
         self._doubt(end)
         return end
 
+    def retry(self, match: Match, at: int) -> int:
+        """`A. If that fails, B and retry up to 3 times`: with nothing else behind it `retry` is `try again`."""
+        behind = match.last + (self._text.words[match.last] == ",")
+        amount = longest(self._vocabulary.trie, self._text, behind, self._context)
+        counts = amount is not None and amount.meaning.role in (*_IN_ALL, "once", "more")
+        return self.again(match, at) if counts or self._is_end(match.last) else 0
+
     def _attempts(self, match: Match) -> tuple[str, int]:
         """How many attempts `try again` makes in all with the number behind it, and where that ends; "" for none."""
         behind = match.last + (self._text.words[match.last] == ",")
@@ -107,7 +114,9 @@ class Tries(SentenceReader):
         if amount.meaning.role == "once":
             return _TWICE, amount.last
         number = str(self._calls.token(amount, behind).value)
-        if amount.meaning.role in ("count", "more") and number != "-1":  # `try again twice` is three times in all
+        retries = self._text.words[match.last - 1] in self._vocabulary.roles["retry"]  # `retry up to 3 times`
+        further = ("count", "more", *(("at_most", "up_to_times") if retries else ()))
+        if amount.meaning.role in further and number != "-1":  # `try again twice` is three times in all
             number = str(int(number) + 1) if number.isdecimal() else ""
         return number, amount.last
 
@@ -115,8 +124,15 @@ class Tries(SentenceReader):
         """`A. If that fails, open the door and try again`: A behind what is done in between, so often in all."""
         tokens = self._tokens
         end = self._behind(len(tokens))
-        form = next((i for i in reversed(range(statement_start(tokens, end), end)) if tokens[i].value == "if_fails"), 0)
-        last = self._behind(form)
+        start = statement_start(tokens, end)
+        form = next(
+            (i for i in reversed(range(start, end)) if tokens[i].value == FAILS or asks_if_blocked(tokens, i)), 0
+        )
+        last = self._before_form(form)
+        if last and tokens[form].value != FAILS:
+            here, count = tokens[form].start, len(tokens)
+            tokens[last : form + 2] = [Token("stop", here, here), Token("or", here, here, FAILS)]
+            form, end = last + 1, end - (count - len(tokens))
         if not form or not last or any(token.kind not in _REPAIRS for token in tokens[form + 1 : end]):
             return 0
         number, behind = self._attempts(match)
@@ -184,16 +200,16 @@ class Tries(SentenceReader):
         """Where the tokens before a place end without what joins them."""
         return run_start(self._tokens, end, _JOINTS)
 
+    def _before_form(self, form: int) -> int:
+        """The same before a form, which may begin a statement."""
+        return run_start(self._tokens, form, _JOINTS | STATEMENT_ENDS)
+
     def _condition(self, end: int) -> int:
         """Where `if that fails` begins that ends at a place, or `if the way is blocked` behind a journey; else 0."""
         tokens = self._tokens
-        if end and tokens[end - 1].kind == "or" and tokens[end - 1].value == "if_fails":
+        if end and tokens[end - 1].kind == "or" and tokens[end - 1].value == FAILS:
             return end - 1
-        asked = tokens[end - 1].value if end > 2 and tokens[end - 2].kind == "if" else None
-        journey = tokens[self._behind(end - 2) - 1].value if isinstance(asked, Called) else None
-        if not isinstance(asked, Called) or asked.entry.id not in _BLOCKED or not isinstance(journey, Called | Listed):
-            return 0
-        return end - 2 if MOVES in journey.entry.resources else 0
+        return end - 2 if end > 2 and asks_if_blocked(tokens, end - 2) else 0
 
 
 def _is_question(token: Token) -> bool:

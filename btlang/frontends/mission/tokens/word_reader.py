@@ -292,6 +292,8 @@ class WordReader:
             return self._places.in_place_of_command(match, at)
         if role == "at":
             return self._order.times(match, at)
+        if role == "retry":
+            return self._tries.retry(match, at)
         if role == "check":
             return self._order.inspection(at, match.last)
         if role == "command" and at in self._text.articles:  # `then the dock`: with an article it is a name

@@ -1,0 +1,110 @@
+"""Rules for the time of one command: `while going to the lab, whenever somebody is near, say hi`, `if bumped while
+going to the lab, wave`, `go to the lab, and if bumped on the way, wave`. They become a block with the command.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.frontends.mission.token import (
+    JOINTS,
+    LINES,
+    RULES,
+    STATEMENT_ENDS,
+    Called,
+    Listed,
+    Token,
+    run_start,
+    statement_start,
+)
+from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.value_type import PERSON, PLACE
+
+ON_WAY = "on_way"
+"""The role of a rule that holds on the journey before it."""
+_OBSTACLES = ("SomethingInTheWay", "SomeoneInTheWay")
+_BLOCKED = ("WallInFront", *_OBSTACLES)
+_DOING = "while_doing"
+_IN_CONDITIONS = frozenset(("condition", "not", "and", "or", "either", "both", "neither", "nor"))
+
+
+def with_rules_inside(tokens: list[Token]) -> None:
+    """Puts such statements into blocks."""
+    at = 0
+    while at < len(tokens):
+        if asks_if_blocked(tokens, at) and _is_event(tokens, at):
+            tokens[at].kind, tokens[at].role = "whenever", ON_WAY
+        is_rule = tokens[at].role == ON_WAY
+        if is_rule or tokens[at].kind == _DOING:
+            first = statement_start(tokens, at)
+            last = next((i for i in range(at, len(tokens)) if tokens[i].kind in LINES), len(tokens))
+            if is_rule and first == at:  # of the statement before
+                first = statement_start(tokens, run_start(tokens, first, STATEMENT_ENDS))
+            statement = tokens[first:last]
+            block = _on_way(statement, at - first) if is_rule else _block(statement, at - first)
+            if block:
+                tokens[first:last] = block
+                at = first + len(block)
+        at += 1
+
+
+def asks_if_blocked(tokens: Sequence[Token], form: int) -> bool:
+    """Whether a form asks if the way of the journey before it is blocked, which is so while it drives."""
+    asked = tokens[form + 1].value if tokens[form].kind == "if" and form + 1 < len(tokens) else None
+    last = run_start(tokens, form, JOINTS | STATEMENT_ENDS)
+    if not isinstance(asked, Called) or asked.entry.id not in _BLOCKED or not last:
+        return False
+    journey = tokens[last - 1].value
+    return isinstance(journey, Called | Listed) and MOVES in journey.entry.resources
+
+
+def _is_event(tokens: Sequence[Token], form: int) -> bool:
+    """Whether `if somebody is in the way` is about the journey; `if there is a wall` may ask at its end."""
+    asked, last = tokens[form + 1].value, run_start(tokens, form, JOINTS | STATEMENT_ENDS)
+    journey = tokens[last - 1].value
+    end = next((i for i in range(form, len(tokens)) if tokens[i].kind in LINES), len(tokens))
+    if not isinstance(journey, Called | Listed) or any(token.kind == "otherwise" for token in tokens[form:end]):
+        return False
+    is_joined = tokens[form - 1].kind not in STATEMENT_ENDS
+    leads = any(slot.type in (PLACE, PERSON) for slot in journey.entry.slots)
+    return leads and isinstance(asked, Called) and (is_joined or asked.entry.id in _OBSTACLES)
+
+
+def _on_way(statement: Sequence[Token], rule: int) -> list[Token]:
+    """The block of a rule that begins at a place and the commands before it."""
+    last = run_start(statement, rule, JOINTS | STATEMENT_ENDS)
+    journey = statement[:last]
+    if not journey or any(token.kind not in ("command", "name", *JOINTS) for token in journey):
+        return []
+    return _made(statement, journey, statement[rule:])
+
+
+def _block(statement: Sequence[Token], doing: int) -> list[Token]:
+    """The block that a statement stands for whose command for the time begins at a place; empty for none."""
+    comma = next((i for i in range(doing, len(statement)) if statement[i].kind == "comma"), 0)
+    rule = _rule(statement, doing, comma) if comma else []
+    if not rule or any(token.kind == "otherwise" for token in statement):
+        return []
+    return _made(statement, statement[doing + 1 : comma], rule)
+
+
+def _made(statement: Sequence[Token], command: Sequence[Token], rule: Sequence[Token]) -> list[Token]:
+    start, end = statement[0].start, statement[-1].end
+    opening = [Token(kind, start, start) for kind in ("following", "colon", "indent")]
+    return [*opening, *rule, Token("newline", end, end), *command, Token("dedent", end, end)]
+
+
+def _rule(statement: Sequence[Token], doing: int, comma: int) -> list[Token]:
+    """The rule in front of the command for whose time it is, behind it, or behind what is done then."""
+    first, rest = statement[0], statement[comma + 1 :]
+    if doing > 0:
+        watches = first.kind in (*RULES, "if") and all(each.kind in _IN_CONDITIONS for each in statement[1:doing])
+        kind = "whenever" if first.kind == "if" else first.kind
+        return [Token(kind, first.start, first.end), *statement[1:doing], statement[comma], *rest] if watches else []
+    at = next((i for i, token in enumerate(rest) if token.kind in RULES), -1)
+    if at <= 0:
+        return list(rest) if at == 0 else []
+    condition = rest[at + 1 :]
+    if any(token.kind not in _IN_CONDITIONS for token in condition):
+        return []
+    return [rest[at], *condition, Token("comma", rest[0].start, rest[0].start), *rest[:at]]
