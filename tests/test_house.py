@@ -46,7 +46,7 @@ LONG: dict[str, str] = {
     "btlang/session.py": "a session, and the runs that it makes",
     "btlang/robots/simulated.py": "the robot, one capability after the other",
     "btlang/run/events.py": "the classes of events, from which the schema of logs is made",
-    "btlang/ros/robot.py": "the same over ROS 2",
+    "btlang/ros/robot/robot.py": "the same over ROS 2",
     "btlang/testing/words.toml": "the words of tests",
     "btlang/vocabulary/keyword_file.py": "what may stand in a keyword file, one table after the other",
     "btlang/vocabulary/lexicon.py": "all that the words of a language are made into, which is then frozen",

@@ -1,10 +1,12 @@
-"""What `btc run` does with a ROS 2 robot. Imports no ROS before it is asked for."""
+"""The options and connections of commands that use ROS 2, such as `btc run`. Imports no ROS before it is needed."""
 
 from __future__ import annotations
 
+import signal
 import sys
 from argparse import ArgumentParser, Namespace
-from contextlib import closing
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
 from importlib.util import find_spec
 
 from btlang.arguments import namespace, robot_on
@@ -15,6 +17,7 @@ from btlang.robots.platforms import ROBOTS
 from btlang.robots.registry import connector, runs_in_real_time, runs_on
 from btlang.ros.available import require_interfaces, require_ros, unusable
 from btlang.ros.serving.names import FOLDER
+from btlang.run.command import ENDING_SIGNALS
 from btlang.text.output import has_colour, show
 from btlang.text.table import Table
 
@@ -26,10 +29,38 @@ if TYPE_CHECKING:
     from btlang.robots.body import Body
     from btlang.robots.registry import Connector
     from btlang.robots.world import World
-    from btlang.ros.component_nodes import ComponentNodes
-    from btlang.ros.connection import RosConnection
+    from btlang.ros.components.host import ComponentNodes
+    from btlang.ros.robot.connection import RosConnection
     from btlang.tree.node import Tree
     from btlang.vocabulary.lexicon import Lexicon
+
+
+class EndingSignals:
+    """Those that have come; `on_arrival` is called by each."""
+
+    def __init__(self) -> None:
+        self.numbers: list[int] = []
+        self.on_arrival: Callable[[], object] = int
+
+    def __call__(self, number: int, frame: object) -> None:
+        self.numbers.append(number)
+        self.on_arrival()
+
+
+@contextmanager
+def ending_signals() -> Iterator[EndingSignals]:
+    """Ctrl-C and signals to end are kept instead of ending the process at once. One that is ignored stays so."""
+    came = EndingSignals()
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, *ENDING_SIGNALS)}
+    taken = [number for number, handler in before.items() if handler != signal.SIG_IGN]
+    for number in taken:
+        signal.signal(number, came)
+    try:
+        yield came
+    finally:
+        for number in taken:
+            signal.signal(number, before[number])
+
 
 _PACKAGES = ("geometry_msgs", "nav_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs")
 
@@ -39,7 +70,7 @@ _COMPILE = "Compile it: python -m btlang.ros.interfaces tests/ros/composition_in
 def connect_ros(world: World, **options: Any) -> RosConnection:
     """A connection to a ROS 2 robot, with the options of RosConnection. Raises MissionError (BT100) without ROS 2."""
     require_ros(*_PACKAGES)
-    from btlang.ros.connection import RosConnection
+    from btlang.ros.robot.connection import RosConnection
 
     return RosConnection(world, **options)
 
@@ -61,7 +92,7 @@ def component_nodes(robot: Any, body: Body) -> ComponentNodes:
     require_ros("lifecycle_msgs", "rcl_interfaces", "std_msgs")
     if containers and find_spec("composition_interfaces") is None:
         raise unusable("there is no Python package composition_interfaces", _COMPILE)
-    from btlang.ros.component_nodes import ComponentNodes
+    from btlang.ros.components.host import ComponentNodes
 
     return ComponentNodes(robot)
 

@@ -1,20 +1,26 @@
-"""Action servers whose goals are worked on in other threads, so that no callback waits for one."""
+"""Goals of actions: servers whose goals other threads work on, and a handle of a goal by its id alone."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from types import SimpleNamespace
+from typing import Any
 
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action.client import ClientGoalHandle
 from rclpy.action.server import GoalEvent, ServerGoalHandle
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
+from unique_identifier_msgs.msg import UUID
 
 from btlang.ros.lease import Leases
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any
+
+def unanswered(client: Any, goal_id: UUID) -> ClientGoalHandle:
+    """Of a goal that a client of an action has sent and heard nothing of; for cancelling it, and for its result."""
+    return ClientGoalHandle(client, goal_id, SimpleNamespace(accepted=True))
+
 
 _MANY = QoSProfile(depth=1000)  # of requests at once; more than ten get lost by default
 GONE = "its client is gone"

@@ -1,15 +1,50 @@
-"""What the ROS 2 graph says of servers, publishers and listeners that a mission needs, and why they are not there."""
+"""The ROS 2 graph: which servers, publishers and listeners exist, why one is missing, and names within it."""
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
+
 from rclpy.action import ActionClient, get_action_names_and_types
+from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from btlang.ros.word import type_name
+from btlang.ros.messages import type_name
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+
+_LONGEST = 50
+
+
+def graph_names(names: Iterable[str], kind: str) -> dict[str, str]:
+    """A token for each name: "lab_door" for "lab door". What has no letter that ROS 2 allows is called by its kind.
+
+    A token that is taken gets a number, in the order of the names.
+    """
+    tokens: dict[str, str] = {}
+    for name in names:
+        token = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")[:_LONGEST].strip("_")
+        first = token if token[:1].isalpha() else f"{kind}_{token}".strip("_")
+        token, count = first, 1
+        while token in tokens.values():
+            count += 1
+            token = f"{first}_{count}"
+        tokens[name] = token
+    return tokens
+
+
+def is_connected(node: Node, name: str) -> bool:
+    """Whether somebody hears what the node publishes on a topic, or serves its client of a service.
+
+    `name` is the full one. True where the node has neither.
+    """
+    heard = (publisher.get_subscription_count() > 0 for publisher in node.publishers if publisher.topic_name == name)
+    served = (client.service_is_ready() for client in node.clients if client.service_name == name)
+    return all(heard) and all(served)
+
 
 _NOBODY = {
     "publisher": "nobody publishes {name}",
@@ -20,7 +55,7 @@ _NOBODY = {
 
 
 def full_name(node: Any, kind: str, name: str) -> str:
-    """The name in the namespace of the node, unless it has one. `kind` is as in `robot_interface.Interface`."""
+    """The name in the namespace of the node, unless it has one. `kind` is as in `btlang.ros.robot.interface.Interface`."""
     resolve = node.resolve_topic_name if kind in ("publisher", "listener") else node.resolve_service_name
     return str(resolve(name))
 

@@ -51,7 +51,7 @@ class Leases:
     def __init__(self, node: Node) -> None:
         self._node = node
         self._clock = Clock(clock_type=ClockType.STEADY_TIME)
-        self._clients: dict[bytes, _Client] = {}
+        self._clients: dict[bytes, _LeaseHolder] = {}
 
     def watch(self, goal_id: bytes, lost: Callable[[], object]) -> None:
         """Calls `lost` once when the client of a goal has been silent for a second, unless the goal is forgotten."""
@@ -59,7 +59,7 @@ class Leases:
         if name is None:
             return
         if name not in self._clients:
-            self._clients[name] = _Client(self._node, name, self._clock, lambda: self._clients.pop(name))
+            self._clients[name] = _LeaseHolder(self._node, name, self._clock, lambda: self._clients.pop(name))
         self._clients[name].goals[goal_id] = lost
 
     def forget(self, goal_id: bytes) -> None:
@@ -69,7 +69,7 @@ class Leases:
             self._clients[name].goals.pop(goal_id, None)
 
 
-class _Client:
+class _LeaseHolder:
     """One that has sent goals, watched until it is gone: a second subscription would hear nothing of it in Fast DDS.
 
     `goals` has what to call when it is lost, `gone` is called then.

@@ -1,8 +1,9 @@
-"""A ROS 2 node that is spun in a thread of its own, and leaves nothing behind."""
+"""A ROS 2 node that is spun in its own thread, and callables that are handed over to that thread."""
 
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Callable
 from threading import Thread
 
@@ -15,13 +16,42 @@ from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
 
+from btlang.engine.leaves.leaf import described
 from btlang.ros.available import unusable
-from btlang.ros.awake import AWAKE, HEARTBEAT
-from btlang.ros.waiting import wait_until
+from btlang.ros.clocks import AWAKE, HEARTBEAT, wait_until
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import TracebackType
+
+
+class ExecutorThread:
+    """Runs callables one after the other. `problems` are raised errors that could not be reported at once."""
+
+    def __init__(self, node: Node) -> None:
+        self.problems: list[str] = []
+        self._posted: deque[Callable[[], object]] = deque()
+        self._guard = node.create_guard_condition(self._work)
+
+    def post(self, work: Callable[[], object]) -> None:
+        """Lets the thread that spins do it; from any thread and from handlers of signals, in the order of calls."""
+        self._posted.append(work)
+        self._guard.trigger()
+
+    @property
+    def left(self) -> int:
+        """How many are not done yet."""
+        return len(self._posted)
+
+    def _work(self) -> None:
+        while self._posted:
+            work = self._posted[0]
+            try:
+                work()
+            except Exception as problem:  # it would end the thread that spins
+                self.problems.append(described(problem))
+            self._posted.popleft()  # only now, so that it counts as left until it is done
+
 
 _LAST_DOMAIN = 232
 _TASKS_OF_AN_ANSWER = 3  # one starts the next: the goal ends, its future is done, the result is sent

@@ -16,9 +16,9 @@ import pytest
 from std_msgs.msg import Float64
 
 from btlang.robots.world_problem import read_world
-from btlang.ros.connection import RosConnection
-from btlang.ros.ending import ending_signals
-from btlang.ros.pace import RosPace
+from btlang.ros.clocks import RosPace
+from btlang.ros.command import ending_signals
+from btlang.ros.robot.connection import RosConnection
 from btlang.ros.simulator.simulator import Simulator
 from btlang.run.controls import Controls
 

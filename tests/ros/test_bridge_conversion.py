@@ -18,7 +18,7 @@ from std_srvs.srv import Trigger
 
 from btlang.ros.bridge.conversion import as_data, filled
 from btlang.ros.bridge.replies import BridgeError
-from btlang.ros.fields import INTEGERS, array_of, field_types
+from btlang.ros.words.fields import INTEGERS, array_of, field_types
 
 PACKAGES = (
     "action_msgs", "diagnostic_msgs", "geometry_msgs", "nav_msgs", "rcl_interfaces", "sensor_msgs", "shape_msgs",

@@ -17,11 +17,10 @@ from btlang.devices import kinds
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
 from btlang.devices.drivers import driver_class
 from btlang.devices.kinds import KINDS
-from btlang.ros.devices.client import TopicClient
+from btlang.ros.devices.nodes import TRANSLATIONS, TopicClient
 from btlang.ros.devices.setting import Setting, TopicDevice, topic_name
-from btlang.ros.devices.translations import TRANSLATIONS
-from btlang.ros.gate import Gate
-from btlang.ros.times import stamp
+from btlang.ros.messages import stamp
+from btlang.ros.subscriptions import MessageGate
 
 SETTING = Setting("elbow", wheel_gap=0.3, range=4.0)
 READINGS = {
@@ -121,8 +120,8 @@ def test_commands_that_are_none() -> None:
 
 def test_stamps_that_stand_still_go_back_or_fall_behind(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [500.0]
-    monkeypatch.setattr("btlang.ros.gate.time.monotonic", lambda: now[0])
-    gate, message = Gate(Range, all_stamps=True), Range()
+    monkeypatch.setattr("btlang.ros.subscriptions.time.monotonic", lambda: now[0])
+    gate, message = MessageGate(Range, all_stamps=True), Range()
     assert gate.refuses(message) == ""  # without a stamp nothing is known
     faults = []
     for at, stamped in ((500.0, 90.0), (500.1, 90.1), (500.2, 90.1), (503.0, 90.5), (503.1, 20.0), (503.2, 20.1)):

@@ -16,20 +16,19 @@ from btlang.vocabulary.ros_table import read_ros
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
-from btlang.ros.fields import reader
-from btlang.ros.filling import filler
-from btlang.ros.word import Word
+from btlang.ros.words.fields import filler, reader
+from btlang.ros.words.word import RosWord
 
 SLOTS = ("length", "angle", "percent", "duration", "count", "text", "place")
 PLACES: dict[str, Any] = {"kitchen": (4.0, -1.0, math.pi), "lobby": (1.0, 2.0, None)}
 
 
-def word(table: dict[str, Any], sort: str = "action") -> Word:
+def word(table: dict[str, Any], sort: str = "action") -> RosWord:
     """A word with a slot of each type."""
     binding, problems = read_ros(table, sort)
     assert isinstance(binding, RosBinding), problems
     entry = Entry(sort, "Word", ("word",), slots=tuple(SlotSpec(slot, slot) for slot in SLOTS), ros=binding)
-    return Word(entry, world_vocabulary(), PLACES.__getitem__)
+    return RosWord(entry, world_vocabulary(), PLACES.__getitem__)
 
 
 def filled(interface: str, message: dict[str, Any], **values: Any) -> Any:

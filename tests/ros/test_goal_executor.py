@@ -12,9 +12,8 @@ from btlang.backends.engine import bind_leaf
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.mission_vocabulary import world_vocabulary
 from btlang.ros.serving.goal_executor import BUSY, REST, GoalExecutor
-from btlang.ros.serving.names import action_name
-from btlang.ros.serving.request import requested_leaf
-from btlang.ros.serving.selection import chosen, servable
+from btlang.ros.serving.names import action_name, chosen, servable
+from btlang.ros.serving.server import requested_leaf
 from btlang.run.bus import Bus
 
 WORDS = """
@@ -133,7 +132,7 @@ def test_goals_of_different_resources_run_side_by_side():
 
 
 def test_a_caller_hears_again_and_again_that_it_goes_on(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("btlang.ros.serving.goal.WORD", 0.0)
+    monkeypatch.setattr("btlang.ros.serving.goal_executor.WORD", 0.0)
     server = Server()
     say, _ = server.begin("Say", text="hello there")
     server.tick(0.5)

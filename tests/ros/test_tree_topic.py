@@ -10,8 +10,7 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.ros.mission.progress import News, Progress
-from btlang.ros.mission.tree_topic import TreeTopic
+from btlang.ros.mission.topics import MissionProgress, RunListener, TreeTopic
 from btlang.run.bus import INLINE
 
 
@@ -37,10 +36,10 @@ def test_the_last_snapshot_has_the_last_statuses(pause: float, monkeypatch: pyte
         run = session.prepare(mission, speed="max", sinks=[Sink()])
         tree = TreeTopic(mission, run, snapshots.append, changes.append)
 
-        def reached(news: News) -> None:
+        def reached(news: RunListener) -> None:
             tree.reached(news, is_last=news.is_last)
 
-        topics.append(Progress(run.snapshot, tree.changed, reached))
+        topics.append(MissionProgress(run.snapshot, tree.changed, reached))
         assert run.execute().succeeded
     known: dict[str, str] = {}
     for change in map(json.loads, changes):

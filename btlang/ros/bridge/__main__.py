@@ -11,7 +11,7 @@ from typing import BinaryIO
 
 from btlang.diagnostics.errors import MissionError
 from btlang.ros.available import require_ros
-from btlang.ros.waiting import wait_until
+from btlang.ros.clocks import wait_until
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -39,8 +39,7 @@ def _run(lines: BinaryIO, output: BinaryIO) -> None:
     """Raises MissionError (BT100) without ROS 2."""
     require_ros()
     from btlang.ros.bridge.bridge import Bridge
-    from btlang.ros.executor_thread import ExecutorThread
-    from btlang.ros.node import SpunNode
+    from btlang.ros.node import ExecutorThread, SpunNode
 
     with SpunNode(f"btlang_bridge_{os.getpid()}") as spun:
         thread = ExecutorThread(spun.node)

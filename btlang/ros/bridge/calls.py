@@ -1,4 +1,4 @@
-"""Calls of services and goals of actions, for clients."""
+"""Calls of services and goals of actions for clients, and waits for what the ROS graph doesn't report."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from functools import partial
 
 from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
+from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
-from btlang.ros.bridge.conversion import as_data, filled
-from btlang.ros.bridge.replies import BridgeError, answer
+from btlang.record import Record
+from btlang.ros.bridge.conversion import as_data, filled, type_of
+from btlang.ros.bridge.replies import BridgeError, answer, reason_of
 from btlang.ros.bridge.topics import full
-from btlang.ros.bridge.types import type_of
-from btlang.ros.bridge.waits import Waits
 from btlang.ros.graph import absent, is_ready, types_of
 from btlang.ros.lease import Lease
 
@@ -26,6 +26,57 @@ if TYPE_CHECKING:
     Asked: TypeAlias = dict[str, Any]
     Reply: TypeAlias = Callable[[dict[str, Any]], object]
     Fail: TypeAlias = Callable[[str], object]
+
+_LOOK = 0.02  # seconds between two looks
+
+
+class _Wait(Record):
+    ready: Callable[[], object]
+    then: Callable[[], object]
+    late: Callable[[str], object]
+    reason: Callable[[], str]
+    until: float
+
+
+class Waits:
+    """Those of a node, which another thread spins."""
+
+    def __init__(self, node: Node) -> None:
+        self._waits: list[_Wait] = []
+        self._timer = node.create_timer(_LOOK, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._timer.cancel()
+
+    def when(
+        self,
+        ready: Callable[[], object],
+        then: Callable[[], object],
+        late: Callable[[str], object],
+        reason: Callable[[], str],
+        seconds: float,
+    ) -> None:
+        """Calls `then` once `ready` holds, or `late` with a reason: the given one, or why one of these two failed."""
+        self._waits.append(_Wait(ready, then, late, reason, time.monotonic() + seconds))
+        self._timer.reset()
+
+    def _look(self) -> None:
+        waits, self._waits = self._waits, []
+        self._waits += [wait for wait in waits if not self._is_over(wait)]
+        if not self._waits:
+            self._timer.cancel()
+
+    def _is_over(self, wait: _Wait) -> bool:
+        try:
+            if wait.ready():
+                wait.then()
+                return True
+        except Exception as error:  # also of ROS: the others go on
+            wait.late(reason_of(error))
+            return True
+        if time.monotonic() < wait.until:
+            return False
+        wait.late(wait.reason())
+        return True
+
 
 _FOUND = 5.0  # seconds in which a server is found
 _ANSWERED, _LONGEST = 10.0, 600.0  # seconds for an answer: by default, and at most
@@ -75,7 +126,7 @@ class Servers:
         self.waits.when(ready, lambda: then(found, client()), fail, reason, _FOUND)
 
 
-class Call:
+class BridgeCall:
     """A service that a client calls. Raises BridgeError."""
 
     def __init__(self, servers: Servers, asked: Asked, reply: Reply, fail: Fail) -> None:
@@ -115,7 +166,7 @@ class Call:
             self._fail(reason)
 
 
-class Goal:
+class BridgeGoal:
     """A goal that a client sends; `feedback` is called with each message on the way. Raises BridgeError."""
 
     def __init__(self, servers: Servers, asked: Asked, reply: Reply, fail: Fail, feedback: Reply) -> None:

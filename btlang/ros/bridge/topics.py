@@ -12,11 +12,10 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 
-from btlang.ros.bridge.conversion import as_data, filled
+from btlang.ros.bridge.conversion import as_data, filled, type_of
 from btlang.ros.bridge.replies import MOST_CHARACTERS, BridgeError
-from btlang.ros.bridge.types import type_of
 from btlang.ros.graph import types_of
-from btlang.ros.word import type_name
+from btlang.ros.messages import type_name
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

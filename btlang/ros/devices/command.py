@@ -20,9 +20,8 @@ from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.world import World
 from btlang.robots.world_problem import read_world
 from btlang.ros.available import require_ros
-from btlang.ros.command import add_namespace
+from btlang.ros.command import EndingSignals, add_namespace, ending_signals
 from btlang.ros.devices.driver import PACKAGES
-from btlang.ros.ending import EndingSignals, ending_signals
 from btlang.run.controls import Controls
 from btlang.text.output import show
 
@@ -62,7 +61,7 @@ def serve(options: argparse.Namespace) -> int:
 
 def _show_devices(options: argparse.Namespace, body: Body, world: World, came: EndingSignals) -> int:
     require_ros(*PACKAGES)
-    from btlang.ros.devices.topics import DeviceTopics
+    from btlang.ros.devices.nodes import DeviceTopics
     from btlang.ros.node import SpunNode
 
     controls = Controls()

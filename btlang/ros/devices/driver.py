@@ -16,7 +16,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.ros.devices.client import DeviceClient
+    from btlang.ros.devices.nodes import DeviceClient
 
 PACKAGES = ("geometry_msgs", "nav_msgs", "sensor_msgs", "std_msgs", "trajectory_msgs")
 """The packages of messages that devices are in."""
@@ -43,7 +43,7 @@ class TopicDriver:
         """See Driver. Raises DeviceError."""
         try:
             require_ros(*PACKAGES)
-            from btlang.ros.devices.client import DeviceClient
+            from btlang.ros.devices.nodes import DeviceClient
 
             self._client = DeviceClient(self._devices)
         except MissionError as problem:

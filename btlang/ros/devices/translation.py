@@ -7,7 +7,7 @@ from math import isnan
 from btlang.devices.driver import DeviceError, DeviceSilent
 from btlang.devices.kinds import Command, Reading
 from btlang.ros.devices.setting import Setting
-from btlang.ros.gate import Gate
+from btlang.ros.subscriptions import MessageGate
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ class Translation:
 
     def __init__(self, setting: Setting) -> None:
         self._setting = setting
-        self._gate = Gate(self.reads, all_stamps=True)
+        self._gate = MessageGate(self.reads, all_stamps=True)
 
     def concerns(self, message: Any) -> bool:
         """Whether a message has anything to do with this device: others may share its topic."""

@@ -11,8 +11,7 @@ from typing import Any
 
 from btlang.arguments import node_name
 from btlang.ros.available import require_interfaces, require_ros
-from btlang.ros.command import add_body_options, add_namespace, platform_of
-from btlang.ros.ending import EndingSignals, ending_signals
+from btlang.ros.command import EndingSignals, add_body_options, add_namespace, ending_signals, platform_of
 from btlang.task.options import add_companion_options, add_layer_options
 from btlang.text.output import show
 
@@ -56,9 +55,7 @@ def _serve(options: argparse.Namespace, came: EndingSignals) -> int:
     require_ros()
     require_interfaces()
     require_ros(*PACKAGES)
-    from btlang.ros.mission.node import MissionNode
-    from btlang.ros.mission.setup import Setup, robot_name
-    from btlang.ros.mission.stop import StopNode
+    from btlang.ros.mission.node import MissionNode, Setup, StopNode, robot_name
     from btlang.ros.node import SpunNode
     from btlang.run.controls import Controls
     from btlang.run.emergency import emergency_signal

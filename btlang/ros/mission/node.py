@@ -1,4 +1,4 @@
-"""The lifecycle node of a robot with its task layer: runs its own mission, and those that other programs send."""
+"""The lifecycle node of a robot with its task layer: its setup, its missions, and the node of its emergency stop."""
 
 from __future__ import annotations
 
@@ -7,30 +7,108 @@ from collections.abc import Callable, Generator, Sequence
 from contextlib import suppress
 
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.node import Node
+from std_srvs.srv import Trigger
 
 from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
-from btlang.ros.mission.progress import News, Progress
-from btlang.ros.mission.report import Report, report_of
-from btlang.ros.mission.server import LABEL, MissionServer
-from btlang.ros.mission.services import create_services
-from btlang.ros.mission.setup import Setup
-from btlang.ros.mission.topics import ERROR, OK, WARN, Topics
-from btlang.ros.mission.tree_topic import TreeTopic
+from btlang.diagnostics.reading import read_included
+from btlang.record import Record
+from btlang.robots.registry import connector
+from btlang.ros.mission.server import LABEL, MissionServer, create_services
+from btlang.ros.mission.topics import (
+    ERROR,
+    OK,
+    WARN,
+    MissionProgress,
+    MissionReport,
+    RunListener,
+    Topics,
+    TreeTopic,
+    report_of,
+)
 from btlang.run.lines import Lines
 from btlang.task import messages
 from btlang.task.emergency import shut_latch
 from btlang.task.follower import Follower
+from btlang.task.house import furnished_layer
+from btlang.task.layer import TaskLayer
 from btlang.task.messages import Answer, Command
+from btlang.task.missions import MissionReader
 from btlang.task.task import ACTIVE, FINAL, WAITING, Change, MissionText, State, Task
+from btlang.vocabulary.shipped import ENGLISH
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from typing import Any
 
     from btlang.run.events import Sink
     from btlang.session import Run
-    from btlang.task.layer import TaskLayer
+
+
+class Setup(Record):
+    """`robot` and `over` are as for Session; `file` is the mission that the node runs when activated, "" for none.
+
+    What other programs send may include only files below `include_root`, and use only the keyword files of
+    `allowed_keywords`: names of packs, and folders. `layer` are further arguments of the TaskLayer.
+    """
+
+    name: str = "btlang"
+    robot: str = "simulated"
+    over: str | None = None
+    sim_time: bool = False
+    namespace: str = ""
+    speed: float | str = "real"
+    file: str = ""
+    keywords: Sequence[str] = ()
+    world: str | None = None
+    parser: str = "shunting-yard"
+    include_root: str | None = None
+    allowed_keywords: Sequence[str] = ()
+    language: str = ENGLISH
+    layer: Mapping[str, Any] = {}
+
+    def reader(self) -> MissionReader:
+        """What reads the missions of this robot."""
+        return MissionReader(
+            self.keywords, self.world, parser=self.parser, language=self.language, include_root=self.include_root,
+            allowed_keywords=self.allowed_keywords,
+        )  # fmt: skip
+
+    def mission(self, text: str, file: str, reader: MissionReader) -> MissionText | None:
+        """That of the node's parameters; None if they name none. Raises MissionError (BT001, BT002)."""
+        if text:
+            return MissionText(text)
+        if file in ("", self.file):
+            return MissionText("", file=file) if file else None
+        return MissionText(read_included(file, reader.source("")).text, file)  # any program may set a parameter
+
+    def task_layer(self, reader: MissionReader, **options: Any) -> TaskLayer:
+        """The robot, with further arguments for its TaskLayer. Raises MissionError."""
+        named = {"sim_time": self.sim_time, "namespace": self.namespace, "name": f"{self.name}_robot"}
+        robot = connector(self.robot, self.over, **named)
+        return furnished_layer(robot, reader, speed=self.speed, **self.layer, **options)
+
+
+def robot_name(namespace: str, name: str) -> str:
+    """The name of a node's robot for `btc task --name`."""
+    return "-".join([*filter(None, namespace.split("/")), name])
+
+
+class StopNode(Node):  # type: ignore[misc]  # rclpy is seen as untyped
+    """`service` is the full name of the service, `stop` says whether there was a robot to stop."""
+
+    def __init__(self, service: str, stop: Callable[[], bool], name: str, **options: Any) -> None:
+        super().__init__(name, start_parameter_services=False, enable_rosout=False, **options)
+        self._do = stop
+        self.create_service(Trigger, service, self._stop)
+
+    def _stop(self, request: Any, response: Any) -> Any:
+        response.success = self._do()
+        response.message = "" if response.success else "there is no robot, and its latch can't be written"
+        return response
+
 
 _SUCCESS, _FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
 _PERSON = "ROS 2"
@@ -55,7 +133,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         self._layer: TaskLayer | None = None
         self._follower: Follower | None = None
         self._mission: MissionText | None = None
-        self._latest: Report | None = None
+        self._latest: MissionReport | None = None
         self._seconds: dict[int, float] = {}
         self._running = ""
         self._active = False
@@ -193,18 +271,18 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             return []
         tree = TreeTopic(mission, run, self._topics.tree, self._topics.tree_changes)
 
-        def changed(news: News) -> None:
+        def changed(news: RunListener) -> None:
             self._running, self._seconds[task.id] = news.running, news.time
             tree.changed(news)
             self._server.news(task.id, news)
 
-        def reached(news: News) -> None:
+        def reached(news: RunListener) -> None:
             tree.reached(news, is_last=news.is_last)
             self._topics.status(news)
 
         return [
             Lines(mission.label, mission.is_action, self._topics.log),
-            Progress(run.snapshot, changed, reached),
+            MissionProgress(run.snapshot, changed, reached),
         ]
 
     def _changed(self, changes: Sequence[Change]) -> None:

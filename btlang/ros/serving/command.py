@@ -16,8 +16,7 @@ from btlang.robots.needs import lacking
 from btlang.robots.registry import connector
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.command import add_body_options, add_namespace, platform_of
-from btlang.ros.serving.names import FOLDER
-from btlang.ros.serving.selection import chosen, servable
+from btlang.ros.serving.names import FOLDER, chosen, servable
 from btlang.run.limits import RATES
 from btlang.session import Session
 from btlang.text.output import show
@@ -100,7 +99,7 @@ def _check(connection: Connection, ids: Sequence[str], vocabulary: Lexicon) -> N
 
 def _spin(connection: Connection, ids: Sequence[str], vocabulary: Lexicon, options: argparse.Namespace) -> int:
     from btlang.printer.phrase import phrase_of
-    from btlang.ros.ending import ending_signals
+    from btlang.ros.command import ending_signals
     from btlang.ros.node import SpunNode
     from btlang.ros.serving.goal_executor import GoalExecutor
     from btlang.ros.serving.server import serve_actions

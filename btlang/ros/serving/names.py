@@ -1,15 +1,18 @@
-"""Under which names actions are served, so that whoever has the same words finds them."""
+"""The names of served actions, so that clients with the same words find them, and which actions a server serves."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
+from btlang.text.spelling import nearest
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.ros_binding import RosBinding
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.vocabulary.entry import Entry
-    from btlang.vocabulary.lexicon import Lexicon
+
 
 RUN_PHRASE = "btlang_interfaces/action/RunPhrase"
 """The type of them all."""
@@ -33,3 +36,37 @@ def served(entry: Entry, vocabulary: Lexicon, servers: str) -> Entry:
     binding = RosBinding("phrase", entry.id, f"{servers}/{action_name(entry.id)}")
     made: Entry = entry.replace(slots=tuple(slots.values()), ros=binding)
     return made
+
+
+def servable(vocabulary: Lexicon, *, ros: bool) -> list[str]:
+    """The ids of actions that Python does, or with `ros` an interface of ROS 2: but not another server of actions."""
+    found = []
+    for node_id, entries in vocabulary.entries.items():
+        kinds = [entry.ros.kind for entry in entries if entry.ros is not None] if ros else []
+        if entries[0].sort == "action" and (entries[0].call or kinds) and "phrase" not in kinds:
+            found.append(node_id)
+    return found
+
+
+def chosen(only: Sequence[str], ids: Sequence[str], vocabulary: Lexicon) -> list[str]:
+    """The ids that have one of these names, or are listed under such a topic; all where none is given.
+
+    Raises ValueError, in words, for a name that nothing has, and for two actions with the same name in ROS.
+    """
+    named: dict[str, list[str]] = {}
+    for node_id in ids:
+        for name in {node_id.lower(), action_name(node_id), vocabulary.entries[node_id][0].topic.lower()} - {""}:
+            named.setdefault(name, []).append(node_id)
+    for name in only:
+        if name.lower() not in named:
+            near = nearest(name.lower(), named, 1)
+            raise ValueError(f"--only: there is no action '{name}'" + (f"; similar: {near[0]}" if near else ""))
+    found = list(dict.fromkeys(node_id for name in only for node_id in named[name.lower()])) if only else list(ids)
+    served: dict[str, str] = {}
+    for node_id in found:
+        name = action_name(node_id)
+        if not name or name in served:
+            known = f"{served[name]} has the same" if name else "it takes a-z, digits and single _"
+            raise ValueError(f"{node_id} has no valid ROS 2 name: {known}; use --only")
+        served[name] = node_id
+    return found

@@ -17,11 +17,10 @@ from trajectory_msgs.msg import JointTrajectory
 
 from btlang.robots.robot import Hand, RobotError
 from btlang.robots.simulated import SimulatedRobot
-from btlang.ros.joint_states import on_wire
 from btlang.ros.node import LATCHED
-from btlang.ros.simulator.call_queue import CallQueue
-from btlang.ros.simulator.publishing import COMMANDS, Every, Latched, Moment
-from btlang.ros.speech import LANGUAGE
+from btlang.ros.robot.joints import on_wire
+from btlang.ros.robot.speech import LANGUAGE
+from btlang.ros.simulator.shared import COMMANDS, CallQueue, LatchedPublisher, Moment, PeriodicPublisher
 from btlang.text.output import show
 
 TYPE_CHECKING = False
@@ -34,7 +33,7 @@ _EXACT = 1e-6
 _JOINTS, _SMOOTH_JOINTS = 20, 50  # states of them a second
 
 
-class Body:
+class BodyTopics:
     """Moves joints, hands and voice as topics and services say. A `player` moves joints along whole trajectories."""
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue, player: JointPlayer | None) -> None:
@@ -45,9 +44,9 @@ class Body:
         self._si = {joint.name: joint.si for joint in robot.body.joints}
         hands = [hand for hand in _HANDS if robot.body.hand(hand) is not None]
         self._joints = node.create_publisher(JointState, "joint_states", COMMANDS)
-        self._joints_due = Every(_JOINTS if player is None else _SMOOTH_JOINTS)
-        self._speaking = Latched(node, Bool, "speaking", robot.speaking)
-        self._holding = {hand: Latched(node, String, f"{hand}_hand/holding", "") for hand in hands}
+        self._joints_due = PeriodicPublisher(_JOINTS if player is None else _SMOOTH_JOINTS)
+        self._speaking = LatchedPublisher(node, Bool, "speaking", robot.speaking)
+        self._holding = {hand: LatchedPublisher(node, String, f"{hand}_hand/holding", "") for hand in hands}
         for hand in hands:
             node.create_service(SetBool, f"{hand}_hand/close", partial(self._close, hand))
         for kind, topic, act in (

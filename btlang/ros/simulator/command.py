@@ -13,8 +13,7 @@ from btlang.robots.options import add_world
 from btlang.robots.registry import runs_on
 from btlang.robots.world import World
 from btlang.robots.world_problem import read_world
-from btlang.ros.command import add_body_options, add_namespace
-from btlang.ros.ending import EndingSignals, ending_signals
+from btlang.ros.command import EndingSignals, add_body_options, add_namespace, ending_signals
 from btlang.run.emergency import emergency_signal
 from btlang.run.limits import RATES
 from btlang.text.output import show

@@ -16,8 +16,8 @@ from btlang.robots.motion.movements import staying
 from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.motion.timeline import Timeline
 from btlang.robots.robot import RobotError
-from btlang.ros.joint_states import on_wire
-from btlang.ros.times import seconds_of
+from btlang.ros.messages import seconds_of
+from btlang.ros.robot.joints import on_wire
 
 _SILENCE = 0.5  # simulated and real seconds without a trajectory after which the joints brake
 _FAR_OFF = 10.0  # seconds before its beginning and after its end in which a trajectory may come

@@ -18,23 +18,21 @@ from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.simulated_parts import simulated_parts
 from btlang.robots.world import World
 from btlang.ros.available import optional_interface
+from btlang.ros.messages import stamp
 from btlang.ros.node import SpunNode
-from btlang.ros.perception import SIGHTINGS_TYPE
-from btlang.ros.simulator.body import Body
-from btlang.ros.simulator.call_queue import CallQueue
-from btlang.ros.simulator.doors import Doors
-from btlang.ros.simulator.publishing import COMMANDS, Moment
-from btlang.ros.simulator.sensors import Sensors
-from btlang.ros.simulator.wheels import Wheels
-from btlang.ros.times import stamp
+from btlang.ros.robot.sensors import SIGHTINGS_TYPE
+from btlang.ros.simulator.base import BaseTopics, SensorTopics
+from btlang.ros.simulator.body import BodyTopics
+from btlang.ros.simulator.doors import DoorTopics
+from btlang.ros.simulator.shared import COMMANDS, CallQueue, Moment
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.motion.smooth_joints import SmoothJoints
-    from btlang.ros.simulator.hearing import Hearing
+    from btlang.ros.simulator.people import HearingTopics
 
 
-class Part(Protocol):
+class SimulatorPart(Protocol):
     """Some topics, services and actions of the robot."""
 
     def publish(self, now: Moment) -> None:
@@ -76,34 +74,33 @@ class Simulator:
         self._calls = CallQueue()
         self._spun = SpunNode("btlang_sim", namespace=namespace)
         self.node = node = self._spun.node
-        self._wheels = Wheels(node, self.robot, self._calls)
+        self._wheels = BaseTopics(node, self.robot, self._calls)
         self._player = None
         if self.robot.body.is_smooth:
             from btlang.ros.simulator.joint_player import JointPlayer  # brings ruckig
 
             self._player = JointPlayer(self.robot.body, cast("SmoothJoints", joints[0]), self._clocks)
-        self._parts: list[Part] = [
+        self._parts: list[SimulatorPart] = [
             self._wheels,
-            Sensors(node, self.robot, self._calls),
-            Body(node, self.robot, self._calls, self._player),
-            Doors(node, self.robot, self._calls),
+            SensorTopics(node, self.robot, self._calls),
+            BodyTopics(node, self.robot, self._calls, self._player),
+            DoorTopics(node, self.robot, self._calls),
         ]
-        self._hearing: Hearing | None = None
+        self._hearing: HearingTopics | None = None
         if can_meet_people():
-            from btlang.ros.simulator.hearing import Hearing
-            from btlang.ros.simulator.seeing import Seeing
+            from btlang.ros.simulator.people import HearingTopics, SightTopics
 
-            self._hearing = Hearing(node, self.robot, self._calls)
-            self._parts += [self._hearing, Seeing(node, self.robot, self._calls)]
+            self._hearing = HearingTopics(node, self.robot, self._calls)
+            self._parts += [self._hearing, SightTopics(node, self.robot, self._calls)]
         if can_navigate() and self.robot.body.has("navigation"):
-            from btlang.ros.simulator.navigation import Navigation
+            from btlang.ros.simulator.navigation import NavigationServer
 
-            self._parts.append(Navigation(node, self.robot, self._calls, self._wheels))
+            self._parts.append(NavigationServer(node, self.robot, self._calls, self._wheels))
             if self.robot.body.has("docking"):
                 with suppress(ImportError):  # Nav2 has had docking since Jazzy
-                    from btlang.ros.simulator.docking import Docking
+                    from btlang.ros.simulator.navigation import DockingServer
 
-                    self._parts.append(Docking(node, self.robot, self._calls, self._wheels))
+                    self._parts.append(DockingServer(node, self.robot, self._calls, self._wheels))
         self._stepped = self._system_time()
         self._clock = node.create_publisher(Clock, "/clock", QoSProfile(depth=1)) if gives_clock else None
         node.create_service(Trigger, "stop", self._stop)

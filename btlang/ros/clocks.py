@@ -1,0 +1,183 @@
+"""Clocks of a ROS 2 robot: real time in which this process ran, time that always goes on, and the pace of a run."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from threading import RLock
+
+from btlang.run.controls import Controls
+from btlang.run.pace import Pace
+
+HEARTBEAT = 0.2
+"""Seconds after which each node looks at the clock, so that a longer pause was none of the tick's."""
+_ASLEEP = 1.5  # seconds in which no thread looks
+
+
+def _real() -> float:
+    """Seconds of real time; those of a suspended computer count if the system reports them."""
+    return time.clock_gettime(time.CLOCK_BOOTTIME) if hasattr(time, "CLOCK_BOOTTIME") else time.monotonic()
+
+
+class AwakeClock:
+    """May be read from any thread, and from handlers of signals. Naps are noticed while some node watches for them."""
+
+    def __init__(self, real: Callable[[], float] = _real) -> None:
+        self.naps = 0
+        """How often it was asleep."""
+        self.nap = 0.0
+        """For how many seconds the last time."""
+        self._real = real
+        self._lock = RLock()
+        self._seen, self._slept, self._woke = real(), 0.0, -math.inf
+        self._watchers = 0
+
+    def watch(self) -> None:
+        """From now on somebody calls `now` with each heartbeat."""
+        with self._lock:
+            self.now()
+            self._watchers += 1
+
+    def unwatch(self) -> None:
+        """Nobody does so any more, for one call of `watch`."""
+        with self._lock:
+            self._watchers -= 1
+
+    def now(self) -> float:
+        """Seconds that go on only while this process runs."""
+        with self._lock:
+            real = self._real()
+            gap, self._seen = real - self._seen, real
+            if gap > _ASLEEP and self._watchers:
+                self._slept += gap
+                self.nap, self.naps, self._woke = gap, self.naps + 1, real - self._slept
+            return real - self._slept
+
+    def since_woke(self) -> float:
+        """Seconds since it was asleep; infinite where it never was."""
+        return self.now() - self._woke
+
+
+AWAKE = AwakeClock()
+"""That of this process."""
+
+
+STANDING = 1.0
+"""Real seconds for which a clock may stand still, as that of a simulator does between its ticks."""
+_SLOWEST = 100.0  # a clock that goes on more slowly than a hundredth of real time stands still
+_LEAP, _FASTEST = 10.0, 1000.0  # seconds that a clock may be ahead of a look, and how often as fast it may be
+
+
+class SteadyTime:
+    """Seconds that follow the clock `read` and never go back; from any thread.
+
+    A clock may stand still, run backwards or leap, and two programs may publish it in turn. What isn't a step forward
+    is not counted. After STANDING seconds of that, time goes on with the computer's clock until the other one steps
+    forward again from where it then is, as that of a simulator that was restarted does. So what waits for a time always
+    gets there. `said` is called once with each thing that a clock should not do.
+    """
+
+    def __init__(self, read: Callable[[], float], said: Callable[[str], object] = str) -> None:
+        self._read, self._said = read, said
+        self._warned: set[str] = set()
+        self.has_failed = False
+        """Whether the clock has done what a clock should not do."""
+        now = read()
+        # what the clock said and when, how long it has stood still, and the time that was made of it; replaced as one
+        self._seen: tuple[float, float, float, float] = now, time.monotonic(), 0.0, now
+
+    def now(self) -> float:
+        """Seconds."""
+        before, looked, stood, now = self._seen
+        clock, real = self._read(), time.monotonic()
+        elapsed, step = real - looked, clock - before
+        leaps = step > _LEAP + _FASTEST * elapsed and before != 0.0  # where a node's clock is until its first message
+        if step > 0.0 and not leaps:
+            now += step
+            stood = max(0.0, stood + elapsed - _SLOWEST * step)
+            before = clock
+        else:
+            stood += elapsed
+        if stood > STANDING:
+            now += min(elapsed, stood - STANDING)
+            before = clock
+            if stood - elapsed <= STANDING:
+                self._warn("leaps" if leaps else "runs backwards" if step < 0.0 else "stands still")
+        self._seen = before, real, stood, now
+        return now
+
+    def _warn(self, what: str) -> None:
+        self.has_failed = True
+        if what not in self._warned:
+            self._warned.add(what)
+            self._said(what)
+
+
+_LOOK = 0.01  # seconds between two looks
+
+
+def wait_until(holds: Callable[[], object], limit: float) -> None:
+    """Blocks until something holds, for so many real seconds at most. It is asked once in any case."""
+    until = time.monotonic() + limit
+    while not holds() and time.monotonic() < until:
+        time.sleep(_LOOK)
+
+
+_SLOW = 6.0  # how often as long as it says the time after a run may take: a simulator may be slow
+_ENDING = 1.0  # real seconds that it may take in sum where the clock has failed
+_CLOCK_LOOK = 0.002  # seconds between two looks at a clock that may run faster than the system's
+
+
+class RosPace(Pace):
+    """Sleeps by a simulator's clock `now`, or by that of the system (None).
+
+    What `sleep` returns is all the time since the sleep before it, the tick included. A simulator's clock may do what
+    it likes (see SteadyTime): the mission still ticks, its leaves find out what is wrong, and it ends. `said` is called
+    once with each thing that the clock should not do.
+    """
+
+    def __init__(
+        self, controls: Controls, now: Callable[[], float] | None = None, said: Callable[[str], object] = str
+    ) -> None:
+        super().__init__(1.0, controls)
+        self._steady = None if now is None else SteadyTime(now, said)
+        self._time = time.monotonic if self._steady is None else self._steady.now
+        self._look = math.inf if now is None else _CLOCK_LOOK
+        self._last = 0.0
+        self._spare = STANDING / 2  # real seconds that the time after a run may take beyond _SLOW
+        self._rested = 0.0  # real seconds that it has taken
+
+    def begin(self) -> None:
+        """A period begins now."""
+        self._last = self._due = self._time()
+
+    def sleep(self, period: float, wait: float = math.inf) -> float:
+        """Sleeps as Pace does; returns the seconds that have passed."""
+        now = self._time()
+        if now >= self._due + period:
+            self.late += 1
+        self._due = max(now, min(self._due + period, self._last + wait))
+        while now < self._due and not self._woken and not self._controls.stopped:
+            self._controls.wait(min(self._due - now, self._look))
+            now = self._time()
+        self._due = min(self._due, now)
+        passed, self._last = now - self._last, now
+        return passed
+
+    def rest(self, seconds: float) -> float:
+        """As `sleep`, whatever is asked for meanwhile. Waits for no clock that stands still or is much too slow, and a
+        second in sum for one that has failed.
+        """
+        begin, began = self._time(), time.monotonic()
+        allowed, took = self._spare + _SLOW * seconds, 0.0
+        while (passed := self._time() - begin) < seconds and took < min(allowed, self._left()):
+            time.sleep(min(seconds - passed, self._look))
+            took = time.monotonic() - began
+        self._rested += took
+        self._spare = min(STANDING / 2, allowed - took)
+        return max(passed, seconds)
+
+    def _left(self) -> float:
+        """Real seconds that the time after a run may still take."""
+        return _ENDING - self._rested if self._steady is not None and self._steady.has_failed else math.inf

@@ -1,0 +1,121 @@
+"""The joints of a ROS 2 robot: a JointTrajectory out, JointState in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import ceil
+from typing import Protocol
+
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+from trajectory_msgs.msg import JointTrajectory
+
+from btlang.robots.body import Body
+from btlang.robots.joints import clipped, joint_of
+from btlang.robots.motion.guard.joints import JointProgress
+from btlang.robots.robot import RobotError
+from btlang.ros.clocks import AWAKE
+from btlang.ros.messages import trajectory
+from btlang.ros.subscriptions import SubscriptionCache
+
+STATES, TRAJECTORY = "joint_states", "joint_trajectory"
+_SILENT = 2.0  # seconds without joint states
+
+
+class JointStates:
+    """Degrees here, radians on the wire, metres in both of a joint that slides; names have `_` for blanks there."""
+
+    def __init__(self, subscriptions: SubscriptionCache, body: Body) -> None:
+        self._subscriptions, self._body = subscriptions, body
+        subscriptions.listen(STATES, JointState, "joint states")
+
+    def awaited(self) -> list[str]:
+        """The joints of the body that haven't been reported yet, although others have."""
+        states = self._subscriptions.latest_joints(STATES)
+        return states.missing(on_wire(joint.name) for joint in self._body.joints) if states.has_come else []
+
+    def angle(self, name: str) -> float:
+        """Raises RobotError for an unknown joint, and where the joint states are silent."""
+        return self.stamped(name)[0]
+
+    def stamped(self, name: str) -> tuple[float, float]:
+        """As `angle`, with the time stamp of the message."""
+        joint = joint_of(self._body, name)
+        self._subscriptions.get(STATES, _SILENT)
+        position, stamp = self._subscriptions.latest_joints(STATES).position(on_wire(name), _SILENT)
+        return position / joint.si, stamp
+
+
+def on_wire(name: str) -> str:
+    """The name of a joint in messages."""
+    return name.replace(" ", "_")
+
+
+class JointsOverRos(Protocol):
+    """Joints of any kind. `freeze`, which without names is for all of them, may be called from any thread."""
+
+    @property
+    def moving(self) -> bool: ...
+    def awaited(self) -> list[str]: ...
+    def angle(self, name: str) -> float: ...
+    def move(self, targets: Mapping[str, float]) -> None: ...
+    def at_target(self, names: tuple[str, ...]) -> bool: ...
+    def freeze(self, names: tuple[str, ...] = ()) -> None: ...
+    def step(self) -> None: ...
+
+
+class RosJoints:
+    """See JointsOverRos: each command is one point, and how the joints get there is up to the robot."""
+
+    def __init__(self, node: Node, subscriptions: SubscriptionCache, body: Body) -> None:
+        self._body = body
+        self._states = JointStates(subscriptions, body)
+        self._targets: dict[str, float] = {}
+        self._progress = JointProgress(body, AWAKE.now)
+        self._publisher = node.create_publisher(JointTrajectory, TRAJECTORY, 10)
+
+    def awaited(self) -> list[str]:
+        """See JointStates."""
+        return self._states.awaited()
+
+    @property
+    def moving(self) -> bool:
+        """Whether a joint is on its way."""
+        return bool(self._targets)
+
+    def angle(self, name: str) -> float:
+        """See JointStates."""
+        return self._states.angle(name)
+
+    def step(self) -> None:
+        """Nothing: they move by themselves."""
+
+    def move(self, targets: Mapping[str, float]) -> None:
+        """Sets off towards the targets, clipped to the limits. Raises RobotError as `angle` does."""
+        goals = clipped(self._body, targets)
+        times = (abs(goal - self.angle(name)) / joint_of(self._body, name).speed for name, goal in goals.items())
+        self._publish(goals, max(times, default=0.0))
+        self._targets.update(goals)
+        self._progress.start(goals)
+
+    def at_target(self, names: tuple[str, ...]) -> bool:
+        """True when none of them is on its way. Raises RobotError where one of them is stuck."""
+        for name in names:
+            target = self._targets.get(name)
+            if target is not None and self._progress.has_arrived(name, target - self.angle(name)):
+                self._targets.pop(name, None)
+        return not any(name in self._targets for name in names)
+
+    def freeze(self, names: tuple[str, ...] = ()) -> None:
+        """Those of them (without names: of all) that are on their way stay where they are."""
+        under_way = [name for name in (names or tuple(self._targets)) if self._targets.pop(name, None) is not None]
+        try:
+            self._publish({name: self.angle(name) for name in under_way}, 0.0)
+        except RobotError:
+            return  # nobody knows where they are
+
+    def _publish(self, targets: Mapping[str, float], seconds: float) -> None:
+        if not targets:
+            return
+        angles = {on_wire(name): target * joint_of(self._body, name).si for name, target in targets.items()}
+        self._publisher.publish(trajectory(angles, ceil(seconds)))

@@ -1,0 +1,193 @@
+"""The battery and the dock of a ROS 2 robot, with docking as Nav2's docking server does it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+
+from nav2_msgs.action import DockRobot, UndockRobot
+from rclpy.action import ActionClient
+from rclpy.node import Node
+from sensor_msgs.msg import BatteryState
+from std_msgs.msg import Bool
+from std_srvs.srv import Trigger
+
+from btlang.robots.capabilities import Operation
+from btlang.robots.charge import ChargeCheck
+from btlang.robots.geometry import Pose
+from btlang.robots.robot import RobotError
+from btlang.ros.clocks import AWAKE
+from btlang.ros.messages import stamped_pose
+from btlang.ros.node import ExecutorThread
+from btlang.ros.robot.navigation import GoalTask, ServerGoal, ServerGoals
+from btlang.ros.robot.services import Services
+from btlang.ros.subscriptions import SubscriptionCache
+
+DOCK_ROBOT, UNDOCK_ROBOT = "dock_robot", "undock_robot"
+_REASONS = {
+    901: "the docking server doesn't know the dock",
+    902: "the docking server can't use docks of this type",
+    903: "the robot didn't get to the staging pose in front of the dock",
+    904: "the dock wasn't detected",
+    906: "the robot is in the dock, but doesn't charge",
+}
+_DOCKING = {**_REASONS, 905: "the robot couldn't be driven into the dock", 907: "docking took too long"}
+_UNDOCKING = {**_REASONS, 905: "the robot couldn't be driven out of the dock", 907: "undocking took too long"}
+
+
+class RosDocking(ServerGoals):
+    """The clients of the docking server, and the goal under way. Docking drives to the staging pose by itself."""
+
+    def __init__(
+        self, node: Node, executor: ExecutorThread, where: Callable[[], Pose | None], now: Callable[[], float]
+    ) -> None:
+        super().__init__(node, executor, where, now)
+        self._dock = ActionClient(node, DockRobot, DOCK_ROBOT)
+        self._undock = ActionClient(node, UndockRobot, UNDOCK_ROBOT)
+
+    @property
+    def served(self) -> bool:
+        """Whether there is a docking server."""
+        return bool(self._dock.server_is_ready() and self._undock.server_is_ready())
+
+    def dock(self, pose: Pose | None) -> ServerGoal:
+        """Docks at a pose of the map; None: at the dock that the server calls "dock"."""
+        self.stop("the robot docks instead")
+        request = DockRobot.Goal(use_dock_id=pose is None, dock_id="" if pose is not None else "dock")
+        request.navigate_to_staging_pose = True
+        if pose is not None:
+            request.dock_pose = stamped_pose(pose, self._node.get_clock().now().to_msg())
+        task = GoalTask("docking", "dock", "docking", "dock", " on the way into the dock", _DOCKING, False)
+        return self.begin(task, self._dock, self._node.resolve_service_name(DOCK_ROBOT), request)
+
+    def undock(self) -> ServerGoal:
+        """Leaves the dock."""
+        self.stop("the robot undocks instead")
+        task = GoalTask("docking", "dock", "undocking", "undock", " on the way out of the dock", _UNDOCKING, False)
+        server = self._node.resolve_service_name(UNDOCK_ROBOT)
+        return self.begin(task, self._undock, server, UndockRobot.Goal())
+
+
+BATTERY, DOCKED, DOCK, UNDOCK = "battery_state", "docked", "dock", "undock"
+STATUS = "battery status"
+"""The key of what the battery reports besides its percentage; a robot may leave it out."""
+_SILENT = 30.0  # seconds without word of the battery
+_SETTLED = 5.0  # seconds after which the battery reports a dock that was entered or left
+_AT_CHARGER = {
+    BatteryState.POWER_SUPPLY_STATUS_CHARGING: True,
+    BatteryState.POWER_SUPPLY_STATUS_FULL: True,
+    BatteryState.POWER_SUPPLY_STATUS_DISCHARGING: False,
+}
+
+
+class RosPower:
+    """`emit` reports what happens. All raise RobotError if nothing reports what is asked for.
+
+    `make_docking` makes the clients of the docking server; it raises ImportError where nav2_msgs has none.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        subscriptions: SubscriptionCache,
+        services: Services,
+        emit: Callable[..., object],
+        make_docking: Callable[[], RosDocking],
+    ) -> None:
+        self._subscriptions, self._services, self._emit = subscriptions, services, emit
+        self._make_docking = make_docking
+        self.docking: RosDocking | None = None
+        self._docks = False
+        self._docked: bool | None = None
+        self._since = -_SETTLED
+        self._charge = ChargeCheck()
+        subscriptions.listen(BATTERY, BatteryState, "battery state", refuses=self._charge_fault)
+        subscriptions.listen(BATTERY, BatteryState, "battery state", key=STATUS)
+        subscriptions.listen(DOCKED, Bool, "message from the dock", qos="state")
+        services.add(DOCK, Trigger)
+        services.add(UNDOCK, Trigger)
+
+    @property
+    def battery(self) -> float:
+        """Percent left."""
+        return 100.0 * float(self._subscriptions.get(BATTERY, _SILENT).percentage)
+
+    @property
+    def empty(self) -> bool:
+        """Only where the robot says so."""
+        try:
+            return self.battery <= 0.0
+        except RobotError:
+            return False
+
+    @property
+    def charging(self) -> bool:
+        """True while the battery is being charged."""
+        state = self._subscriptions.get(STATUS, _SILENT)
+        return bool(state.power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING)
+
+    @property
+    def docked(self) -> bool:
+        """True while connected to the dock. Where no topic reports it, the battery does: it charges, or is full."""
+        if self._docked is None:
+            self._hear_battery()
+        return self._docked if self._docked is not None else bool(self._subscriptions.get(DOCKED).data)
+
+    def prepare_docking(self) -> bool:
+        """Makes the clients of the docking server, which find it in a moment. False where nav2_msgs has no docking."""
+        if self.docking is None:
+            with suppress(ImportError):
+                self.docking = self._make_docking()
+        return self.docking is not None
+
+    @property
+    def docks_by_itself(self) -> bool:
+        """Whether there is a docking server, which drives the robot into its dock and out of it."""
+        return self.prepare_docking() and self.docking is not None and self.docking.served
+
+    def dock(self, pose: Pose | None) -> Operation:
+        """Connects to the charger; a docking server drives to it, at a pose of the map where that is known."""
+        if self.docking is None or not self.docks_by_itself:
+            return self._services.call(DOCK, lambda _: self._connected(True))
+        self._docks = True
+        return self.docking.dock(pose)
+
+    def undock(self) -> Operation:
+        """Disconnects; a docking server drives out of the dock."""
+        if self.docking is None or not self.docks_by_itself:
+            return self._services.call(UNDOCK, lambda _: self._connected(False))
+        self._docks = False
+        return self.docking.undock()
+
+    def step(self) -> None:
+        """Hears whether it is docked."""
+        for message in self._subscriptions.events(DOCKED):
+            self._docked = bool(message.data)
+        self._hear_battery()
+        ended = self.docking.step() if self.docking is not None else None
+        if ended is not None and ended.failure is None:
+            self._connected(self._docks)
+
+    def _charge_fault(self, state: BatteryState) -> str:
+        if not 0.0 <= state.percentage <= 1.0:
+            return f"gives no percentage from 0 to 1, but {state.percentage:g}"
+        return self._charge.fault(100.0 * state.percentage, AWAKE.now())
+
+    def _hear_battery(self) -> None:
+        """What the battery reports about the dock, if no topic does."""
+        if not self._subscriptions.has(DOCKED) and AWAKE.now() - self._since > _SETTLED:
+            with suppress(RobotError):
+                status = self._subscriptions.get(STATUS, _SILENT).power_supply_status
+                self._docked = _AT_CHARGER.get(status, self._docked)
+
+    def _connected(self, docked: bool) -> None:
+        self._docked, self._since = docked, AWAKE.now()  # before the topic reports it
+        self._emit("dock" if docked else "undock")
+
+
+def make_docking_clients(
+    node: Node, executor: ExecutorThread, where: Callable[[], Pose | None], now: Callable[[], float]
+) -> RosDocking:
+    """Those of the docking server. Raises ImportError where nav2_msgs has no docking, or is not installed."""
+
+    return RosDocking(node, executor, where, now)
