@@ -55,7 +55,7 @@ _NOBODY = {
 
 
 def full_name(node: Any, kind: str, name: str) -> str:
-    """The name in the namespace of the node, unless it has one. `kind` is as in `btlang.ros.robot.interface.Interface`."""
+    """Resolve a name in the namespace of the node, unless it has one. `kind` is that of an `Interface`."""
     resolve = node.resolve_topic_name if kind in ("publisher", "listener") else node.resolve_service_name
     return str(resolve(name))
 
