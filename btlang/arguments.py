@@ -24,7 +24,7 @@ def robot_on(platforms: Sequence[str]) -> Callable[[str], str]:
     """What runs missions: one of these names, or a robot file."""
 
     def robot(text: str) -> str:
-        from btlang.robots.body_file import shipped_bodies
+        from btlang.robots.bodies.body_file import shipped_bodies
         from btlang.robots.platforms import ROBOTS
         from btlang.robots.registry import installed_robot
 

@@ -12,8 +12,7 @@ from btlang.actions.speech import say
 from btlang.actions.strokes import Presenting
 from btlang.actions.watch import Driving
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Conversing
-from btlang.robots.robot import RobotError
+from btlang.robots.robot import Conversing, RobotError
 
 
 class Obeying(Conversing, Presenting, Driving, Protocol):

@@ -15,10 +15,9 @@ from btlang.actions.speech import say
 from btlang.actions.strokes import Presenting
 from btlang.actions.watch import Driving, Watch
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Leading, Listening, Navigation, Perception
 from btlang.robots.geometry import Point
-from btlang.robots.robot import Operation
-from btlang.robots.world import said
+from btlang.robots.robot import Leading, Listening, Navigation, Operation, Perception
+from btlang.robots.worlds.world import said
 
 LOST = 5.0
 """Seconds without a sight of somebody, where he or she was seen last, after which the robot has lost him or her."""

@@ -13,10 +13,10 @@ from btlang.actions.speech import say
 from btlang.actions.strokes import Presenting
 from btlang.actions.watch import Watch
 from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown
-from btlang.robots.body import Body
-from btlang.robots.capabilities import Conversing, Listening
-from btlang.robots.ears import Heard
-from btlang.robots.world import said
+from btlang.robots.bodies.body import Body
+from btlang.robots.ears import HeardText
+from btlang.robots.robot import Conversing, Listening
+from btlang.robots.worlds.world import said
 from btlang.speech.grammar import spoken
 from btlang.speech.marks import without_marks
 from btlang.speech.recogniser import Expected
@@ -128,7 +128,7 @@ def meaning_of(text: str) -> str:
     return max(found)[1] if found else text
 
 
-def _among(robot: Listening, heard: Iterable[Heard], text: str) -> bool:
+def _among(robot: Listening, heard: Iterable[HeardText], text: str) -> bool:
     found = any(holds(each.text, text) for each in heard)
     if not found and robot.ears.problem:
         raise Unknown(f"the ears don't work: {robot.ears.problem}")

@@ -11,10 +11,8 @@ from btlang.actions.motion import Steps, drive_straight
 from btlang.actions.navigation import accomplish
 from btlang.actions.watch import Driving, Watch
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Docking, Navigation
 from btlang.robots.geometry import Pose, wrap
-from btlang.robots.robot import RobotError
-from btlang.robots.station import Station
+from btlang.robots.robot import Docking, Navigation, RobotError, Station
 
 STAGING, APPROACH, CONNECTION, RETRY = "staging", "approach", "connection", "retry"
 """The stages of docking."""

@@ -12,8 +12,7 @@ from btlang.actions.manner import paced
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, go_to, travel
 from btlang.actions.watch import Driving
-from btlang.robots.capabilities import Navigation
-from btlang.robots.robot import Hand
+from btlang.robots.robot import Hand, Navigation
 
 
 class Bringing(Fetching, Meeting, Protocol):

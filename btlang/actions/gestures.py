@@ -9,9 +9,9 @@ from btlang.actions.motion import Steps
 from btlang.actions.navigation import accomplish
 from btlang.actions.points import spot, where
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Base, Gesturing, Joints
 from btlang.robots.geometry import Point
-from btlang.robots.world import said
+from btlang.robots.robot import Base, Gesturing, Joints
+from btlang.robots.worlds.world import said
 
 
 class Aiming(Joints, Base, Protocol):

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from btlang.actions.motion import Steps
 from btlang.actions.watch import Watch
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Joints
-from btlang.robots.gesture import angle_of
+from btlang.robots.bodies.gesture import angle_of
+from btlang.robots.robot import Joints
 
 
 def bring(robot: Joints, targets: Mapping[str, float]) -> Steps:

@@ -8,9 +8,8 @@ from btlang.actions.joints import take
 from btlang.actions.motion import Steps
 from btlang.actions.navigation import accomplish, travel
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Base, Hands, Joints, Navigation
-from btlang.robots.robot import Hand, RobotError
-from btlang.robots.world import said
+from btlang.robots.robot import Base, Hand, Hands, Joints, Navigation, RobotError
+from btlang.robots.worlds.world import said
 
 BESIDE = 1.0
 """Metres from the robot within which something that it doesn't hold has been put down."""

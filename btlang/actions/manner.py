@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 
-from btlang.robots.capabilities import Base
+from btlang.robots.robot import Base
 
 _SHARES = {"slowly": 0.5, "carefully": 0.5, "quietly": 0.4}
 """Of the normal speed. Who goes quickly goes as fast as the robot can."""

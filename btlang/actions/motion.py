@@ -12,7 +12,7 @@ from btlang.actions.points import where
 from btlang.actions.watch import BaseWatch, Driving
 from btlang.engine.leaves.leaf import ActionFailed, unheard
 from btlang.robots.geometry import wrap
-from btlang.robots.progress import Approach, Progress
+from btlang.robots.motion.progress import Approach, DriveProgress
 
 Steps = Generator[None, None, None]
 Report = Callable[[float], object]
@@ -99,7 +99,9 @@ def face_object(robot: Driving, object: str) -> Steps:
 def drive_straight(robot: Driving, distance: float, speed: float | None = None, progress: Report = unheard) -> Steps:
     """Drives `distance` metres along the heading (negative: backwards), keeps the course, and brakes."""
     start, watch = robot.pose, BaseWatch(robot)
-    bounds = Progress(distance, _CLOSE_ENOUGH, False, lambda: robot.time, robot.body.patience, lambda: robot.limited_by)
+    bounds = DriveProgress(
+        distance, _CLOSE_ENOUGH, False, lambda: robot.time, robot.body.patience, lambda: robot.limited_by
+    )
     driving = robot.body.driving
     limit = min(driving.speed if speed is None else abs(speed), driving.top_speed)
     approach = Approach(limit, 3.0, driving.slowing, _SLOWEST)
@@ -125,7 +127,7 @@ def turn(robot: Driving, angle: float, progress: Report = unheard) -> Steps:
     heading, turned, watch = robot.pose.heading, 0.0, BaseWatch(robot)
     turning = robot.body.turning
     approach = Approach(turning.speed, 4.0, turning.slowing, _SLOWEST_TURN)
-    bounds = Progress(angle, _ANGLE_CLOSE_ENOUGH, True, lambda: robot.time, robot.body.patience)
+    bounds = DriveProgress(angle, _ANGLE_CLOSE_ENOUGH, True, lambda: robot.time, robot.body.patience)
     try:
         while True:
             turned += wrap(robot.pose.heading - heading)

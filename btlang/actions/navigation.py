@@ -8,12 +8,11 @@ from btlang.actions.manner import paced
 from btlang.actions.motion import Steps
 from btlang.actions.points import where
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Base, Navigation
 from btlang.robots.geometry import Pose
-from btlang.robots.likeness import unseen
-from btlang.robots.relations import related_words
-from btlang.robots.robot import Operation, RobotError
-from btlang.robots.world import said
+from btlang.robots.robot import Base, Navigation, Operation, RobotError
+from btlang.robots.worlds.descriptions import related_words
+from btlang.robots.worlds.likeness import unseen
+from btlang.robots.worlds.world import said
 
 PASSED = 0.5
 """Metres from a place at which the robot has come past it."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.robots.capabilities import Base
+from btlang.robots.robot import Base
 
 
 def described(robot: Base, type: str, **parts: str) -> list[str]:

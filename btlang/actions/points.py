@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from btlang.robots.capabilities import Base
 from btlang.robots.geometry import Point
-from btlang.robots.robot import RobotError
+from btlang.robots.robot import Base, RobotError
 
 
 def where(robot: Base, place: str | None, x: float | None, y: float | None) -> Point:

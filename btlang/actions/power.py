@@ -9,7 +9,7 @@ from btlang.actions.motion import Steps, drive_straight
 from btlang.actions.navigation import accomplish
 from btlang.actions.watch import Driving, Watch
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Docking, Power
+from btlang.robots.robot import Docking, Power
 
 
 class Undocking(Driving, Docking, Protocol):

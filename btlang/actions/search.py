@@ -13,8 +13,8 @@ from btlang.actions.points import spot
 from btlang.actions.sensing import holding
 from btlang.actions.watch import Driving, Watch
 from btlang.engine.leaves.leaf import ActionFailed, Failed
-from btlang.robots.capabilities import Hands, Navigation, Perception
-from btlang.robots.world import said
+from btlang.robots.robot import Hands, Navigation, Perception
+from btlang.robots.worlds.world import said
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

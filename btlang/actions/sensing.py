@@ -6,9 +6,8 @@ from math import dist, inf, radians
 
 from btlang.actions.points import where
 from btlang.engine.leaves.leaf import Failed
-from btlang.robots.capabilities import Base, Docking, Hands, Navigation, Power, Sensors
 from btlang.robots.geometry import Point
-from btlang.robots.robot import RobotError, SensorSilent
+from btlang.robots.robot import Base, Docking, Hands, Navigation, Power, RobotError, Sensors, SensorSilent
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from btlang.actions.joints import take
 from btlang.actions.motion import Steps, turn
 from btlang.actions.watch import Driving, Watch
-from btlang.robots.capabilities import Joints
+from btlang.robots.robot import Joints
 
 _BOWED = 1.0  # seconds
 

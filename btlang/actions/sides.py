@@ -8,10 +8,9 @@ from btlang.actions.manner import paced
 from btlang.actions.motion import Steps
 from btlang.actions.navigation import accomplish
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Navigation
 from btlang.robots.geometry import Point, Pose, centre_of
-from btlang.robots.robot import RobotError
-from btlang.robots.world import said
+from btlang.robots.robot import Navigation, RobotError
+from btlang.robots.worlds.world import said
 
 _BESIDE = 1.0
 """Metres from a thing at which the robot stands that goes to a side of it."""

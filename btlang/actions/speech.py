@@ -5,7 +5,7 @@ from __future__ import annotations
 from btlang.actions.motion import Steps
 from btlang.actions.strokes import Presenting, Strokes
 from btlang.actions.watch import Watch
-from btlang.robots.capabilities import Voice
+from btlang.robots.robot import Voice
 from btlang.speech.marks import Mark, read_marks, sentence_start
 
 TYPE_CHECKING = False

@@ -6,10 +6,9 @@ from collections.abc import Iterator, Sequence
 from typing import Protocol
 
 from btlang.record import Record
-from btlang.robots.capabilities import Gesturing, Operation, Voice
 from btlang.robots.geometry import Point
-from btlang.robots.robot import RobotError
-from btlang.robots.said_gestures import said_gesture
+from btlang.robots.preflight import said_gesture
+from btlang.robots.robot import Gesturing, Operation, RobotError, Voice
 from btlang.speech.marks import Mark
 
 _LOOKS_AHEAD = 4.0  # seconds before a word in which the way to a stroke is planned

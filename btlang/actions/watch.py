@@ -6,7 +6,7 @@ from collections.abc import Generator
 from typing import Protocol
 
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Base, Machine, Power, Sensors
+from btlang.robots.robot import Base, Machine, Power, Sensors
 
 STUCK = "the wheels turn but the robot doesn't move"
 

@@ -10,9 +10,9 @@ from btlang.actions.navigation import accomplish, over_border, travel
 from btlang.actions.points import where
 from btlang.actions.watch import Driving
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Cautious, Handling, Messenger, Navigation, Perception
 from btlang.robots.geometry import centre_of
-from btlang.robots.world import said
+from btlang.robots.robot import Cautious, Handling, Messenger, Navigation, Perception
+from btlang.robots.worlds.world import said
 
 
 class Doorkeeping(Navigation, Handling, Protocol):

@@ -8,10 +8,10 @@ from math import cos, degrees, hypot, inf, radians, sin
 from btlang.devices.device_set import Reads, reader
 from btlang.devices.driver import DeviceError, DeviceSilent
 from btlang.devices.kinds import Motion, Pressed, Wheels, WheelSpeeds
-from btlang.robots.base import at_most, clipped_speed, towards
-from btlang.robots.body import Body
+from btlang.robots.bodies.body import Body
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.motion.guard.guard import FASTEST
+from btlang.robots.simulation.base import at_most, clipped_speed, towards
 
 _STUCK_AFTER = 2.0  # seconds: a faster base the guard stops before, with what the odometry shows
 _REST = 0.002  # metres a second: less is noise of the encoders

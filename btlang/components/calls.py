@@ -9,7 +9,7 @@ from queue import Empty, SimpleQueue
 
 from btlang.components.plain import refused, value_of
 from btlang.engine.leaves.leaf import ActionFailed, Failed, reason_text
-from btlang.robots.capabilities import Robot
+from btlang.robots.robot import Robot
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ class RemoteRobot:
 
 
 class RemoteOperation:
-    """See btlang.robots.capabilities.Operation."""
+    """See btlang.robots.robot.Operation."""
 
     def __init__(self, call: Call, number: int) -> None:
         self._call, self._number = call, number

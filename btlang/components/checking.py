@@ -17,10 +17,10 @@ from btlang.devices.kinds import KINDS
 from btlang.devices.simulated import SimulatedDevice
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.body import Body, ComponentPart, Device
-from btlang.robots.body_file import BodyError, load_body
-from btlang.robots.data_file import DataFileError, as_mission_error, placed
-from btlang.robots.gesture_words import gesture_words
+from btlang.robots.bodies.body import Body, ComponentPart, Device
+from btlang.robots.bodies.body_file import BodyError, load_body
+from btlang.robots.bodies.gesture_words import gesture_words
+from btlang.robots.files import DataFileError, as_mission_error, placed
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem
 from btlang.vocabulary.capabilities import CAPABILITIES

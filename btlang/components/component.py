@@ -101,7 +101,7 @@ class Component:
     name = ""
     """The one in the robot file."""
     body: Any = None
-    """What the robot file says of the body: see btlang.robots.body.Body."""
+    """What the robot file says of the body: see btlang.robots.bodies.body.Body."""
     _devices: Mapping[str, Any] = {}
     _report_event: Callable[[str, Mapping[str, Any]], object] = staticmethod(lambda kind, data: None)
 

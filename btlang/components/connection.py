@@ -18,9 +18,9 @@ from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import DeviceError
 from btlang.devices.simulated import twin
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.body_file import unusable_robot
+from btlang.robots.bodies.body_file import unusable_robot
 from btlang.robots.platforms import node_function
-from btlang.robots.simulation import Simulation
+from btlang.robots.simulation.connection import Simulation
 from btlang.run.events import RobotEvent
 from btlang.speech.recogniser import RecogniserError
 from btlang.vocabulary.entry import COMPARISONS, MEASURED
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from btlang.components.host import Host
     from btlang.engine.leaves.leaf import LeafBinding
-    from btlang.robots.body import Body, ComponentPart, RosNode
+    from btlang.robots.bodies.body import Body, ComponentPart, RosNode
     from btlang.run.bus import Bus
     from btlang.run.connection import Connection
     from btlang.run.controls import Controls

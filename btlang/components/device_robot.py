@@ -11,12 +11,12 @@ from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import DeviceError
 from btlang.devices.drivers import SIMULATED
 from btlang.devices.simulated import twin, twins
-from btlang.robots.body import Sensor
-from btlang.robots.body_file import unusable_robot
+from btlang.robots.bodies.body import Sensor
+from btlang.robots.bodies.body_file import unusable_robot
 from btlang.robots.platforms import ALL
 from btlang.robots.robot import RobotError
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.simulation import Simulation
+from btlang.robots.simulation.connection import Simulation
+from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.run.controls import Controls
 from btlang.run.pace import Pace
 
@@ -24,10 +24,10 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.robots.body import Body, Device
-    from btlang.robots.obstacles import Obstacles
+    from btlang.robots.bodies.body import Body, Device
     from btlang.robots.parts import Parts
-    from btlang.robots.world import World
+    from btlang.robots.worlds.obstacles import Obstacles
+    from btlang.robots.worlds.world import World
 
 _CONTROL = 0.05  # seconds between two looks at the devices, however slowly a mission ticks
 _EYES = Sensor("scanner", "", 100.0)  # of the twin of a robot without a scanner, for its other sensors

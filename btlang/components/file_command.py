@@ -9,10 +9,10 @@ from btlang.components.component import ComponentError
 from btlang.components.order import levels
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
-from btlang.robots.body import Body, ComponentPart
-from btlang.robots.body_file import BodyError, read_body
-from btlang.robots.data_file import as_mission_error
-from btlang.robots.motion.urdf import urdf
+from btlang.robots.bodies.body import Body, ComponentPart
+from btlang.robots.bodies.body_file import BodyError, read_body
+from btlang.robots.bodies.urdf import urdf
+from btlang.robots.files import as_mission_error
 from btlang.text.escaping import one_line
 from btlang.text.output import pass_on, show
 from btlang.text.source import Source
@@ -43,7 +43,7 @@ def serve_file(act: str, path: str) -> int:
 
 
 def _imported(source: Source) -> str:
-    from btlang.robots.motion.urdf_reader import read_urdf  # brings numpy
+    from btlang.robots.bodies.urdf import read_urdf  # brings numpy
 
     try:
         return read_urdf(source).toml

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 
 from btlang.actions.conversation import MEANINGS, answers, meaning_of
 from btlang.devices.kinds import Pressed, Reading, Sound
-from btlang.robots.ears_file import recogniser_of
+from btlang.robots.bodies.speech_tables import recogniser_of
 from btlang.robots.robot import RobotError
 from btlang.speech.attention import Attention
 from btlang.speech.listener import Listener
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.devices.device_set import DeviceSet
-    from btlang.robots.body import Body
+    from btlang.robots.bodies.body import Body
 
 TALK = "talk"
 """In the name of the button that is held while somebody speaks."""

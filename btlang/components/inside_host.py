@@ -11,13 +11,13 @@ from btlang.components.component import Component, ComponentError
 from btlang.components.life_cycle import ACTIVE, TRANSITIONS, UNCONFIGURED
 from btlang.components.location import describe, load_class
 from btlang.engine.leaves.leaf import ActionFailed, NotThere, described, reason_of
-from btlang.robots.proxy import RobotProxy
+from btlang.robots.command_gate import RobotProxy
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.robots.body import Body, ComponentPart
+    from btlang.robots.bodies.body import Body, ComponentPart
 
 
 class InsideHost:

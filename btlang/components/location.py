@@ -10,7 +10,7 @@ from inspect import signature
 
 from btlang.components.component import Component, ComponentError, ParameterError
 from btlang.engine.leaves.leaf import described
-from btlang.robots.modules import module_of
+from btlang.robots.files import module_of
 from btlang.text.output import pass_on, show
 
 TYPE_CHECKING = False

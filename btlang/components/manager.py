@@ -12,7 +12,7 @@ from btlang.components.life_cycle import ACTIVE, FINALIZED, INACTIVE, UNCONFIGUR
 from btlang.components.location import located
 from btlang.engine.leaves.leaf import ActionFailed, NotThere, described
 from btlang.record import Record
-from btlang.robots.body import ComponentPart
+from btlang.robots.bodies.body import ComponentPart
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -11,21 +11,19 @@ from btlang.components.servos import servo_angle
 from btlang.devices.device_set import DeviceSet, Reads, reader
 from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import Charge, Grip, GripTarget, JointTarget, Play, Shown
-from btlang.robots.body import Body
+from btlang.robots.bodies.body import Body
 from btlang.robots.geometry import Pose
-from btlang.robots.hands import Hands
-from btlang.robots.joints import clipped, joint_of
-from btlang.robots.motion.guard.joints import JointProgress
-from btlang.robots.obstacles import Obstacles
+from btlang.robots.motion.guard.tracking import JointProgress
 from btlang.robots.parts import JointsPart, Parts
-from btlang.robots.power import NO_CONTACT
-from btlang.robots.robot import Hand, RobotError
-from btlang.robots.voice import Voice
-from btlang.robots.world import World, said
+from btlang.robots.robot import Hand, RobotError, clipped, joint_of
+from btlang.robots.simulation.parts import NO_CONTACT, SimulatedHands
+from btlang.robots.voice import TimedVoice
+from btlang.robots.worlds.obstacles import Obstacles
+from btlang.robots.worlds.world import World, said
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.robots.capabilities import Operation
+    from btlang.robots.robot import Operation
 
 BUMPER = "bumper"
 _FULL = 100.0  # percent
@@ -60,7 +58,7 @@ def device_parts(
         DevicePower(devices.first("battery"), readers),
         lambda pose: sensors.scan(),
         joints,
-        DeviceHands(body, readers, Hands(obstacles, world.names.objects, body)),
+        DeviceHands(body, readers, SimulatedHands(obstacles, world.names.objects, body)),
         DeviceVoice(body, readers, devices.first("speaker"), displays, joints),
         sensors.readings,
     )
@@ -179,7 +177,7 @@ class DeviceJoints:
 
 
 class Gripping:
-    """See btlang.robots.capabilities.Operation: a hand closes or opens. `report` gets whether something is in it."""
+    """See btlang.robots.robot.Operation: a hand closes or opens. `report` gets whether something is in it."""
 
     def __init__(self, name: str, device: Reads, closes: bool, report: Callable[[bool], object]) -> None:
         self._name, self._device, self._closes, self._report = name, device, closes, report
@@ -219,7 +217,7 @@ class DeviceHands:
     What is in one is what was nearest to it, as far as the robot knows where things are.
     """
 
-    def __init__(self, body: Body, devices: Mapping[str, Reads], known: Hands) -> None:
+    def __init__(self, body: Body, devices: Mapping[str, Reads], known: SimulatedHands) -> None:
         self._body, self._devices, self._known = body, devices, known
         self.held: dict[Hand, str] = {}
         self._grippings: dict[Hand, Gripping] = {}
@@ -279,7 +277,7 @@ class DeviceHands:
         return gripping
 
 
-class DeviceVoice(Voice):
+class DeviceVoice(TimedVoice):
     """The voice as it is simulated, with a speaker that plays it, and displays that show what is printed."""
 
     def __init__(

@@ -23,13 +23,13 @@ from btlang.components.plain import packed, refused, unpacked
 from btlang.components.remote_leaf import RemoteLeaf, Request
 from btlang.devices.driver import DeviceError
 from btlang.engine.leaves.leaf import ActionFailed, NotThere, Unknown, described
-from btlang.robots.sockets import socket_folder
+from btlang.robots.files import socket_folder
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.robots.body import ComponentPart
+    from btlang.robots.bodies.body import ComponentPart
 
 _BEAT = 0.1  # seconds between two looks at it
 _ANSWER = 0.2  # seconds that a tick waits for a condition: late is better than not known

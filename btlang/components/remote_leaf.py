@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from btlang.components.plain import refused, value_of
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.proxy import RobotProxy
+from btlang.robots.command_gate import RobotProxy
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -8,13 +8,13 @@ from math import inf
 from btlang.devices.device_set import DeviceSet, reader
 from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import Distance, Pressed, Scan
-from btlang.robots.body import Sensor
+from btlang.robots.bodies.body import Sensor
 from btlang.robots.geometry import CENTRE
 from btlang.robots.motion.guard.readings import ContactReading, ObstacleReading, RangeReading, ScanReading
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.robots.scan import Array
+    from btlang.robots.worlds.scan import Array
 
 
 class DeviceSensors:
@@ -30,7 +30,7 @@ class DeviceSensors:
         self._seen: tuple[Scan, Array, float, float] | None = None
 
     def scan(self) -> Array:
-        """The distances around the centre; see btlang.robots.capabilities.Sensors. Raises DeviceSilent."""
+        """The distances around the centre; see btlang.robots.robot.Sensors. Raises DeviceSilent."""
         return self._look()[0]
 
     def readings(self, now: float) -> list[ObstacleReading]:
@@ -67,7 +67,7 @@ class DeviceSensors:
         if self._seen is None or self._seen[0] is not reading:
             import numpy as np  # most missions need none
 
-            from btlang.robots.scan import around, summary
+            from btlang.robots.worlds.scan import around, summary
 
             ranges = np.array(reading.ranges, dtype=np.float64)
             ranges[ranges == -inf] = 0.0  # too close to be measured

@@ -13,17 +13,16 @@ from btlang.devices.device_set import Reads
 from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import JointTarget
 from btlang.devices.loop import DeviceLoop
-from btlang.robots.body import Body
-from btlang.robots.gesture import Gesture, joints_of
-from btlang.robots.joints import joint_of
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.gesture import Gesture, joints_of
 from btlang.robots.motion.course import PERIOD
-from btlang.robots.motion.guard.joints import JointProgress
+from btlang.robots.motion.guard.tracking import JointProgress
 from btlang.robots.motion.smooth_joints import SmoothJoints
-from btlang.robots.robot import RobotError
+from btlang.robots.robot import RobotError, joint_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.robots.capabilities import Operation
+    from btlang.robots.robot import Operation
 
 _LATE = 3 * PERIOD
 """Seconds that one turn of the loop counts at most: after a pause the joints go on from where they are."""

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from btlang.devices.device_set import Reads, reader
 from btlang.devices.kinds import JointState
-from btlang.robots.body import Body
-from btlang.robots.joints import joint_of
+from btlang.robots.bodies.body import Body
+from btlang.robots.robot import joint_of
 
 
 def servo_angle(body: Body, devices: Mapping[str, Reads], name: str) -> float:

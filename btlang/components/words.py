@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from btlang.components.component import ComponentError
 from btlang.components.location import words_file
-from btlang.robots.body_file import unusable_robot
+from btlang.robots.bodies.body_file import unusable_robot
 from btlang.robots.registry import body_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.robots.body import Body
+    from btlang.robots.bodies.body import Body
     from btlang.text.source import Source
 
 
@@ -29,7 +29,7 @@ def words_of(body: Body) -> list[str]:
     except ComponentError as problem:
         raise unusable_robot(problem) from None
     if body.gestures:
-        from btlang.robots.gesture_words import gesture_words  # most robots have none
+        from btlang.robots.bodies.gesture_words import gesture_words  # most robots have none
 
         files.append(gesture_words(body))
     return [file for file in dict.fromkeys(files) if file is not None]

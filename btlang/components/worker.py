@@ -34,7 +34,7 @@ from btlang.components.life_cycle import (
 from btlang.components.location import describe, load_class
 from btlang.components.plain import packed, refused, unpacked
 from btlang.engine.leaves.leaf import described
-from btlang.robots.body_file import load_body
+from btlang.robots.bodies.body_file import load_body
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.robots.body import Body, Device
+    from btlang.robots.bodies.body import Body, Device
 
 _FIRST = 3.0  # seconds
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 from btlang.devices.kinds import Command, Reading
-from btlang.robots.body import Device
+from btlang.robots.bodies.body import Device
 from btlang.robots.robot import RobotError, SensorSilent
 
 __all__ = ["Device", "DeviceError", "DeviceSilent", "Driver", "MakesDriver"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from btlang.devices.driver import DeviceError
 from btlang.engine.leaves.leaf import described
-from btlang.robots.modules import module_of
+from btlang.robots.files import module_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from btlang.devices.driver import Device, DeviceError, DeviceSilent, Driver
 from btlang.devices.kinds import KINDS, Charge, Command, JointTarget, Reading
 from btlang.devices.value_checks import check_command, wrong_content, wrong_field
 from btlang.engine.leaves.leaf import described
-from btlang.robots.charge import ChargeCheck
+from btlang.robots.motion.guard.readings import ChargeCheck
 
 SILENCE = 0.2
 """Seconds after which a command no longer counts, and after which a device that moves is silent."""

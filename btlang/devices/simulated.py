@@ -33,7 +33,7 @@ from btlang.devices.kinds import (
 )
 from btlang.devices.loop import SILENCE
 from btlang.devices.value_checks import check_command
-from btlang.robots.body import Body
+from btlang.robots.bodies.body import Body
 from btlang.robots.geometry import CENTRE
 from btlang.robots.robot import RobotError
 
@@ -155,7 +155,7 @@ class SimulatedDevice:
         return Distance(nearest if nearest <= float(self._option("range", 4.0)) else inf)
 
     def _scan(self) -> Scan:
-        from btlang.robots.scan import as_measured  # brings numpy
+        from btlang.robots.worlds.scan import as_measured  # brings numpy
 
         scanner = self._robot.body.sensor("scanner")
         ranges: Any = as_measured(self._robot.scan(), CENTRE if scanner is None else scanner.pose)

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.reading import read_source
-from btlang.robots.body import Body
-from btlang.robots.data_file import as_mission_error, placed
-from btlang.robots.gesture import Gesture
-from btlang.robots.gesture_file import GestureError, load_gestures
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.gesture import Gesture
+from btlang.robots.bodies.gesture_file import GestureError, load_gestures
+from btlang.robots.files import as_mission_error, placed
 from btlang.robots.rehearsal import Rehearsal, rehearse
 from btlang.text.source import Source, Span
 from btlang.text.toml_positions import positions

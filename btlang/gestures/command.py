@@ -15,9 +15,9 @@ from btlang.diagnostics.reading import read_source
 from btlang.gestures.checking import check_file
 from btlang.gestures.recording import record
 from btlang.pictures.files import MOVING, STILL, check_picture, ending
-from btlang.robots.body import Body
-from btlang.robots.gesture import Gesture
-from btlang.robots.gesture_file import TARGET, phrase_forms
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.gesture import Gesture
+from btlang.robots.bodies.gesture_file import TARGET, phrase_forms
 from btlang.robots.registry import Connector, body_of, runs_in_real_time, runs_on
 from btlang.robots.rehearsal import rehearse
 from btlang.text.output import show

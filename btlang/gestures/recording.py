@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterable, Iterator
 from btlang.backends.files import write_file
 from btlang.devices.driver import DeviceError
 from btlang.gestures.loose_joints import loose, servos_of
-from btlang.robots.body import Body
-from btlang.robots.data_file import as_mission_error
-from btlang.robots.gesture_file import GestureError, load_gestures
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.gesture_file import GestureError, load_gestures
+from btlang.robots.files import as_mission_error
 from btlang.text.output import show
 from btlang.text.source import Source
 from btlang.text.toml_writing import toml_key, toml_value

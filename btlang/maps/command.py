@@ -12,8 +12,8 @@ from btlang.diagnostics.reading import read_source, unwritable
 from btlang.maps.options import ACTS, TARGETS, USUAL_RESOLUTION
 from btlang.maps.summary import summary
 from btlang.robots.registry import body_of
-from btlang.robots.world_problem import read_world
-from btlang.robots.world_writing import to_toml
+from btlang.robots.worlds.world_file import read_world
+from btlang.robots.worlds.world_writing import to_toml
 from btlang.run.robot_state import RobotState
 from btlang.text.escaping import one_line
 from btlang.text.output import WIDEST, can_draw, is_unicode, show
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from btlang.diagnostics.diagnostic import Diagnostic
-    from btlang.robots.body import Body
-    from btlang.robots.world import World
+    from btlang.robots.bodies.body import Body
+    from btlang.robots.worlds.world import World
 
 _BAD_INPUT = 2
 _ROWS = 10  # that the map leaves for the names

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.data_file import DataFileError
+from btlang.robots.files import DataFileError
 from btlang.text.json_text import NestedTooDeep, load_json
 from btlang.text.source import NOWHERE, Source
 

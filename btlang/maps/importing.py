@@ -14,11 +14,11 @@ from btlang.maps.data_text import ForeignFileError, read_data
 from btlang.maps.notation import is_world, read_world_data
 from btlang.maps.occupancy import is_map, read_map
 from btlang.maps.way_points import way_points
-from btlang.robots.data_file import as_mission_error
+from btlang.robots.files import as_mission_error
 from btlang.robots.geometry import Point, Pose, Segment, contains
-from btlang.robots.world import Place, World
-from btlang.robots.world_bounds import outer_wall
-from btlang.robots.world_file import WorldError, has_room
+from btlang.robots.worlds.world import Place, World
+from btlang.robots.worlds.world_bounds import outer_wall
+from btlang.robots.worlds.world_file import WorldError, has_room
 from btlang.text.source import NOWHERE
 from btlang.text.toml_table import Problem
 

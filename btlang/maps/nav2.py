@@ -8,8 +8,8 @@ from math import cos, radians, sin
 import numpy as np
 
 from btlang.maps.raster import Grid, walls_in
-from btlang.robots.world import World
-from btlang.robots.world_bounds import outer_wall
+from btlang.robots.worlds.world import World
+from btlang.robots.worlds.world_bounds import outer_wall
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

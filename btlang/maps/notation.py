@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 
 from btlang.maps.data_text import yaml_module
-from btlang.robots.world import World
-from btlang.robots.world_file import world_from
-from btlang.robots.world_writing import as_data
+from btlang.robots.worlds.world import World
+from btlang.robots.worlds.world_file import world_from
+from btlang.robots.worlds.world_writing import as_data
 from btlang.text.toml_table import Problem
 
 TYPE_CHECKING = False

@@ -9,7 +9,7 @@ import numpy as np
 
 from btlang.maps.images import MOST_CELLS
 from btlang.robots.geometry import Point, Segment
-from btlang.robots.world import World
+from btlang.robots.worlds.world import World
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btlang.robots.world import Person, World, WorldObject, Zone
+from btlang.robots.worlds.world import Person, World, WorldObject, Zone
 from btlang.text.escaping import one_line
 
 

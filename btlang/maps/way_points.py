@@ -7,7 +7,7 @@ from math import degrees
 
 from btlang.maps.fields import number, numbers, shown, yaw
 from btlang.robots.geometry import wrap
-from btlang.robots.world import Place
+from btlang.robots.worlds.world import Place
 from btlang.text.toml_table import Problem
 
 TYPE_CHECKING = False

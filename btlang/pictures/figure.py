@@ -9,9 +9,9 @@ import numpy as np
 
 from btlang.pictures.canvas import Canvas
 from btlang.pictures.drawing import drawing
-from btlang.robots.body import Body
-from btlang.robots.gesture import Gesture
-from btlang.robots.joint_tables import BASE
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.gesture import Gesture
+from btlang.robots.bodies.joint_tables import BASE
 from btlang.robots.motion.kinematics import Kinematics
 from btlang.robots.rehearsal import STEP, Rehearsal
 

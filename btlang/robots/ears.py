@@ -1,4 +1,4 @@
-"""What the robot hears, what it listens for at this moment, and the question that it waits for an answer to."""
+"""What a robot hears and listens for, the question that it waits for an answer to, and files with answers."""
 
 from __future__ import annotations
 
@@ -7,18 +7,22 @@ from contextlib import contextmanager
 from math import inf
 
 from btlang.record import Record
+from btlang.robots.files import DataFileError, as_mission_error, load_data
 from btlang.speech.grammar import spoken
 from btlang.speech.recogniser import Expected
+from btlang.text.source import Source
+from btlang.text.toml_table import Problem, Table
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+
 _MOST = 100
 _LISTENS = 5.0  # seconds for which it listens for what a condition has looked for
 
 
-class Heard(Record):
+class HeardText(Record):
     """A text that somebody said at a second of the run; `who` is "" where that isn't known."""
 
     text: str
@@ -30,7 +34,7 @@ class Ears:
     """The latest 100 texts. Who types an answer, and whoever speaks in the world, is heard by `hear`."""
 
     def __init__(self) -> None:
-        self._heard: list[Heard] = []
+        self._heard: list[HeardText] = []
         self._count = 0
         self._awaited: list[Expected] = []
         self._looks: dict[str, tuple[float, int, int]] = {}
@@ -57,14 +61,14 @@ class Ears:
         """How many texts were heard so far."""
         return self._count
 
-    def since(self, count: int) -> list[Heard]:
+    def since(self, count: int) -> list[HeardText]:
         """What was heard after so many texts, oldest first."""
         new = self._count - count
         return self._heard[-new:] if new > 0 else []
 
     def hear(self, text: str, who: str = "", time: float = 0.0) -> None:
         """Somebody said this, or typed it."""
-        self._heard = [*self._heard[-_MOST + 1 :], Heard(text, who, time)]
+        self._heard = [*self._heard[-_MOST + 1 :], HeardText(text, who, time)]
         self._count += 1
 
     @contextmanager
@@ -76,7 +80,7 @@ class Ears:
         finally:
             self._awaited = [each for each in self._awaited if each is not expected]
 
-    def news(self, text: str, now: float) -> list[Heard]:
+    def news(self, text: str, now: float) -> list[HeardText]:
         """What was heard since this text was last looked for, and may contain it; nothing at the first look.
 
         The robot listens for the text until 5 seconds after the last look. All who look at one time see the same.
@@ -96,3 +100,31 @@ class Ears:
         for each in self._awaited:
             found |= each
         return found
+
+
+class AnswersError(DataFileError):
+    """A file of answers that cannot be used."""
+
+    code = "BT073"
+
+
+def read_answers(file: str | Source) -> dict[str, list[str]]:
+    """The answers by words of the question, "*" by any: `"coffee" = "yes"`, or a list of them one after the other.
+
+    Raises MissionError (BT073).
+    """
+    try:
+        return load_data(file, "answers", _answers, AnswersError)
+    except AnswersError as error:
+        raise as_mission_error(error) from None
+
+
+def _answers(top: Table) -> dict[str, list[str]]:
+    return {words: _texts(top, words) for words in top.keys()}  # noqa: SIM118 - it is no dict
+
+
+def _texts(top: Table, words: str) -> list[str]:
+    texts = list(top.texts(words)) if top.is_list(words) else [top.text(words)]
+    if not texts:
+        raise Problem(f'an answer is a text or a list of texts; write "{words}" = "yes"', words)
+    return texts

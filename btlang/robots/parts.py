@@ -6,21 +6,21 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 from btlang.record import Record
-from btlang.robots.body import Body
-from btlang.robots.capabilities import Hand, Operation
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.gesture import Gesture
 from btlang.robots.geometry import Pose
-from btlang.robots.gesture import Gesture
+from btlang.robots.robot import Hand, Operation
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.motion.guard.readings import ObstacleReading
     from btlang.robots.motion.smooth_joints import SmoothJoints
-    from btlang.robots.scan import Array
+    from btlang.robots.worlds.scan import Array
     from btlang.speech.engine import Utterance
 
 
 class BasePart(Protocol):
-    """The wheels, and where they have brought the robot; see btlang.robots.base.Base."""
+    """The wheels, and where they have brought the robot; see btlang.robots.simulation.base.Base."""
 
     body: Body
     travelled: float
@@ -51,7 +51,7 @@ class BasePart(Protocol):
 
 
 class PowerPart(Protocol):
-    """The battery and the dock; see btlang.robots.power.Power."""
+    """The battery and the dock; see btlang.robots.simulation.parts.Power."""
 
     docked: bool
 
@@ -67,7 +67,7 @@ class PowerPart(Protocol):
 
 
 class JointsPart(Protocol):
-    """The joints; see btlang.robots.joints.Joints."""
+    """The joints; see btlang.robots.simulation.parts.Joints."""
 
     @property
     def moving(self) -> bool: ...
@@ -96,7 +96,7 @@ class IdlePart(Protocol):
 
 
 class HandsPart(Protocol):
-    """The hands; see btlang.robots.hands.Hands. What isn't done at once is an operation in place of a name."""
+    """The hands; see SimulatedHands. What isn't done at once is an operation in place of a name."""
 
     @property
     def held(self) -> Mapping[Hand, str]: ...
@@ -128,7 +128,7 @@ class VoicePart(Protocol):
 
 
 class Parts(Record):
-    """All parts of a robot. `scan` gives the distances from a pose, see btlang.robots.capabilities.Sensors.
+    """All parts of a robot. `scan` gives the distances from a pose, see btlang.robots.robot.Sensors.
 
     `sensors` gives the readings of a second of the run by which the guard lets the base drive.
     """

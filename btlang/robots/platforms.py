@@ -1,7 +1,8 @@
-"""What a robot can run on: by name, what connects to it."""
+"""What a robot can run on: by name, what connects to it; and the options of the command line about robots."""
 
 from __future__ import annotations
 
+from argparse import ArgumentParser
 from importlib import import_module
 
 TYPE_CHECKING = False
@@ -11,8 +12,9 @@ if TYPE_CHECKING:
 
     from btlang.run.connection import Connection
 
+
 ROBOTS = {
-    "simulated": "btlang.robots.simulation:Simulation",
+    "simulated": "btlang.robots.simulation.connection:Simulation",
     "devices": "btlang.components.device_robot:connect_devices",
     "ros": "btlang.ros.command:connect_ros",
     "actions": "btlang.ros.command:connect_actions",
@@ -48,3 +50,26 @@ def _imported(place: str) -> Callable[..., Any]:
     module, _, function = place.partition(":")
     made: Callable[..., Any] = getattr(import_module(module), function)
     return made
+
+
+def add_simulate(parser: ArgumentParser) -> None:
+    """The option --simulate."""
+    parser.add_argument(
+        "--simulate", action="append", nargs="?", const=ALL, default=[], metavar="DEVICE",
+        help="simulate all devices of the robot file, or only those of this name or kind",
+    )  # fmt: skip
+
+
+def add_robot_words(parser: ArgumentParser) -> None:
+    """The option --robot of a verb that only reads missions."""
+    parser.add_argument(
+        "--robot",
+        default="",
+        metavar="ROBOT",
+        help="read missions with the words and the world of this robot: a robot file or a name",
+    )
+
+
+def add_world(parser: ArgumentParser) -> None:
+    """The option --world."""
+    parser.add_argument("--world", metavar="FILE", help="world file (default: the world that ships)")

@@ -9,7 +9,7 @@ from functools import partial
 from importlib.util import find_spec
 
 from btlang.record import Record
-from btlang.robots.body_file import read_body, shipped_bodies, standard_body
+from btlang.robots.bodies.body_file import read_body, shipped_bodies, standard_body
 from btlang.robots.platforms import ALL, ROBOTS, component_function, connection_function
 from btlang.text.source import Source
 from btlang.vocabulary.shipped import BODIES
@@ -18,8 +18,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
-    from btlang.robots.body import Body
-    from btlang.robots.world import World
+    from btlang.robots.bodies.body import Body
+    from btlang.robots.worlds.world import World
     from btlang.run.connection import Connection
 
     Connect: TypeAlias = Callable[[World], Connection]

@@ -19,7 +19,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.robots.body import Body
+    from btlang.robots.bodies.body import Body
     from btlang.vocabulary.entry import Entry
     from btlang.vocabulary.lexicon import Lexicon
 

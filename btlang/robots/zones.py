@@ -8,7 +8,7 @@ from math import dist
 
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Point, centre_of, edges, segment_distance
-from btlang.robots.world import Zone, said
+from btlang.robots.worlds.world import Zone, said
 
 CLEAR = 0.8
 """Metres from the border of a zone at which the robot goes that enters or leaves it."""

@@ -12,8 +12,7 @@ from importlib.util import find_spec
 from btlang.arguments import namespace, robot_on
 from btlang.diagnostics.render import render
 from btlang.passes.lint.allow import not_allowed, not_silenced
-from btlang.robots.options import add_simulate
-from btlang.robots.platforms import ROBOTS
+from btlang.robots.platforms import ROBOTS, add_simulate
 from btlang.robots.registry import connector, runs_in_real_time, runs_on
 from btlang.ros.available import require_interfaces, require_ros, unusable
 from btlang.ros.serving.names import FOLDER
@@ -26,9 +25,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Any
 
-    from btlang.robots.body import Body
+    from btlang.robots.bodies.body import Body
     from btlang.robots.registry import Connector
-    from btlang.robots.world import World
+    from btlang.robots.worlds.world import World
     from btlang.ros.components.host import ComponentNodes
     from btlang.ros.robot.connection import RosConnection
     from btlang.tree.node import Tree

@@ -18,7 +18,7 @@ from sensor_msgs.msg import LaserScan
 
 from btlang.engine.leaves.leaf import Unknown
 from btlang.robots.motion.guard.guard import FASTEST, FASTEST_TURN
-from btlang.robots.motion.guard.stamps import StampCheck
+from btlang.robots.motion.guard.readings import StampCheck
 from btlang.robots.robot import SensorSilent
 from btlang.ros.clocks import AWAKE, SteadyTime
 from btlang.ros.messages import echoes, seconds_of, type_name

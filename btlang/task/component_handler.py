@@ -12,8 +12,8 @@ from btlang.components.manager import Manager
 from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import Image
 from btlang.devices.png import png
-from btlang.robots.body_file import read_body
-from btlang.robots.motion.urdf import urdf
+from btlang.robots.bodies.body_file import read_body
+from btlang.robots.bodies.urdf import urdf
 from btlang.task import messages
 from btlang.task.checks import choice, refused
 from btlang.task.messages import Answer, wrong

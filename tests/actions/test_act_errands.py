@@ -10,8 +10,8 @@ from btlang.engine.blackboard import Blackboard
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError
-from btlang.robots.world import Person, Place, Stop, World, WorldObject
-from btlang.robots.world_file import load_world
+from btlang.robots.worlds.world import Person, Place, Stop, World, WorldObject
+from btlang.robots.worlds.world_file import load_world
 
 
 def hall(*people, objects=(), **changes):

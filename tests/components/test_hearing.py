@@ -16,7 +16,7 @@ from btlang.components import hearing
 from btlang.components.hearing import Hearing
 from btlang.devices.kinds import Sound
 from btlang.engine.leaves.leaf import Unknown
-from btlang.robots.body import Body, Ears
+from btlang.robots.bodies.body import Body, EarsSpec
 from btlang.robots.robot import RobotError
 from btlang.run.events import Event, PartChanged, Said
 from btlang.speech.recogniser import RecogniserSettings, Understood
@@ -79,7 +79,7 @@ class Rig:
 
         self.takes: dict[str, Callable[[Any], object]] = {}
         self.ears, self.said, self.texts = RobotEars(), list[str](), list[str]()
-        body = Body("listener", 0.2, ears=Ears(3.0, "pocketsphinx", RecogniserSettings(push=push), wake))
+        body = Body("listener", 0.2, ears=EarsSpec(3.0, "pocketsphinx", RecogniserSettings(push=push), wake))
         self.robot = SimpleNamespace(
             ears=self.ears, time=0.0, speaking=False, refuses=False, body=body, say=self.said.append, hear=self.hear
         )

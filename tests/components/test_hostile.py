@@ -23,12 +23,12 @@ from btlang.components.plain import packed
 from btlang.components.process_host import ProcessHost
 from btlang.components.remote_leaf import RemoteLeaf
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.body import ComponentPart
+from btlang.robots.bodies.body import ComponentPart
 from btlang.robots.platforms import ALL
 from btlang.robots.registry import connector
 from btlang.robots.robot import RobotError
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world_file import load_world
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world_file import load_world
 from tests.components.robots import robot_file
 from tests.components.test_faults import wait_until
 

@@ -31,8 +31,8 @@ from btlang.devices.kinds import (
     WheelSpeeds,
 )
 from btlang.devices.loop import DeviceLoop, _calibrated, _inverse
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world_file import load_world
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world_file import load_world
 from tests.profiles import searches
 
 SILENCE = 0.06

@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 
 import btlang
-from btlang.robots.body_file import standard_body
+from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.geometry import Pose
 from btlang.robots.motion.guard.readings import ObstacleReading, ScanReading
 from btlang.robots.parts import Parts
 from btlang.robots.robot import SensorSilent
-from btlang.robots.scan import summary
-from btlang.robots.simulated_parts import simulated_parts
-from btlang.robots.simulation import Simulation
-from btlang.robots.world import World
+from btlang.robots.simulation.connection import Simulation
+from btlang.robots.simulation.parts import simulated_parts
+from btlang.robots.worlds.scan import summary
+from btlang.robots.worlds.world import World
 from tests.lies.lies import ODOMETRY, SCANNER, WHEELS, Liar, Lie, OdometrySaid, ScanSaid
 from tests.lies.scene import Result
 from tests.lies.true_robot import RADIUS, Witness

@@ -6,9 +6,9 @@ from math import cos, hypot, inf, radians, sin
 
 import numpy as np
 
-from btlang.robots.base import towards
 from btlang.robots.geometry import Pose, Segment, segment_distance, wrap
-from btlang.robots.scan import Array, scan
+from btlang.robots.simulation.base import towards
+from btlang.robots.worlds.scan import Array, scan
 
 RADIUS = 0.2
 BRAKE = 2.0

@@ -14,7 +14,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.maps.importing import import_world
 from btlang.maps.notation import notation
 from btlang.robots.geometry import Pose
-from btlang.robots.world import World
+from btlang.robots.worlds.world import World
 from tests.profiles import searches
 from tests.robots.random_worlds import worlds
 

@@ -15,7 +15,7 @@ from time import monotonic
 import pytest
 from std_msgs.msg import Float64
 
-from btlang.robots.world_problem import read_world
+from btlang.robots.worlds.world_file import read_world
 from btlang.ros.clocks import RosPace
 from btlang.ros.command import ending_signals
 from btlang.ros.robot.connection import RosConnection

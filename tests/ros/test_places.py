@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from btlang.robots.body_file import standard_body
-from btlang.robots.choices import Choices
+from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError
-from btlang.robots.world_file import load_world
+from btlang.robots.worlds.descriptions import Choices
+from btlang.robots.worlds.world_file import load_world
 from btlang.ros.robot.places import RosPlaces
 from btlang.text.source import Source
 

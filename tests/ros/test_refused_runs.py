@@ -11,7 +11,7 @@ pytest.importorskip("nav2_msgs", reason="nav2_msgs is not installed")
 
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError
-from btlang.robots.world_file import load_world
+from btlang.robots.worlds.world_file import load_world
 from btlang.ros.node import SpunNode
 from btlang.ros.robot.robot import RosRobot
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import pytest
 from geometry_msgs.msg import Twist
 
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world_file import load_world
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world_file import load_world
 from btlang.ros.simulator import base as wheels_module
 from btlang.ros.simulator.base import BaseTopics
 from btlang.ros.simulator.shared import CallQueue

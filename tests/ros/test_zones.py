@@ -11,7 +11,7 @@ from nav_msgs.msg import Path
 
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.robot import RobotError
-from btlang.robots.world import KEEP_OUT, SLOW, Zone
+from btlang.robots.worlds.world import KEEP_OUT, SLOW, Zone
 from btlang.robots.zones import Zones
 from btlang.ros.graph import graph_names
 from btlang.ros.robot.zones import PLAN, SPEED_LIMIT, RosZones, _fault, enters

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from btlang.actions.conversation import answers, meaning_of
 from btlang.record import Record
-from btlang.robots.body import Body, Ears
+from btlang.robots.bodies.body import Body, EarsSpec
 from btlang.speech.attention import Attention
 from btlang.speech.engine import Settings
 from btlang.speech.pocketsphinx import PocketSphinx
@@ -20,7 +20,7 @@ _PIECE = RATE // 10  # bytes: 50 ms, as a microphone gives them
 
 def yes_or_no() -> Expected:
     """All that means yes and no."""
-    return answers(("yes", "no"), Body("ears", 0.2, ears=Ears(3.0)))
+    return answers(("yes", "no"), Body("ears", 0.2, ears=EarsSpec(3.0)))
 
 
 class Count(Record):

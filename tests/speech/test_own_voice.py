@@ -13,8 +13,8 @@ import pytest
 from btlang.components import hearing
 from btlang.components.hearing import Hearing
 from btlang.devices.kinds import Sound
-from btlang.robots.body import Body
-from btlang.robots.body import Ears as EarsOfBody
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.body import EarsSpec as EarsOfBody
 from btlang.robots.ears import Ears
 from btlang.speech.engine import Settings
 from btlang.speech.marks import without_marks

@@ -6,14 +6,13 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from btlang.robots.body import Body
-from btlang.robots.gesture import Gesture, joints_of
-from btlang.robots.joints import clipped, joint_of
-from btlang.robots.motion.braking import brake
-from btlang.robots.motion.course import Limits
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.gesture import Gesture, joints_of
+from btlang.robots.motion.course import JointLimits, brake
 from btlang.robots.motion.kinematics import Kinematics
 from btlang.robots.motion.movements import KeyFrames, Movement, Steps, frames_of
-from btlang.robots.motion.timeline import Play, Timeline
+from btlang.robots.motion.timeline import JointTimeline, PlannedMotion
+from btlang.robots.robot import clipped, joint_of
 
 
 class SmoothJoints:
@@ -22,8 +21,8 @@ class SmoothJoints:
     def __init__(self, body: Body) -> None:
         self._body = body
         self._names = [joint.name for joint in body.joints]
-        self._limits = Limits.of(body.joints)
-        self.timeline = Timeline(body, Kinematics(body))
+        self._limits = JointLimits.of(body.joints)
+        self.timeline = JointTimeline(body, Kinematics(body))
 
     @property
     def moving(self) -> bool:
@@ -82,7 +81,7 @@ class SmoothJoints:
         seconds = max(least, *(self._body.joints[k].unhurried(way) for k, way in ways))
         return self.timeline.idle(joints, goal, seconds)
 
-    def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[Play, float]:
+    def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[PlannedMotion, float]:
         """Sets off to do a gesture or the steps of a posture, with its stroke in `room` seconds or as soon as it can.
 
         All of its angles are numbers. Gives how many times as long it takes as it should, too. Raises RobotError where
@@ -96,7 +95,7 @@ class SmoothJoints:
         movement = self._movement(wanted)
         return self.timeline.soonest(lambda planner, state: planner.soonest(movement, state))
 
-    def _play(self, movement: Movement, room: float | None) -> Play:
+    def _play(self, movement: Movement, room: float | None) -> PlannedMotion:
         return self.timeline.play(
             lambda planner, state, wait: planner.courses(movement, state, None if room is None else room - wait)
         )

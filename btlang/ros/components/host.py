@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.engine.leaves.leaf import LeafBinding
-    from btlang.robots.body import ComponentPart
+    from btlang.robots.bodies.body import ComponentPart
     from btlang.ros.components.services import AwaitedReply
     from btlang.vocabulary.entry import Entry
     from btlang.vocabulary.lexicon import Lexicon

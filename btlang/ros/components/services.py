@@ -19,7 +19,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeVar
 
-    from btlang.robots.body import RosNode
+    from btlang.robots.bodies.body import RosNode
 
     T = TypeVar("T")
 

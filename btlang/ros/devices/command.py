@@ -12,13 +12,13 @@ from btlang.arguments import robot_on
 from btlang.components.device_robot import simulated_devices
 from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import DeviceError
-from btlang.robots.body import Body
-from btlang.robots.body_file import unusable_robot
-from btlang.robots.options import add_simulate, add_world
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.body_file import unusable_robot
+from btlang.robots.platforms import add_simulate, add_world
 from btlang.robots.registry import runs_on
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import World
-from btlang.robots.world_problem import read_world
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world import World
+from btlang.robots.worlds.world_file import read_world
 from btlang.ros.available import require_ros
 from btlang.ros.command import EndingSignals, add_namespace, ending_signals
 from btlang.ros.devices.driver import PACKAGES

@@ -43,7 +43,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.robots.body import Body
+    from btlang.robots.bodies.body import Body
 
 
 TRANSLATIONS: dict[str, type[Translation]] = {

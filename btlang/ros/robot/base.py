@@ -12,8 +12,8 @@ from nav_msgs.msg import Odometry
 from rclpy.duration import Duration
 from rclpy.node import Node
 
+from btlang.robots.command_gate import Latch
 from btlang.robots.geometry import Pose, wrap
-from btlang.robots.latch import Latch
 from btlang.robots.motion.guard.guard import FRESH
 from btlang.robots.motion.guard.readings import OdometryReading
 from btlang.robots.robot import RobotError

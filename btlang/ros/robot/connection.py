@@ -10,10 +10,9 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.body import Body
-from btlang.robots.needs import lacking
-from btlang.robots.preflight import check_mission
-from btlang.robots.world import World
+from btlang.robots.bodies.body import Body
+from btlang.robots.preflight import check_mission, lacking
+from btlang.robots.worlds.world import World
 from btlang.ros.available import OWN, require_interfaces, require_ros
 from btlang.ros.clocks import RosPace, wait_until
 from btlang.ros.graph import absent, full_name, is_connected, mismatch

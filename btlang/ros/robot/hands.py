@@ -9,10 +9,10 @@ from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
-from btlang.robots.body import Body
+from btlang.robots.bodies.body import Body
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import Hand, RobotError
-from btlang.robots.world import said
+from btlang.robots.worlds.world import said
 from btlang.ros.available import optional_interface
 from btlang.ros.robot.places import RosPlaces
 from btlang.ros.robot.services import ServiceCall, Services

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from btlang.record import Record
-from btlang.robots.body import Body
-from btlang.robots.needs import needs_of
+from btlang.robots.bodies.body import Body
+from btlang.robots.preflight import needs_of
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False

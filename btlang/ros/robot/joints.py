@@ -10,10 +10,9 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 
-from btlang.robots.body import Body
-from btlang.robots.joints import clipped, joint_of
-from btlang.robots.motion.guard.joints import JointProgress
-from btlang.robots.robot import RobotError
+from btlang.robots.bodies.body import Body
+from btlang.robots.motion.guard.tracking import JointProgress
+from btlang.robots.robot import RobotError, clipped, joint_of
 from btlang.ros.clocks import AWAKE
 from btlang.ros.messages import trajectory
 from btlang.ros.subscriptions import SubscriptionCache

@@ -18,11 +18,11 @@ from unique_identifier_msgs.msg import UUID
 
 from btlang.engine.leaves.leaf import NotThere
 from btlang.record import Record
-from btlang.robots.body import TOLERANCE
+from btlang.robots.bodies.body import TOLERANCE
 from btlang.robots.geometry import Point, Pose, wrap
 from btlang.robots.robot import RobotError
-from btlang.robots.sight import Sight
-from btlang.robots.world import said
+from btlang.robots.worlds.sight import Sight
+from btlang.robots.worlds.world import said
 from btlang.ros.clocks import AWAKE
 from btlang.ros.goals import unanswered
 from btlang.ros.lease import Lease
@@ -58,7 +58,7 @@ class GoalTask(Record):
 
 
 class ServerGoal:
-    """One goal; see `btlang.robots.capabilities.Operation`. `end` may be called from any thread.
+    """One goal; see `btlang.robots.robot.Operation`. `end` may be called from any thread.
 
     Nothing waits: `step` looks at what has come, so that a server that never answers costs the tick nothing. `spin` has
     a function called in the thread that spins, where alone the client of an action may be used: elsewhere it could
@@ -338,7 +338,7 @@ _AGAIN = 2.0  # seconds between two goals
 
 
 class Pursuit:
-    """See `btlang.robots.capabilities.Operation`. `set_out` sends a goal for where it was seen last; another one is
+    """See `btlang.robots.robot.Operation`. `set_out` sends a goal for where it was seen last; another one is
     sent when it is seen elsewhere. Raises what `set_out` does.
     """
 

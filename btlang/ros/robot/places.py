@@ -11,16 +11,15 @@ from rclpy.node import Node
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool
 
-from btlang.robots.body import Body
+from btlang.robots.bodies.body import Body
 from btlang.robots.geometry import Point, Pose
-from btlang.robots.knowledge import Knowledge
-from btlang.robots.navigation import stand_off
-from btlang.robots.obstacles import Obstacles
-from btlang.robots.planning import Planner
-from btlang.robots.robot import Hand, RobotError
-from btlang.robots.sight import Sight
-from btlang.robots.station import Station
-from btlang.robots.world import OBJECT_RADIUS, PERSON_RADIUS, Person, Thing, World, WorldObject, said
+from btlang.robots.robot import Hand, RobotError, Station
+from btlang.robots.simulation.navigation import stand_off
+from btlang.robots.worlds.knowledge import Knowledge
+from btlang.robots.worlds.obstacles import Obstacles
+from btlang.robots.worlds.planning import PathPlanner
+from btlang.robots.worlds.sight import Sight
+from btlang.robots.worlds.world import OBJECT_RADIUS, PERSON_RADIUS, Person, Thing, World, WorldObject, said
 from btlang.ros.graph import graph_names
 from btlang.ros.robot.services import ServiceCall, Services
 from btlang.ros.subscriptions import SubscriptionCache
@@ -43,7 +42,7 @@ class RosPlaces(Knowledge):
         super().__init__(world, obstacles, Sight(world, obstacles, lambda name, pose: self._in_view.get(name), report))
         self._body = body
         self._in_view: dict[str, Point] = {}
-        self._planner: Planner | None = None
+        self._planner: PathPlanner | None = None
 
     def notice(self, seen: Mapping[str, tuple[str, Point]], now: float, pose: Pose) -> None:
         """This is in view, and nothing else: the kind of each, "person" or "object", and where it is."""
@@ -130,7 +129,7 @@ class RosPlaces(Knowledge):
     def _stand(self, robot: Pose, point: Point, reach: float) -> Point:
         with suppress(RobotError):  # a world too large to plan in
             if self._planner is None:
-                self._planner = Planner(self._given_world, self.obstacles, self._body.radius, self.zones)
+                self._planner = PathPlanner(self._given_world, self.obstacles, self._body.radius, self.zones)
             path = self._planner.path((robot.x, robot.y), point, reach)
             if path is not None:
                 return path[-1]

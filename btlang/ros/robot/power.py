@@ -12,10 +12,9 @@ from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
-from btlang.robots.capabilities import Operation
-from btlang.robots.charge import ChargeCheck
 from btlang.robots.geometry import Pose
-from btlang.robots.robot import RobotError
+from btlang.robots.motion.guard.readings import ChargeCheck
+from btlang.robots.robot import Operation, RobotError
 from btlang.ros.clocks import AWAKE
 from btlang.ros.messages import stamped_pose
 from btlang.ros.node import ExecutorThread

@@ -14,18 +14,17 @@ from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import Empty, Trigger
 
-from btlang.robots.body import TOLERANCE, Body
-from btlang.robots.body_file import standard_body
-from btlang.robots.choices import Choices
+from btlang.robots.bodies.body import TOLERANCE, Body
+from btlang.robots.bodies.body_file import standard_body
+from btlang.robots.command_gate import Latch
 from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose
-from btlang.robots.gesturing import Gestures
-from btlang.robots.latch import Latch
+from btlang.robots.motion.gesturing import Gestures
 from btlang.robots.motion.guard.guard import Cause, Guard, Guarded, Verdict
-from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError
-from btlang.robots.station import Station
+from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, Station
 from btlang.robots.voice import Synthesizer
-from btlang.robots.world import Place, World, said
+from btlang.robots.worlds.descriptions import Choices
+from btlang.robots.worlds.world import Place, World, said
 from btlang.robots.zones import Zones
 from btlang.ros.available import optional_interface
 from btlang.ros.clocks import AWAKE
@@ -577,7 +576,7 @@ class RosRobot(Guarded):
         self._joints.freeze(names)
 
     def gesture(self, name: str, *, aim: Point | None = None, stroke_at: float | None = None) -> Operation:
-        """See btlang.robots.capabilities.Gesturing. Raises RobotError."""
+        """See btlang.robots.robot.Gesturing. Raises RobotError."""
         self._check_stop()
         room = None if stroke_at is None else stroke_at - self.time
         started, slower = self._gestures.start(name, lambda: self.pose, aim, room)
@@ -587,7 +586,7 @@ class RosRobot(Guarded):
         return started
 
     def lead(self, name: str, aim: Point | None = None) -> float:
-        """See btlang.robots.capabilities.Gesturing. Raises RobotError."""
+        """See btlang.robots.robot.Gesturing. Raises RobotError."""
         return self._gestures.lead(name, lambda: self.pose, aim)
 
     def grasp(self, hand: Hand, name: str | None = None) -> Operation:

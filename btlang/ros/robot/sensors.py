@@ -12,12 +12,12 @@ from rclpy.node import Node
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import String
 
-from btlang.robots.body import Body, Sensor
+from btlang.robots.bodies.body import Body, Sensor
 from btlang.robots.geometry import CENTRE, Pose
 from btlang.robots.motion.guard.guard import FRESH
 from btlang.robots.motion.guard.readings import ObstacleReading, ScanReading
 from btlang.robots.robot import SensorSilent
-from btlang.robots.scan import around, summary
+from btlang.robots.worlds.scan import around, summary
 from btlang.ros.available import optional_interface
 from btlang.ros.messages import BASE, MAP, echoes
 from btlang.ros.robot.base import RosBase

@@ -12,17 +12,15 @@ from rclpy.node import Node
 from trajectory_msgs.msg import JointTrajectory
 
 from btlang.record import Record
-from btlang.robots.body import Body
-from btlang.robots.gesture import Gesture, joints_of
-from btlang.robots.joints import joint_of
-from btlang.robots.motion.braking import braking
-from btlang.robots.motion.course import PERIOD, Limits, Piece, State, between, samples
-from btlang.robots.motion.guard.joints import shown_distance
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.gesture import Gesture, joints_of
+from btlang.robots.motion.course import PERIOD, CourseSegment, JointLimits, MotionState, between, braking, samples
+from btlang.robots.motion.guard.tracking import shown_distance
 from btlang.robots.motion.kinematics import Array
 from btlang.robots.motion.movements import staying
 from btlang.robots.motion.smooth_joints import SmoothJoints
-from btlang.robots.motion.timeline import Play
-from btlang.robots.robot import RobotError
+from btlang.robots.motion.timeline import PlannedMotion
+from btlang.robots.robot import RobotError, joint_of
 from btlang.ros.messages import JointReach, motion, stamp
 from btlang.ros.robot.joints import TRAJECTORY, JointStates, on_wire
 from btlang.ros.subscriptions import SubscriptionCache
@@ -41,7 +39,7 @@ class Sent(Record):
     """The movement of all joints from a second of the node's clock on, and the command for some of them."""
 
     begins: float
-    way: State
+    way: MotionState
     message: JointTrajectory
 
     @property
@@ -49,7 +47,7 @@ class Sent(Record):
         """When they rest."""
         return self.begins + PERIOD * (len(self.way.position) - 1)
 
-    def at(self, seconds: float) -> State:
+    def at(self, seconds: float) -> MotionState:
         """The state at a second of the node's clock."""
         last = len(self.way.position) - 1
         passed = min(max(0.0, (seconds - self.begins) / PERIOD), last)
@@ -58,9 +56,9 @@ class Sent(Record):
 
 
 class Played:
-    """See btlang.robots.capabilities.Operation: done when the joints say that they have arrived."""
+    """See btlang.robots.robot.Operation: done when the joints say that they have arrived."""
 
-    def __init__(self, joints: RosSmoothJoints, play: Play, names: Sequence[str]) -> None:
+    def __init__(self, joints: RosSmoothJoints, play: PlannedMotion, names: Sequence[str]) -> None:
         self._joints, self._play, self._names = joints, play, names
         self.done = False
         self.failure: str | None = None
@@ -93,7 +91,7 @@ class RosSmoothJoints:
     def __init__(self, node: Node, subscriptions: SubscriptionCache, body: Body) -> None:
         self._body, self._clock = body, node.get_clock()
         self._names = [joint.name for joint in body.joints]
-        self._limits = Limits.of(body.joints)
+        self._limits = JointLimits.of(body.joints)
         self._off = np.array([_OFF_SLIDING if joint.slides else _OFF for joint in body.joints])
         self._si = np.array([joint.si for joint in body.joints])
         self._states = JointStates(subscriptions, body)
@@ -102,7 +100,7 @@ class RosSmoothJoints:
         self._commanded: tuple[int, ...] = ()
         self._sent: Sent | None = None
         self._way = self._smooth.timeline.plan[1]  # what was sent, or needs not be
-        self._braked: tuple[float, Piece] | None = None  # by `freeze`; the timeline doesn't know it yet
+        self._braked: tuple[float, CourseSegment] | None = None  # by `freeze`; the timeline doesn't know it yet
         self._played: list[Played] = []
         self._near = inf  # when all joints were last near to the plan
         self._publisher = node.create_publisher(JointTrajectory, TRAJECTORY, 10)
@@ -170,7 +168,7 @@ class RosSmoothJoints:
             self._smooth.freeze()
             self._brake()
 
-    def cancel(self, play: Play) -> None:
+    def cancel(self, play: PlannedMotion) -> None:
         """Its joints come to rest."""
         self._advance()
         play.cancel()
@@ -290,7 +288,7 @@ class RosSmoothJoints:
         self._way = way
         self._publish(self._origin + begins + PERIOD, way.rows(slice(1, None)))  # the first one is what was before
 
-    def _publish(self, begins: float, way: State) -> None:
+    def _publish(self, begins: float, way: MotionState) -> None:
         if not self._commanded:
             return
         last = len(way.position) - 1

@@ -12,7 +12,7 @@ from std_msgs.msg import Bool
 
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.robot import RobotError
-from btlang.robots.world import Zone, said
+from btlang.robots.worlds.world import Zone, said
 from btlang.robots.zones import Zones, zone_names
 from btlang.ros.available import optional_interface
 from btlang.ros.graph import graph_names

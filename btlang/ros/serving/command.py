@@ -12,7 +12,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.instance import EngineError
 from btlang.mission_vocabulary import world_vocabulary
-from btlang.robots.needs import lacking
+from btlang.robots.preflight import lacking
 from btlang.robots.registry import connector
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.command import add_body_options, add_namespace, platform_of

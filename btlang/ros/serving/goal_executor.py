@@ -11,7 +11,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.engine.engine import Engine, EngineError
 from btlang.engine.status import RUNNING, SUCCESS
 from btlang.printer.phrase import phrase_of
-from btlang.robots.proxy import RobotProxy
+from btlang.robots.command_gate import RobotProxy
 from btlang.ros.serving.names import WORD
 from btlang.run.runner import traced_engine
 from btlang.run.standstill import standstill_of

@@ -16,8 +16,8 @@ from std_srvs.srv import Trigger
 
 from btlang.robots.geometry import CENTRE
 from btlang.robots.robot import RobotError
-from btlang.robots.scan import as_measured
-from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.scan import as_measured
 from btlang.ros.messages import BASE, MAP, ODOM, pose_message
 from btlang.ros.node import LATCHED
 from btlang.ros.simulator.shared import COMMANDS, CallQueue, LatchedPublisher, Moment, PeriodicPublisher

@@ -16,7 +16,7 @@ from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory
 
 from btlang.robots.robot import Hand, RobotError
-from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.ros.node import LATCHED
 from btlang.ros.robot.joints import on_wire
 from btlang.ros.robot.speech import LANGUAGE

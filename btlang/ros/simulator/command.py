@@ -8,11 +8,11 @@ import sys
 from time import monotonic
 
 from btlang.arguments import between, real_speed
-from btlang.robots.body import Body
-from btlang.robots.options import add_world
+from btlang.robots.bodies.body import Body
+from btlang.robots.platforms import add_world
 from btlang.robots.registry import runs_on
-from btlang.robots.world import World
-from btlang.robots.world_problem import read_world
+from btlang.robots.worlds.world import World
+from btlang.robots.worlds.world_file import read_world
 from btlang.ros.command import EndingSignals, add_body_options, add_namespace, ending_signals
 from btlang.run.emergency import emergency_signal
 from btlang.run.limits import RATES

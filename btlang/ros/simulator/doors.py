@@ -9,7 +9,7 @@ from rclpy.node import Node
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool
 
-from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.ros.node import LATCHED
 from btlang.ros.robot.places import door_services, state_topic, switch_services
 from btlang.ros.robot.zones import zone_topics

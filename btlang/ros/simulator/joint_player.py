@@ -9,12 +9,12 @@ from time import monotonic
 import numpy as np
 from trajectory_msgs.msg import JointTrajectory
 
-from btlang.robots.body import Body
-from btlang.robots.motion.course import PERIOD, Limits, Piece, State, on_quintic, to_state
+from btlang.robots.bodies.body import Body
+from btlang.robots.motion.course import PERIOD, CourseSegment, JointLimits, MotionState, on_quintic, to_state
 from btlang.robots.motion.kinematics import Array
 from btlang.robots.motion.movements import staying
 from btlang.robots.motion.smooth_joints import SmoothJoints
-from btlang.robots.motion.timeline import Timeline
+from btlang.robots.motion.timeline import JointTimeline
 from btlang.robots.robot import RobotError
 from btlang.ros.messages import seconds_of
 from btlang.ros.robot.joints import on_wire
@@ -35,9 +35,9 @@ class JointPlayer:
 
     def __init__(self, body: Body, joints: SmoothJoints, clocks: Callable[[], list[float]]) -> None:
         self._body, self._clocks = body, clocks
-        self._timeline: Timeline = joints.timeline
+        self._timeline: JointTimeline = joints.timeline
         self._names = [on_wire(joint.name) for joint in body.joints]
-        self._limits = Limits.of(body.joints)
+        self._limits = JointLimits.of(body.joints)
         self._si = np.array([joint.si for joint in body.joints])
         self._playing: list[int] = []
         self._received = self._received_real = inf  # simulated and real second of the latest one to be sent again
@@ -68,7 +68,7 @@ class JointPlayer:
             self._timeline.freeze(self._playing)
             self._received = self._received_real = inf
 
-    def _read(self, message: JointTrajectory) -> tuple[list[int], Array, State]:
+    def _read(self, message: JointTrajectory) -> tuple[list[int], Array, MotionState]:
         """Its joints, the seconds of its points and how they are then. Raises RobotError."""
         unknown = [name for name in message.joint_names if name not in self._names]
         if unknown or len(set(message.joint_names)) != len(message.joint_names):
@@ -88,9 +88,11 @@ class JointPlayer:
         if not (np.isfinite(position).all() and (np.abs(velocity) <= limits.speed * _TOLERANCE).all()):
             raise RobotError("a joint would be too fast, or nowhere")
         acceleration = np.gradient(velocity, times, axis=0) if len(times) > 1 else 0.0 * velocity
-        return joints, times, State(np.clip(position, limits.low, limits.high), velocity, acceleration)
+        return joints, times, MotionState(np.clip(position, limits.low, limits.high), velocity, acceleration)
 
-    def _joined(self, joints: list[int], at: Callable[[Array], State], begins: float) -> Callable[[Array], State]:
+    def _joined(
+        self, joints: list[int], at: Callable[[Array], MotionState], begins: float
+    ) -> Callable[[Array], MotionState]:
         """How they get from what they do to a way that has begun. Raises RobotError where they can't."""
         tick = PERIOD * np.ceil(begins / PERIOD - 1e-6)
         now, wanted = self._timeline.at(tick).of(joints), at(np.array([tick]))
@@ -107,16 +109,16 @@ class JointPlayer:
         raise RobotError("the joints are too far from where it begins")
 
 
-def _first(piece: Piece, begins: float, at: Callable[[Array], State]) -> Callable[[Array], State]:
-    def joined(seconds: Array) -> State:
+def _first(piece: CourseSegment, begins: float, at: Callable[[Array], MotionState]) -> Callable[[Array], MotionState]:
+    def joined(seconds: Array) -> MotionState:
         early, late = piece.at(np.clip(seconds - begins, 0.0, piece.seconds)), at(seconds)
         joins = (seconds < begins + piece.seconds)[:, None]
-        return State(*(np.where(joins, getattr(early, name), getattr(late, name)) for name in State.fields))
+        return MotionState(*(np.where(joins, getattr(early, name), getattr(late, name)) for name in MotionState.fields))
 
     return joined
 
 
-def _on(times: Array, way: State, seconds: Array) -> State:
+def _on(times: Array, way: MotionState, seconds: Array) -> MotionState:
     """Where they are at some seconds; before and after the points they rest."""
     if len(times) == 1:
         return staying(way.position[0])(seconds)

@@ -18,9 +18,9 @@ from btlang.actions.motion import Steps
 from btlang.actions.power import undock
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Point, Pose
-from btlang.robots.navigation import NavigationGoal
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.station import Station
+from btlang.robots.robot import Station
+from btlang.robots.simulation.navigation import NavigationGoal
+from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.ros.lease import Leases
 from btlang.ros.messages import MAP, ODOM, duration, pose_message, pose_of, stamped_pose
 from btlang.ros.robot.zones import SPEED_LIMIT

@@ -9,7 +9,7 @@ from btlang_interfaces.srv import Follow, HandOver
 from geometry_msgs.msg import Point
 from rclpy.node import Node
 
-from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.ros.messages import MAP
 from btlang.ros.node import LATCHED
 from btlang.ros.robot.hands import HAND_OVER

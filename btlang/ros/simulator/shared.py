@@ -17,7 +17,7 @@ from rclpy.task import Future as RosFuture
 
 from btlang.record import Record
 from btlang.robots.robot import RobotError
-from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.ros.lease import Leases
 from btlang.ros.node import LATCHED
 

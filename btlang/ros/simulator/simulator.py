@@ -12,11 +12,11 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
-from btlang.robots import body as bodies
+from btlang.robots.bodies import body as bodies
 from btlang.robots.parts import JointsPart, Parts
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.simulated_parts import simulated_parts
-from btlang.robots.world import World
+from btlang.robots.simulation.parts import simulated_parts
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world import World
 from btlang.ros.available import optional_interface
 from btlang.ros.messages import stamp
 from btlang.ros.node import SpunNode

@@ -9,8 +9,8 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 
 from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere
-from btlang.robots.body import PATIENCE
-from btlang.robots.progress import Approach, Progress
+from btlang.robots.bodies.body import PATIENCE
+from btlang.robots.motion.progress import Approach, DriveProgress
 from btlang.ros.graph import no_listener
 from btlang.ros.messages import trajectory, type_name, velocity, yaw_of
 from btlang.ros.subscriptions import AGE, Latest
@@ -62,7 +62,7 @@ def drive_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
         start = pose = _pose(odometry.take(_ODOMETRY_AGE))
         done, shown = 0.0, math.degrees if turns else float
         reason = ""
-        bounds = Progress(shown(way_to_go), shown(close), turns, clients.clock.now, patience, lambda: reason)
+        bounds = DriveProgress(shown(way_to_go), shown(close), turns, clients.clock.now, patience, lambda: reason)
         try:
             while True:
                 before, pose = pose, _pose(odometry.take(_ODOMETRY_AGE))

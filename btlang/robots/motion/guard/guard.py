@@ -7,10 +7,8 @@ from enum import Enum
 from math import copysign, cos, degrees, inf, isfinite, isnan, radians, sqrt
 
 from btlang.record import Record
-from btlang.robots.body import Body
+from btlang.robots.bodies.body import Body
 from btlang.robots.geometry import Pose, wrap
-from btlang.robots.motion.guard.odometry import STANDS, OdometryCheck
-from btlang.robots.motion.guard.people import WalkingPeople, safe_among
 from btlang.robots.motion.guard.readings import (
     ContactReading,
     ObstacleReading,
@@ -20,7 +18,8 @@ from btlang.robots.motion.guard.readings import (
     SensorReading,
     Sensors,
 )
-from btlang.robots.motion.guard.regions import Regions
+from btlang.robots.motion.guard.regions import Regions, WalkingPeople, safe_among
+from btlang.robots.motion.guard.tracking import STANDS, OdometryCheck
 from btlang.robots.robot import RobotError
 from btlang.robots.zones import Zones
 
@@ -254,22 +253,22 @@ class Guard:
 
 
 class Guarded:
-    """A robot whose base a guard judges; see btlang.robots.capabilities.Base."""
+    """A robot whose base a guard judges; see btlang.robots.robot.Base."""
 
     _guard: Guard
 
     @property
     def held_back(self) -> str:
-        """See btlang.robots.capabilities.Base."""
+        """See btlang.robots.robot.Base."""
         return self._guard.held
 
     @property
     def limited_by(self) -> str:
-        """See btlang.robots.capabilities.Base."""
+        """See btlang.robots.robot.Base."""
         return self._guard.verdict.reason
 
     def touch(self) -> None:
-        """See btlang.robots.capabilities.Base."""
+        """See btlang.robots.robot.Base."""
         self._guard.touch()
 
 
