@@ -11,7 +11,7 @@ import pytest
 
 import btlang
 from btlang.cli import main
-from btlang.components.plain import packed
+from btlang.components.calls import packed
 from btlang.maps.data_text import ForeignFileError, read_data
 from btlang.recording.channels import messages
 from btlang.run.events import RobotEvent, Sampled

@@ -6,14 +6,11 @@ from collections.abc import Generator
 from math import dist, inf
 from typing import Any, Protocol
 
+from btlang.actions.common import Driving, Watch, paced, where
 from btlang.actions.gestures import Aiming, wave
-from btlang.actions.manner import paced
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import go_to, travel
-from btlang.actions.points import where
-from btlang.actions.speech import say
-from btlang.actions.strokes import Presenting
-from btlang.actions.watch import Driving, Watch
+from btlang.actions.speech import Presenting, say
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Point
 from btlang.robots.robot import Leading, Listening, Navigation, Operation, Perception

@@ -1,29 +1,30 @@
-"""Asking and listening. What was heard last is the answer, which missions compare: "if the answer is yes"."""
+"""Asking and listening, and commands that people speak. What was heard last is the answer."""
 
 from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from functools import cache, lru_cache
 from importlib.resources import files
+from inspect import isgenerator
 from typing import Protocol
 
+from btlang.actions.common import Driving, Watch
 from btlang.actions.motion import Steps
-from btlang.actions.speech import say
-from btlang.actions.strokes import Presenting
-from btlang.actions.watch import Watch
+from btlang.actions.speech import Presenting, say
 from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown
 from btlang.robots.bodies.body import Body
 from btlang.robots.ears import HeardText
-from btlang.robots.robot import Conversing, Listening
+from btlang.robots.robot import Conversing, Listening, RobotError
 from btlang.robots.worlds.world import said
-from btlang.speech.grammar import spoken
 from btlang.speech.marks import without_marks
-from btlang.speech.recogniser import Expected
+from btlang.speech.recogniser import Expected, spoken
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
 
 WAITS = 60.0
 """Seconds of the mission in which somebody has to answer."""
@@ -178,3 +179,34 @@ def listened(
                 watch.check_stop()
     finally:
         ears.asking = ""
+
+
+class Obeying(Conversing, Presenting, Driving, Protocol):
+    """A robot that obeys spoken commands."""
+
+
+def do_what_somebody_says(robot: Obeying) -> Steps:
+    """Waits for a command, asks "Shall I ...?" and does it after a yes. Fails after a no, and where nobody answers."""
+    commands = robot.ears.commands
+    if commands is None:
+        raise ActionFailed("the mission has no words that could be spoken")
+    act = None
+
+    def reads(text: str) -> bool:
+        nonlocal act
+        with suppress(RobotError):  # people also say other things
+            act = commands.read(text)
+        return act is not None
+
+    yield from listened(robot, "", reads, commands.expected(robot))
+    assert act is not None
+    text = robot.ears.answer
+    question = f"Shall I {text.rstrip('.!')}?"
+    yield from say(robot, question)
+    expected = answers(MEANINGS, robot.body)
+    yield from listened(robot, question, lambda text: meaning_of(text) in MEANINGS, expected)
+    if meaning_of(robot.ears.answer) == "no":
+        raise ActionFailed(f"nobody wants it to {text}")
+    steps = act(robot)
+    if isgenerator(steps):
+        yield from steps

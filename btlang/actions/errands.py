@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Generator
 from typing import Protocol
 
+from btlang.actions.common import Driving, paced
 from btlang.actions.company import Meeting, speaker
 from btlang.actions.joints import take
 from btlang.actions.manipulation import Fetching, hand_with, pick_up, put_down
-from btlang.actions.manner import paced
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, go_to, travel
-from btlang.actions.watch import Driving
 from btlang.robots.robot import Hand, Navigation
 
 

@@ -1,13 +1,13 @@
-"""Waving, pointing, nodding and looking. They never move the base; a halted gesture freezes where it is."""
+"""Waving, pointing, nodding, looking, bowing and dancing. A gesture that is halted freezes where it is."""
 
 from __future__ import annotations
 
 from typing import Protocol
 
+from btlang.actions.common import Driving, Watch, spot, where
 from btlang.actions.joints import take
-from btlang.actions.motion import Steps
+from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish
-from btlang.actions.points import spot, where
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Point
 from btlang.robots.robot import Base, Gesturing, Joints
@@ -132,3 +132,19 @@ def _towards(robot: Aiming, posture: str, name: str, point: Point | None = None)
         where = "behind the robot" if abs(bearing) > 90.0 else "too far to the side"
         raise ActionFailed(f"{said(name)} is {where}; the {joint.part} can't turn that far")
     yield from take(robot, posture, bearing=bearing)
+
+
+_BOWED = 1.0  # seconds
+
+
+def bow(robot: Joints) -> Steps:
+    """Lowers the head for a second."""
+    yield from take(robot, "look down")
+    yield from Watch(robot).pause(_BOWED)
+    yield from take(robot, "look ahead")
+
+
+def dance(robot: Driving) -> Steps:
+    """Swings from side to side on the spot, and turns once around."""
+    for angle in (45.0, -90.0, 90.0, -45.0, 360.0):
+        yield from turn(robot, angle)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from btlang.actions.common import Watch
 from btlang.actions.motion import Steps
-from btlang.actions.watch import Watch
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.bodies.gesture import angle_of
 from btlang.robots.robot import Joints

@@ -7,9 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 
-from btlang.actions.manner import share_of
-from btlang.actions.points import where
-from btlang.actions.watch import BaseWatch, Driving
+from btlang.actions.common import BaseWatch, Driving, share_of, where
 from btlang.engine.leaves.leaf import ActionFailed, unheard
 from btlang.robots.geometry import wrap
 from btlang.robots.motion.progress import Approach, DriveProgress

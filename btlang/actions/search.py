@@ -6,12 +6,10 @@ from collections.abc import Callable
 from contextlib import closing
 from typing import Protocol
 
+from btlang.actions.common import Driving, Watch, spot, things_described
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, go_to, travel
-from btlang.actions.nouns import described
-from btlang.actions.points import spot
 from btlang.actions.sensing import holding
-from btlang.actions.watch import Driving, Watch
 from btlang.engine.leaves.leaf import ActionFailed, Failed
 from btlang.robots.robot import Hands, Navigation, Perception
 from btlang.robots.worlds.world import said
@@ -155,7 +153,7 @@ def _count(
             yield
             found.update(robot.seen(type))
     if kind:
-        found &= set(described(robot, type, kind=kind))
+        found &= set(things_described(robot, type, kind=kind))
     blackboard.set(COUNT, len(found))
 
 

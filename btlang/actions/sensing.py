@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import dist, inf, radians
 
-from btlang.actions.points import where
+from btlang.actions.common import where
 from btlang.engine.leaves.leaf import Failed
 from btlang.robots.geometry import Point
 from btlang.robots.robot import Base, Docking, Hands, Navigation, Power, RobotError, Sensors, SensorSilent

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from btlang.actions.manner import paced
+from btlang.actions.common import Driving, paced, where
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, over_border, travel
-from btlang.actions.points import where
-from btlang.actions.watch import Driving
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import centre_of
 from btlang.robots.robot import Cautious, Handling, Messenger, Navigation, Perception

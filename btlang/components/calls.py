@@ -1,19 +1,25 @@
-"""Calls of the methods of a component in its own process, and what they ask of the robot meanwhile."""
+"""Calls of a component's methods in its own process, and values that go between processes as JSON."""
 
 from __future__ import annotations
 
+import base64
 import threading
+from collections.abc import Mapping
 from functools import partial
 from inspect import isgenerator, signature
 from queue import Empty, SimpleQueue
 
-from btlang.components.plain import refused, value_of
-from btlang.engine.leaves.leaf import ActionFailed, Failed, reason_text
+from btlang.devices import kinds
+from btlang.devices.kinds import Command, Reading
+from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown, reason_of, reason_text
+from btlang.record import Record
+from btlang.robots.geometry import Pose
 from btlang.robots.robot import Robot
+from btlang.text.json_text import dump_json, load_json
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
     from typing import Any, Protocol
 
     from btlang.components.component import Component
@@ -24,16 +30,71 @@ if TYPE_CHECKING:
         @property
         def component(self) -> Component: ...
         @property
-        def questions(self) -> Questions: ...
+        def questions(self) -> RobotQuestions: ...
         def send(self, message: dict[str, Any]) -> None: ...
         def ended(self, number: int, outcome: dict[str, Any]) -> None: ...
+
+
+_RECORDS = {
+    each.__name__: each
+    for each in (Pose, *(each for each in vars(kinds).values() if isinstance(each, type)))
+    if issubclass(each, Reading | Command | Pose)
+}
+_RECORD, _BYTES = "record", "bytes"
+
+
+def packed(message: object) -> bytes:
+    """A message as bytes. Raises TypeError for values that are neither plain data nor a pose, reading or command."""
+    try:
+        return dump_json(message, _other, separators=(",", ":")).encode()
+    except ValueError:
+        raise TypeError("a value that is in itself, or nested too deeply, can't be handed to another process") from None
+
+
+def unpacked(data: bytes) -> Any:
+    """The message again; tuples are lists. Raises ValueError for what is no message."""
+    return load_json(data, _record)
+
+
+def refused(problem: BaseException) -> dict[str, Any]:
+    """The answer where something was raised; `value_of` raises it on the other side."""
+    return {"problem": reason_of(problem), "unknown": isinstance(problem, Unknown)}
+
+
+def value_of(answer: Mapping[str, Any]) -> Any:
+    """The value of an answer. Raises ActionFailed, or Unknown, for one that is `refused`."""
+    if "problem" in answer:
+        raise (Unknown if answer.get("unknown") else ActionFailed)(answer["problem"])
+    return answer.get("value")
+
+
+def _other(value: object) -> Any:
+    if isinstance(value, Record) and type(value).__name__ in _RECORDS:
+        return {_RECORD: type(value).__name__, **value.as_dict()}
+    if isinstance(value, bytes | bytearray | memoryview):
+        return {_BYTES: base64.b64encode(value).decode()}
+    if hasattr(value, "tolist"):  # arrays and numbers of numpy
+        return value.tolist()
+    raise TypeError(f"a {type(value).__name__} can't be handed to another process")
+
+
+def _record(data: dict[str, Any]) -> Any:
+    if _BYTES in data and len(data) == 1:
+        return base64.b64decode(data[_BYTES])
+    kind = _RECORDS.get(data[_RECORD]) if isinstance(data.get(_RECORD), str) else None
+    if kind is None:
+        return data
+    try:
+        return kind(**{name: value for name, value in data.items() if name != _RECORD})
+    except TypeError as problem:
+        raise ValueError(str(problem)) from None
 
 
 _PERIOD = 0.05  # seconds that a `yield` waits
 _AGAIN = 0.2  # seconds after which a question to the robot is asked once more
 
 
-class Questions:
+class RobotQuestions:
     """What one thread of the component asks its robot, one thing after the other."""
 
     def __init__(self, worker: Link, number: int = 0) -> None:
@@ -69,7 +130,7 @@ class Questions:
         raise ActionFailed("it was halted")
 
 
-class Call(Questions):
+class MethodCall(RobotQuestions):
     """One call of a method, in a thread of its own."""
 
     def __init__(self, worker: Link, number: int, method: str, arguments: Mapping[str, Any]) -> None:
@@ -115,7 +176,7 @@ class Call(Questions):
 class RemoteRobot:
     """The robot as a method of a component gets it: see btlang.robots.robot.Robot. Each use waits for the mission."""
 
-    def __init__(self, call: Call) -> None:
+    def __init__(self, call: MethodCall) -> None:
         self._call = call
 
     def __getattr__(self, name: str) -> Any:
@@ -130,7 +191,7 @@ class RemoteRobot:
 class RemoteOperation:
     """See btlang.robots.robot.Operation."""
 
-    def __init__(self, call: Call, number: int) -> None:
+    def __init__(self, call: MethodCall, number: int) -> None:
         self._call, self._number = call, number
 
     @property

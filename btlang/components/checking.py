@@ -5,14 +5,12 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from btlang.components.component import ComponentError, ParameterError
 from btlang.components.location import WRONG_PARAMETERS, located, words_file
-from btlang.components.order import circle
-from btlang.components.word_checking import check_words
-from btlang.devices.driver import DeviceError
-from btlang.devices.drivers import SIMULATED, driver_class, make_driver
+from btlang.components.words import check_words
+from btlang.devices.driver import SIMULATED, DeviceError, driver_class, make_driver
 from btlang.devices.kinds import KINDS
 from btlang.devices.simulated import SimulatedDevice
 from btlang.diagnostics.diagnostic import Diagnostic
@@ -28,6 +26,40 @@ from btlang.vocabulary.capabilities import CAPABILITIES
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+
+def circle(needs: Mapping[str, Collection[str]]) -> list[str]:
+    """Names that need each other in a circle, the first one again at the end; none where there is no circle."""
+    done: set[str] = set()
+    for start in needs:
+        path: dict[str, None] = {}
+        stack = [iter([start])]
+        while stack:
+            name = next(stack[-1], None)
+            if name is None:
+                stack.pop()
+                if path:
+                    done.add(path.popitem()[0])
+            elif name in path:
+                names = list(path)
+                return [*names[names.index(name) :], name]
+            elif name not in done:
+                path[name] = None
+                stack.append(iter(sorted(needs.get(name, ()))))
+    return []
+
+
+def levels(needs: Mapping[str, Collection[str]]) -> list[list[str]]:
+    """Names in groups that come up one after the other: each needs only those of groups before it."""
+    left, found = dict(needs), list[list[str]]()
+    while left:
+        ready = [name for name, wanted in left.items() if not any(each in left for each in wanted if each != name)]
+        group = ready or list(left)  # a circle, which was reported before
+        found.append(group)
+        for name in group:
+            del left[name]
+    return found
+
 
 _DESCRIBE = 30.0  # seconds that a class gets to be loaded and to say what it is
 

@@ -1,16 +1,49 @@
-"""What a component is: a class with hooks for its life, parameters, and methods that words name."""
+"""What a component is: a class with hooks for its life, its states and transitions, and where one lives."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Protocol
 
 from btlang.engine.leaves.leaf import ActionFailed
+from btlang.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import ClassVar
 
     from btlang.devices.kinds import Command, Reading
+
+
+UNCONFIGURED, INACTIVE, ACTIVE, FINALIZED = STATES = "unconfigured", "inactive", "active", "finalized"
+
+
+class Transition(Record):
+    """From one of the states to another; `hook` is the method of the component that does it.
+
+    Where the hook raises, the component's `error` hook is called, and the state is `fails`.
+    """
+
+    name: str
+    begins: tuple[str, ...]
+    ends: str
+    hook: str
+    fails: str = UNCONFIGURED
+
+
+TRANSITIONS = {
+    each.name: each
+    for each in (
+        Transition("configure", (UNCONFIGURED,), INACTIVE, "configure"),
+        Transition("activate", (INACTIVE,), ACTIVE, "activate"),
+        Transition("deactivate", (ACTIVE,), INACTIVE, "deactivate"),
+        Transition("clean up", (INACTIVE,), UNCONFIGURED, "clean_up"),
+        Transition("shut down", (UNCONFIGURED, INACTIVE, ACTIVE), FINALIZED, "shut_down", FINALIZED),
+    )
+}
+"""By name."""
+UPWARDS = ("configure", "activate")
+"""From unconfigured to active."""
 
 
 class ComponentError(ActionFailed):
@@ -163,3 +196,39 @@ class Component:
         if name not in self._devices:
             raise ComponentError(f'{self.name} has no device "{name}"; name it among its needs')
         return self._devices[name]
+
+
+SHARED = "--shared"
+"""The option of a process that several robots share, before the path of its socket."""
+
+
+class Host(Protocol):
+    """One component, from its start to its end. The methods are for the thread of its keeper; `leaf` and `ask` are for
+    the one that ticks."""
+
+    def load(self) -> Mapping[str, Any]:
+        """Starts what it lives in and makes it; what `describe` says of it. Raises ComponentError."""
+
+    def transition(self, name: str) -> None:
+        """Does one of TRANSITIONS. Raises ComponentError where it fails, and where it doesn't end within its limit."""
+
+    @property
+    def state(self) -> str:
+        """The latest that is known: one of STATES."""
+
+    def look(self) -> str | None:
+        """Why it can't be used any more (it died, hangs, or failed by itself); None where it works."""
+
+    def leaf(
+        self, method: str, outputs: tuple[str, ...], robot: Any, wake: Callable[[], object], beside: set[object]
+    ) -> Any:
+        """One use of a method by a command: an object with start, tick and halt, see btlang.engine.leaves.leaf.
+
+        The values of ports in `outputs` are functions that take what the method writes there.
+        """
+
+    def ask(self, method: str, ports: Mapping[str, Any], robot: Any) -> Any:
+        """What a method says to a condition, within the tick. Raises Unknown where it doesn't answer in time."""
+
+    def close(self) -> None:
+        """Lets go of it at once, whatever it does. May be called twice."""

@@ -9,13 +9,13 @@ from inspect import Parameter, Signature, isgeneratorfunction, signature
 from btlang.backends.engine import leaf_binding
 from btlang.components.component import ComponentError
 from btlang.components.device_robot import DeviceSimulation
-from btlang.components.gate import Gate
-from btlang.components.hearing import Hearing
 from btlang.components.inside_host import InsideHost
-from btlang.components.manager import Keeper, Manager, class_of
+from btlang.components.manager import ComponentKeeper, ComponentManager, class_of
+from btlang.components.parts.hearing import Hearing
 from btlang.components.process_host import ProcessHost
-from btlang.devices.device_set import DeviceSet
+from btlang.devices.device_set import DeviceSet, Reads
 from btlang.devices.driver import DeviceError
+from btlang.devices.kinds import KINDS, Command, Reading
 from btlang.devices.simulated import twin
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.bodies.body_file import unusable_robot
@@ -29,7 +29,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.components.host import Host
+    from btlang.components.component import Host
     from btlang.engine.leaves.leaf import LeafBinding
     from btlang.robots.bodies.body import Body, ComponentPart, RosNode
     from btlang.run.bus import Bus
@@ -39,6 +39,28 @@ if TYPE_CHECKING:
     from btlang.tree.node import Tree
     from btlang.vocabulary.entry import Entry
     from btlang.vocabulary.lexicon import Lexicon
+
+
+class DeviceGate:
+    """See btlang.devices.device_set.Reads. A device that moves and isn't commanded again comes to rest by itself."""
+
+    def __init__(self, devices: Reads, kind: str, robot: Any) -> None:
+        self._devices, self._rest, self._robot = devices, KINDS[kind].rest, robot
+
+    def read(self, name: str) -> Reading:
+        """The latest reading. Raises DeviceSilent."""
+        return self._devices.read(name)
+
+    def write(self, name: str, command: Command) -> None:
+        """Raises DeviceError while the robot is stopped, or for what the device doesn't take."""
+        if self._rest is not None and command != self._rest and self._robot.refuses:
+            raise DeviceError(f"the {name} isn't moved: the robot is stopped")
+        self._devices.write(name, command)
+
+    def silent(self, name: str) -> str | None:
+        """Why it is silent."""
+        return self._devices.silent(name)
+
 
 _WAITING = 1000  # events between two ticks: what is more is lost, but nothing of a component hides another change
 _UP = 30.0  # seconds that all components get to come up before the first mission; who is later is waited for no more
@@ -63,8 +85,8 @@ class ComponentConnection:
         has_nodes = any(part.node is not None for part in body.components)
         self._nodes: Any = node_function()(inner.robot, body) if has_nodes else None
         kinds = {name: device.kind for name, device in self.devices.devices.items()}
-        self._gates = {name: Gate(reads, kinds[name], self.robot) for name, reads in self.devices.readers.items()}
-        self.manager = Manager(body.components, self._host, self._post, self._in_use)
+        self._gates = {name: DeviceGate(reads, kinds[name], self.robot) for name, reads in self.devices.readers.items()}
+        self.manager = ComponentManager(body.components, self._host, self._post, self._in_use)
         self._hearing = Hearing(body, self.robot, self.devices, self._post) if body.ears and body.ears.engine else None
         self.robot.on_step = self._step
         self.manager.start()
@@ -168,7 +190,7 @@ def _is_below(name: str, node: RosNode | None) -> bool:
     return node is not None and name.startswith(f"{node.name}/")
 
 
-def _led(keeper: Keeper, call: Callable[..., Any]) -> Callable[..., Any]:
+def _led(keeper: ComponentKeeper, call: Callable[..., Any]) -> Callable[..., Any]:
     """A leaf that fails as soon as its component isn't active."""
     led: Any
 
@@ -193,7 +215,7 @@ def _led(keeper: Keeper, call: Callable[..., Any]) -> Callable[..., Any]:
     return led  # type: ignore[no-any-return]
 
 
-def _asking(keeper: Keeper, method: str, entry: Entry) -> Callable[..., Any]:
+def _asking(keeper: ComponentKeeper, method: str, entry: Entry) -> Callable[..., Any]:
     def ask(robot: Any, **ports: Any) -> Any:
         return keeper.working().ask(method, ports, robot)
 
@@ -202,7 +224,7 @@ def _asking(keeper: Keeper, method: str, entry: Entry) -> Callable[..., Any]:
     return ask
 
 
-def _leaf_class(keeper: Keeper, method: str, entry: Entry) -> type:
+def _leaf_class(keeper: ComponentKeeper, method: str, entry: Entry) -> type:
     """A class leaf that asks at each start where the component lives by then: it may have been started again."""
 
     class ComponentLeaf:

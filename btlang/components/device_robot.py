@@ -6,10 +6,9 @@ import math
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 
-from btlang.components.parts import device_parts
+from btlang.components.parts.parts import device_parts
 from btlang.devices.device_set import DeviceSet
-from btlang.devices.driver import DeviceError
-from btlang.devices.drivers import SIMULATED
+from btlang.devices.driver import SIMULATED, DeviceError
 from btlang.devices.simulated import twin, twins
 from btlang.robots.bodies.body import Sensor
 from btlang.robots.bodies.body_file import unusable_robot

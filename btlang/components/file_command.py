@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btlang.components.checking import check_robot, describe_apart
+from btlang.components.checking import check_robot, describe_apart, levels
 from btlang.components.component import ComponentError
-from btlang.components.order import levels
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.robots.bodies.body import Body, ComponentPart

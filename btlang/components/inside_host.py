@@ -7,8 +7,7 @@ from collections.abc import Callable, Generator, Mapping
 from functools import lru_cache
 from inspect import isgenerator, signature
 
-from btlang.components.component import Component, ComponentError
-from btlang.components.life_cycle import ACTIVE, TRANSITIONS, UNCONFIGURED
+from btlang.components.component import ACTIVE, TRANSITIONS, UNCONFIGURED, Component, ComponentError
 from btlang.components.location import describe, load_class
 from btlang.engine.leaves.leaf import ActionFailed, NotThere, described, reason_of
 from btlang.robots.command_gate import RobotProxy
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class InsideHost:
-    """See btlang.components.host.Host. A hook that doesn't end in time goes on in its thread, without its devices."""
+    """See Host. A hook that doesn't end in time goes on in its thread, without its devices."""
 
     process = None
 

@@ -7,8 +7,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from btlang.components.component import ComponentAbsent, ComponentError
-from btlang.components.life_cycle import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED
+from btlang.components.component import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, ComponentAbsent, ComponentError
 from btlang.components.location import located
 from btlang.engine.leaves.leaf import ActionFailed, NotThere, described
 from btlang.record import Record
@@ -18,7 +17,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.components.host import Host
+    from btlang.components.component import Host
 
 _LOOK = 0.1  # seconds between two looks at each component
 _MINUTE = 60.0
@@ -41,7 +40,7 @@ class ComponentStatus(Record):
     parameters: Mapping[str, Any] = {}
 
 
-class Manager:
+class ComponentManager:
     """The components of one robot, by name. Each has its own thread; all methods are for any thread.
 
     `make` makes the host of a part. `report` gets an event of each change: see PartChanged.
@@ -59,9 +58,9 @@ class Manager:
         self.changed = threading.Condition()
         """Notified whenever the state of one of them changes."""
         self._closing = False
-        self._keepers: dict[str, Keeper] = {}
+        self._keepers: dict[str, ComponentKeeper] = {}
         for part in parts:
-            self._keepers[part.name] = Keeper(self, part)
+            self._keepers[part.name] = ComponentKeeper(self, part)
 
     def start(self) -> None:
         """Begins to bring all of them up."""
@@ -89,7 +88,7 @@ class Manager:
         """Whether all of them go down."""
         return self._closing
 
-    def keeper(self, name: str) -> Keeper:
+    def keeper(self, name: str) -> ComponentKeeper:
         """The keeper of a component. Raises ComponentError for an unknown name."""
         if name not in self._keepers:
             listed = ", ".join(self._keepers) or "none"
@@ -97,7 +96,7 @@ class Manager:
         return self._keepers[name]
 
     @property
-    def keepers(self) -> Sequence[Keeper]:
+    def keepers(self) -> Sequence[ComponentKeeper]:
         """Those of all components."""
         return tuple(self._keepers.values())
 
@@ -114,7 +113,7 @@ class Manager:
         with self.changed:
             found = self._keepers.get(part.name)
             if found is None or found.gone:
-                found = self._keepers[part.name] = Keeper(self, part)
+                found = self._keepers[part.name] = ComponentKeeper(self, part)
                 found.start()
             else:
                 found.replace(part)
@@ -133,7 +132,7 @@ class Manager:
             keeper.replace(keeper.next or keeper.part)
             self.changed.notify_all()
 
-    def report(self, keeper: Keeper) -> None:
+    def report(self, keeper: ComponentKeeper) -> None:
         """Reports a changed state; called with the lock."""
         self.changed.notify_all()
         name, state = keeper.part.name, keeper.state
@@ -162,7 +161,7 @@ class Manager:
             users += [each.part.name for each in keepers if user in each.needs and each.part.name not in users]
         return self._closing or not any(map(self._in_use, users))
 
-    def forget(self, keeper: Keeper) -> None:
+    def forget(self, keeper: ComponentKeeper) -> None:
         """It was unloaded."""
         if self._keepers.get(keeper.part.name) is keeper:
             del self._keepers[keeper.part.name]
@@ -177,10 +176,10 @@ def class_of(part: ComponentPart) -> str | None:
     return located(part.place) if part.node is None else None
 
 
-class Keeper:
+class ComponentKeeper:
     """Leads one component through its life, in a thread that also starts its process."""
 
-    def __init__(self, manager: Manager, part: ComponentPart) -> None:
+    def __init__(self, manager: ComponentManager, part: ComponentPart) -> None:
         self._manager, self.part = manager, part
         self.class_place = class_of(part)
         """The `module:Class` of the part, found once: looking through what is installed takes long."""

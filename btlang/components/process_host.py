@@ -16,11 +16,9 @@ from contextlib import suppress
 from hashlib import sha256
 from multiprocessing.connection import Connection
 
-from btlang.components.component import ComponentError
-from btlang.components.host import SHARED
-from btlang.components.life_cycle import ACTIVE, UNCONFIGURED
-from btlang.components.plain import packed, refused, unpacked
-from btlang.components.remote_leaf import RemoteLeaf, Request
+from btlang.components.calls import packed, refused, unpacked
+from btlang.components.component import ACTIVE, SHARED, UNCONFIGURED, ComponentError
+from btlang.components.remote_leaf import RemoteLeaf, WorkerRequest
 from btlang.devices.driver import DeviceError
 from btlang.engine.leaves.leaf import ActionFailed, NotThere, Unknown, described
 from btlang.robots.files import socket_folder
@@ -41,7 +39,7 @@ _END = 0.5  # seconds that a process gets to end by itself
 
 
 class ProcessHost:
-    """See btlang.components.host.Host. `changed` is called, from any thread, when there is something to look at."""
+    """See Host. `changed` is called, from any thread, when there is something to look at."""
 
     def __init__(
         self,
@@ -56,7 +54,7 @@ class ProcessHost:
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection | None = None
         self._sending, self._numbering = threading.Lock(), threading.Lock()
-        self._requests: dict[int, Request] = {}
+        self._requests: dict[int, WorkerRequest] = {}
         self._numbers = 0
         self._lost: str | None = None
         self._heard = math.inf  # until it says something first
@@ -154,18 +152,18 @@ class ProcessHost:
             news.clear()
         return answer
 
-    def begin(self, method: str, arguments: dict[str, Any], wake: Callable[[], object]) -> Request:
+    def begin(self, method: str, arguments: dict[str, Any], wake: Callable[[], object]) -> WorkerRequest:
         """Calls a method. Raises ActionFailed where it can't be called now."""
         if self._lost is not None or self.state != ACTIVE:
             raise ActionFailed(NotThere(f"the {self._part.name} {self._lost or f'is {self.state}'}"))
         return self._request("call", wake, method=method, arguments=arguments)
 
-    def halt(self, request: Request) -> None:
+    def halt(self, request: WorkerRequest) -> None:
         """It need not be done any more."""
         self._send({"halt": request.number})
         request.end({"problem": "it was halted"})
 
-    def answer(self, request: Request, asked: dict[str, Any], answer: dict[str, Any]) -> None:
+    def answer(self, request: WorkerRequest, asked: dict[str, Any], answer: dict[str, Any]) -> None:
         """Answers a question of a call."""
         message = {"answer": asked["ask"], "call": request.number, **answer}
         try:
@@ -202,11 +200,11 @@ class ProcessHost:
                 os.killpg(process.pid, signal.SIGKILL)
             process.wait()
 
-    def _request(self, do: str, wake: Callable[[], object] = lambda: None, **data: Any) -> Request:
+    def _request(self, do: str, wake: Callable[[], object] = lambda: None, **data: Any) -> WorkerRequest:
         with self._numbering:  # so that they come in their order
             self._numbers += 1
             message = {"id": self._numbers, "do": do, **data}
-            request = self._requests[self._numbers] = Request(self._numbers, message, wake)
+            request = self._requests[self._numbers] = WorkerRequest(self._numbers, message, wake)
             try:
                 self._send(message)
             except ActionFailed:
@@ -216,7 +214,7 @@ class ProcessHost:
             request.end({"problem": f"the {self._part.name} {self._lost}"})
         return request
 
-    def _wait(self, request: Request, what: str, limit: float) -> Any:
+    def _wait(self, request: WorkerRequest, what: str, limit: float) -> Any:
         until = time.monotonic() + limit
         while not request.done.wait(_BEAT):
             self.look()

@@ -7,7 +7,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-from btlang.components.plain import refused, value_of
+from btlang.components.calls import refused, value_of
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.command_gate import RobotProxy
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     class Link(Protocol):
         """The way to the process: see btlang.components.process_host.ProcessHost."""
 
-        def begin(self, method: str, arguments: dict[str, Any], wake: Callable[[], object]) -> Request: ...
-        def halt(self, request: Request) -> None: ...
-        def answer(self, request: Request, asked: dict[str, Any], answer: dict[str, Any]) -> None: ...
+        def begin(self, method: str, arguments: dict[str, Any], wake: Callable[[], object]) -> WorkerRequest: ...
+        def halt(self, request: WorkerRequest) -> None: ...
+        def answer(self, request: WorkerRequest, asked: dict[str, Any], answer: dict[str, Any]) -> None: ...
 
 
-class Request:
+class WorkerRequest:
     """Something that the component is to do. `outcome` is there once `done` is set."""
 
     def __init__(self, number: int, message: dict[str, Any], wake: Callable[[], object]) -> None:
@@ -67,7 +67,7 @@ class RemoteLeaf:
     ) -> None:
         self._host, self._method, self._outputs, self._wake, self._beside = host, method, outputs, wake, beside
         self._proxy = RobotProxy(robot, lambda call: call())
-        self._request: Request | None = None
+        self._request: WorkerRequest | None = None
         self._stores: dict[str, Callable[[Any], object]] = {}
         self._operations: list[Any] = []
 

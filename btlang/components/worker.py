@@ -19,20 +19,20 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from queue import Empty, SimpleQueue
 
-from btlang.components.calls import Call, Questions, RemoteDevice
-from btlang.components.component import Component, ComponentError
-from btlang.components.host import SHARED
-from btlang.components.life_cycle import (
+from btlang.components.calls import MethodCall, RemoteDevice, RobotQuestions, packed, refused, unpacked
+from btlang.components.component import (
     ACTIVE,
     FINALIZED,
     INACTIVE,
+    SHARED,
     TRANSITIONS,
     UNCONFIGURED,
     UPWARDS,
+    Component,
+    ComponentError,
     Transition,
 )
 from btlang.components.location import describe, load_class
-from btlang.components.plain import packed, refused, unpacked
 from btlang.engine.leaves.leaf import described
 from btlang.robots.bodies.body_file import load_body
 
@@ -55,9 +55,9 @@ class Worker:
     def __init__(self, connection: Connection, life: Life) -> None:
         self._connection, self._life = connection, life
         self._sending = threading.Lock()
-        self.questions = Questions(self)
+        self.questions = RobotQuestions(self)
         self.state = UNCONFIGURED
-        self._calls: dict[int, Call] = {}
+        self._calls: dict[int, MethodCall] = {}
         self._ended: dict[int, dict[str, Any]] = {}
         self._begun: set[int] = set()  # requests of the life that wait or are under way
         self._latest = 0  # the newest request that was begun
@@ -124,7 +124,7 @@ class Worker:
             self._latest = max(self._latest, message["id"])
             if message["do"] == "call":
                 number = message["id"]
-                call = self._calls[number] = Call(self, number, message["method"], message["arguments"])
+                call = self._calls[number] = MethodCall(self, number, message["method"], message["arguments"])
                 call.start()
             else:
                 self._begun.add(message["id"])

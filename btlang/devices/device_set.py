@@ -6,8 +6,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
-from btlang.devices.driver import DeviceError, DeviceSilent
-from btlang.devices.drivers import SIMULATED, make_driver
+from btlang.devices.driver import SIMULATED, DeviceError, DeviceSilent, make_driver
 from btlang.devices.kinds import KINDS, Command, Reading
 from btlang.devices.loop import DeviceLoop
 from btlang.devices.simulated import SimulatedDevice

@@ -8,8 +8,7 @@ from contextlib import suppress
 from math import inf, isfinite, radians
 from random import Random
 
-from btlang.devices.driver import Device, DeviceError, DeviceSilent
-from btlang.devices.drivers import SIMULATED
+from btlang.devices.driver import SIMULATED, Device, DeviceError, DeviceSilent
 from btlang.devices.kinds import (
     KINDS,
     Charge,
@@ -31,8 +30,7 @@ from btlang.devices.kinds import (
     Wheels,
     WheelSpeeds,
 )
-from btlang.devices.loop import SILENCE
-from btlang.devices.value_checks import check_command
+from btlang.devices.loop import SILENCE, check_command
 from btlang.robots.bodies.body import Body
 from btlang.robots.geometry import CENTRE
 from btlang.robots.robot import RobotError

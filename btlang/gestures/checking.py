@@ -10,7 +10,7 @@ from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import Gesture
 from btlang.robots.bodies.gesture_file import GestureError, load_gestures
 from btlang.robots.files import as_mission_error, placed
-from btlang.robots.rehearsal import Rehearsal, rehearse
+from btlang.robots.simulation.rehearsal import Rehearsal, rehearse
 from btlang.text.source import Source, Span
 from btlang.text.toml_positions import positions
 from btlang.text.toml_table import Problem

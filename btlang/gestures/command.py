@@ -19,7 +19,7 @@ from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import Gesture
 from btlang.robots.bodies.gesture_file import TARGET, phrase_forms
 from btlang.robots.registry import Connector, body_of, runs_in_real_time, runs_on
-from btlang.robots.rehearsal import rehearse
+from btlang.robots.simulation.rehearsal import rehearse
 from btlang.text.output import show
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest

@@ -9,10 +9,8 @@ from math import cos, pi, sin
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
-from btlang.maps.contours import walls_of
-from btlang.maps.data_text import ForeignFileError, read_data
-from btlang.maps.notation import is_world, read_world_data
-from btlang.maps.occupancy import is_map, read_map
+from btlang.maps.data_text import ForeignFileError, is_world, read_data, read_world_data
+from btlang.maps.occupancy import is_map, read_map, walls_of
 from btlang.maps.way_points import way_points
 from btlang.robots.files import as_mission_error
 from btlang.robots.geometry import Point, Pose, Segment, contains

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import degrees
 
-from btlang.maps.fields import number, numbers, shown, yaw
+from btlang.maps.data_text import number, numbers, shown, yaw
 from btlang.robots.geometry import wrap
 from btlang.robots.worlds.world import Place
 from btlang.text.toml_table import Problem

@@ -13,7 +13,7 @@ from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import Gesture
 from btlang.robots.bodies.joint_tables import BASE
 from btlang.robots.motion.kinematics import Kinematics
-from btlang.robots.rehearsal import STEP, Rehearsal
+from btlang.robots.simulation.rehearsal import STEP, Rehearsal
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -8,8 +8,7 @@ from math import inf
 
 from btlang.record import Record
 from btlang.robots.files import DataFileError, as_mission_error, load_data
-from btlang.speech.grammar import spoken
-from btlang.speech.recogniser import Expected
+from btlang.speech.recogniser import Expected, spoken
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem, Table
 

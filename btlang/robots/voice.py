@@ -15,8 +15,7 @@ from btlang.robots.bodies.speech_tables import engine_of
 from btlang.robots.robot import RobotError
 from btlang.run.bus import INLINE
 from btlang.run.events import Event, PeriodPassed
-from btlang.speech.engine import Settings, SpeechError, Utterance
-from btlang.speech.visemes import SHAPES, shape_at
+from btlang.speech.engine import SHAPES, Settings, SpeechError, Utterance, shape_at
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""What an engine of speech is: a text becomes sound, with the times of its words and phonemes."""
+"""What an engine of speech is: a text becomes sound with the times of its words, phonemes and shapes of a mouth."""
 
 from __future__ import annotations
 
@@ -91,3 +91,43 @@ def words_at(text: str, starts: Sequence[tuple[int, float]], seconds: float) -> 
     return tuple(
         Word(match[0], *match.span(), time, max(0.0, times[at + 1] - time)) for at, (match, time) in enumerate(found)
     )
+
+
+SHAPES = {"rest": 0.0, "closed": 0.0, "teeth": 0.2, "narrow": 0.3, "round": 0.5, "wide": 0.6, "open": 1.0}
+"""How far the mouth is open in each, 0 to 1."""
+_LETTERS = {
+    letter: shape
+    for shape, letters in {
+        "closed": "pbmM", "teeth": "fv", "round": "ouwOUWyY", "wide": "eiEIj", "open": "aAVQ03@&",
+    }.items()
+    for letter in letters
+}  # fmt: skip
+
+
+def shape_of(phoneme: str) -> str:
+    """A name in SHAPES for a phoneme: "rest" for "", a pause."""
+    letter = phoneme.lstrip("',%=_|")[:1]
+    return _LETTERS.get(letter, "narrow") if letter else "rest"
+
+
+def shape_at(utterance: Utterance, time: float) -> str:
+    """The shape at a time of an utterance; "rest" before and after it."""
+    at = bisect_right(utterance.phonemes, time, key=lambda phoneme: phoneme.time)
+    return shape_of(utterance.phonemes[at - 1].name) if at and time < utterance.seconds else "rest"
+
+
+class Estimate:
+    """See btlang.speech.engine.SpeechEngine. Letters stand for their phonemes."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+
+    def speak(self, text: str) -> Utterance:
+        """At once."""
+        begin, each = self._settings.text, self._settings.character
+        seconds = begin + each * len(text)
+        starts = [(match.start(), begin + each * match.start()) for match in WORD.finditer(text)]
+        sounds = (
+            Phoneme(letter.lower() if letter.isalpha() else "", begin + each * at) for at, letter in enumerate(text)
+        )
+        return Utterance(text, seconds, words_at(text, starts, seconds), (*sounds, Phoneme("", seconds)))

@@ -1,17 +1,54 @@
-"""Runs a recogniser in a thread of its own, which decodes while somebody speaks."""
+"""Runs a recogniser in its own thread, and decides when what is said is meant for the robot."""
 
 from __future__ import annotations
 
+import math
 import threading
 from collections import deque
 from collections.abc import Callable
 from queue import SimpleQueue
 
-from btlang.speech.recogniser import RATE, Expected, Understood
+from btlang.speech.recogniser import RATE, Expected, RecognisedSpeech, spoken
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.speech.recogniser import Recogniser
+
+
+_AWAKE = 8.0  # seconds in which something may follow the wake word
+
+
+class Attention:
+    """`wake` is the wake word, "" without one; `push`, whether there is a button. `now` is in seconds of any clock."""
+
+    def __init__(self, wake: str, push: bool) -> None:
+        self._wake, self._push = spoken(wake), push
+        self._until = -math.inf
+
+    def expected(self, wanted: Expected, answering: bool, now: float) -> Expected:
+        """What to listen for. No wake word is needed for `answering`, when the robot has asked."""
+        if self._push:
+            return wanted.replace(mode="pushed")  # type: ignore[no-any-return]
+        if not self._wake or not wanted:
+            return wanted
+        if answering or now < self._until:
+            return wanted.replace(mode="addressed")  # type: ignore[no-any-return]
+        phrases, others = (
+            tuple(f"{self._wake} {phrase}" for phrase in each) for each in (wanted.phrases, wanted.others)
+        )
+        return Expected((self._wake, *phrases), wanted.names, mode="wake", others=others)
+
+    def meant(self, understood: RecognisedSpeech, now: float) -> RecognisedSpeech | None:
+        """What was said to the robot, without the wake word; None where that is all. It is awake from then on."""
+        if not self._wake or not f"{spoken(understood.text)} ".startswith(f"{self._wake} "):
+            return understood
+        rest = " ".join(understood.text.split()[len(self._wake.split()) :])
+        if rest:
+            return understood.replace(text=rest)  # type: ignore[no-any-return]
+        if understood.sure:
+            self._until = now + _AWAKE
+        return None
+
 
 _LONGEST = 5 * RATE * 2  # bytes of sound that wait for a slow recogniser
 _PIECE = RATE // 5  # bytes that are decoded at once: the tick never waits longer for the interpreter
@@ -23,7 +60,7 @@ class Listener:
     def __init__(self, recogniser: Recogniser) -> None:
         self._recogniser = recogniser
         self._calls: SimpleQueue[Callable[[], object] | None] = SimpleQueue()
-        self._found: deque[Understood] = deque(maxlen=100)
+        self._found: deque[RecognisedSpeech] = deque(maxlen=100)
         self._waiting, self._lock = 0, threading.Lock()  # bytes, which two threads count
         self._broken = ""
         self._is_late = False
@@ -56,7 +93,7 @@ class Listener:
         """What was heard so far belongs to nothing that follows."""
         self._put(self._recogniser.forget)
 
-    def understood(self) -> Understood | None:
+    def understood(self) -> RecognisedSpeech | None:
         """The next sentence that was said, each once; None if there is none."""
         return self._found.popleft() if self._found else None
 

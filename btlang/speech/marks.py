@@ -11,16 +11,16 @@ _SENTENCE_ENDS = re.compile(r"[.!?…]+[\"'”»)\]]*\s+")
 _HUGS = ",.;:!?…)]}”»%"
 
 
-class Mark(Record):
+class GestureMark(Record):
     """The words in a mark, and the index in the plain text where the search for the word that it meets begins."""
 
     words: str
     index: int
 
 
-def read_marks(text: str) -> tuple[str, tuple[Mark, ...]]:
+def read_marks(text: str) -> tuple[str, tuple[GestureMark, ...]]:
     r"""The text without its marks, and these. `\<` is a plain `<`, as is one before a blank or digit or not closed."""
-    plain, marks, at = "", list[Mark](), 0
+    plain, marks, at = "", list[GestureMark](), 0
     for match in _MARK.finditer(text):
         plain += text[at : match.start()]
         at = match.end()
@@ -32,7 +32,7 @@ def read_marks(text: str) -> tuple[str, tuple[Mark, ...]]:
             plain = plain.rstrip()
         elif not plain or plain[-1].isspace():
             at += len(text[at:]) - len(text[at:].lstrip())
-        marks.append(Mark(words, len(plain)))
+        marks.append(GestureMark(words, len(plain)))
     return plain + text[at:], tuple(marks)
 
 

@@ -1,9 +1,4 @@
-"""The recogniser `pocketsphinx`: English, on this computer, without a network.
-
-Three decoders hear the same sound. One knows only the sentences that are expected, and always finds the nearest one.
-One knows no words, only phones: where both agree, the sentence was said. The third one has the large language model,
-and only hears where any words are expected.
-"""
+"""The recogniser `pocketsphinx`: English, on this computer, without a network."""
 
 from __future__ import annotations
 
@@ -12,13 +7,49 @@ import re
 from collections.abc import Sequence
 from importlib.util import find_spec
 
-from btlang.speech.grammar import Grammar
-from btlang.speech.pronunciation import accents, guessed
-from btlang.speech.recogniser import RATE, Expected, RecogniserError, RecogniserSettings, Understood
+from btlang.speech.recogniser import RATE, Expected, Grammar, RecognisedSpeech, RecogniserError, RecogniserSettings
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+
+_LETTERS = {
+    "tch": "CH", "sch": "SH", "igh": "AY", "tion": "SH AH N", "ch": "CH", "sh": "SH", "th": "TH", "ph": "F", "ck": "K",
+    "ng": "NG", "qu": "K W", "wh": "W", "kn": "N", "wr": "R", "ee": "IY", "ea": "IY", "ie": "IY", "oo": "UW",
+    "ou": "AW", "ow": "OW", "ai": "EY", "ay": "EY", "ei": "AY", "ey": "IY", "oa": "OW", "oi": "OY", "oy": "OY",
+    "au": "AO", "aw": "AO", "eu": "OY", "er": "ER", "ir": "ER", "ur": "ER", "ar": "AA R", "or": "AO R", "ce": "S EH",
+    "ci": "S IH", "cy": "S IY", "a": "AE", "b": "B", "c": "K", "d": "D", "e": "EH", "f": "F", "g": "G", "h": "HH",
+    "i": "IH", "j": "JH", "k": "K", "l": "L", "m": "M", "n": "N", "o": "OW", "p": "P", "q": "K", "r": "R", "s": "S",
+    "t": "T", "u": "AH", "v": "V", "w": "W", "x": "K S", "y": "IY", "z": "Z",
+}  # fmt: skip
+_PIECE = re.compile("|".join(sorted(_LETTERS, key=len, reverse=True)))
+_AT_THE_END = {"a": "AH", "o": "OW", "i": "IY", "u": "UW"}
+_VOWEL = "aeiou"
+_BRITISH = ((re.compile(r"\bOW\b"), "AH UW"), (re.compile(r"\bER$"), "AH"))
+
+
+def guessed(word: str) -> str:
+    """The phones of a word that no dictionary has, by its letters; "" for one without any."""
+    letters = re.sub(r"(.)\1+", lambda match: match[0] if match[1] in "eo" else match[1], word.replace("'", ""))
+    end = ""
+    if len(letters) > 2 and letters[-1] == "e" and letters[-2] not in _VOWEL:
+        letters = letters[:-1]
+    elif len(letters) > 1 and letters[-1] in _AT_THE_END and letters[-2] not in _VOWEL:
+        letters, end = letters[:-1], _AT_THE_END[letters[-1]]
+    phones = " ".join(_LETTERS[piece] for piece in _PIECE.findall(letters))
+    if letters.startswith("y") and phones.startswith("IY "):
+        phones = f"Y {phones[3:]}"
+    return f"{phones} {end}".strip()
+
+
+def accents(phones: str) -> list[str]:
+    """How else the phones of American English are said: "no" and "never" in the south of England."""
+    other = phones
+    for pattern, said in _BRITISH:
+        other = pattern.sub(said, other)
+    return [] if other == phones else [other]
+
 
 _WINDOW, _RATIO = 0.24, 0.9  # of the endpointer: seconds, and their part without speech that ends a sentence
 _LONGEST = 10.0  # seconds of a sentence: what is longer is none, or the hall is loud
@@ -66,7 +97,7 @@ class PocketSphinx:
         if spoken:
             self._decode(spoken)
 
-    def hear(self, samples: bytes) -> Sequence[Understood]:
+    def hear(self, samples: bytes) -> Sequence[RecognisedSpeech]:
         """See Recogniser."""
         if not self._expected:
             self.forget()
@@ -74,7 +105,7 @@ class PocketSphinx:
         if self._push:
             self._decode(samples)
             return []
-        found: list[Understood] = []
+        found: list[RecognisedSpeech] = []
         samples, at, size = self._waiting + samples, 0, self._endpointer.frame_bytes
         while at + size <= len(samples):
             speech = self._endpointer.process(samples[at : at + size])
@@ -88,7 +119,7 @@ class PocketSphinx:
         self._waiting = samples[at:]
         return found
 
-    def end(self) -> Sequence[Understood]:
+    def end(self) -> Sequence[RecognisedSpeech]:
         """See Recogniser."""
         if not self._spoken:
             return []
@@ -96,7 +127,7 @@ class PocketSphinx:
         if self._expected.phrases and (found := self._sentence()) is not None:
             return [found]
         text = _text(self._words) if self._expected.anything else ""
-        return [Understood(text, False)] if text else []
+        return [RecognisedSpeech(text, False)] if text else []
 
     def forget(self) -> None:
         """See Recogniser."""
@@ -118,14 +149,14 @@ class PocketSphinx:
         score: float = (math.log(sentence.score) - math.log(phones.score)) / _BASE / frames
         return _SAME_PHONES * _likeness(wanted, heard) + _SCORE * score + _CONSTANT
 
-    def _sentence(self) -> Understood | None:
+    def _sentence(self) -> RecognisedSpeech | None:
         text = _text(self._sentences)
         if not self._grammar.holds(text):  # half a sentence
             return None
         confidence, mode = self.confidence, self._expected.mode
         if confidence < _UNSURE[mode]:
             return None
-        return Understood(self._grammar.written(text), confidence >= _SURE[mode])
+        return RecognisedSpeech(self._grammar.written(text), confidence >= _SURE[mode])
 
     def _phones_of(self, word: str) -> list[str]:
         return (self._sentences.lookup_word(word) or "").split()

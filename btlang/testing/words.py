@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.actions.points import where
+from btlang.actions.common import where
 from btlang.engine.leaves.leaf import Failed
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.robots.geometry import Pose

@@ -12,7 +12,7 @@ from btlang.run.bus import INLINE
 from btlang.run.events import Event, Said
 from btlang.run.world_input import WorldInput
 from btlang.session import Run
-from btlang.speech.grammar import Grammar
+from btlang.speech.recogniser import Grammar
 
 OBEY = btlang.parse_tree("obey what somebody says")
 

@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 
-from btlang.actions import clock, errands, navigation, sides, world
+from btlang.actions import clock, errands, navigation, world
+from btlang.actions import navigation as sides
 from btlang.engine.clock import Clock
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.robot import RobotError

@@ -10,7 +10,7 @@ import pytest
 
 import btlang
 from btlang.components.device_robot import twins
-from btlang.components.parts import DeviceHands
+from btlang.components.parts.parts import DeviceHands
 from btlang.devices.kinds import Command, Grip, GripTarget
 from btlang.devices.simulated import SimulatedDevice
 from btlang.examples import examples

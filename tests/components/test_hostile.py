@@ -16,10 +16,9 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.components.component import ComponentError
-from btlang.components.life_cycle import ACTIVE
-from btlang.components.manager import Manager
-from btlang.components.plain import packed
+from btlang.components.calls import packed
+from btlang.components.component import ACTIVE, ComponentError
+from btlang.components.manager import ComponentManager
 from btlang.components.process_host import ProcessHost
 from btlang.components.remote_leaf import RemoteLeaf
 from btlang.engine.leaves.leaf import ActionFailed
@@ -80,7 +79,9 @@ class _LyingHost:
 
 
 def test_a_host_that_says_nonsense_of_itself_is_given_up() -> None:
-    manager = Manager([ComponentPart("villain", "hostile:Liar", restarts=0)], lambda part, changed: _LyingHost())  # type: ignore[arg-type,return-value]
+    manager = ComponentManager(
+        [ComponentPart("villain", "hostile:Liar", restarts=0)], lambda part, changed: _LyingHost()
+    )  # type: ignore[arg-type,return-value]
     manager.start()
     assert not manager.wait(5.0)
     assert [each.why for each in manager.statuses()] == [
@@ -305,7 +306,7 @@ def test_a_part_that_is_not_installed_is_refused_before_it_is_loaded(tmp_path: P
 
 
 def test_a_restart_keeps_the_newer_version_that_waits() -> None:
-    manager = Manager([ComponentPart("villain", "hostile:Liar")], lambda part, changed: _LyingHost())  # type: ignore[arg-type,return-value]
+    manager = ComponentManager([ComponentPart("villain", "hostile:Liar")], lambda part, changed: _LyingHost())  # type: ignore[arg-type,return-value]
     newer = ComponentPart("villain", "hostile:Better")
     keeper = manager.keeper("villain")
     keeper.start = lambda: None  # type: ignore[method-assign]

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from btlang.components.device_robot import connect_devices
-from btlang.components.servo_joints import ServoJoints
+from btlang.components.parts.servo_joints import ServoJoints
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
 from btlang.devices.kinds import Command, JointState, JointTarget, Reading
 from btlang.devices.loop import DeviceLoop

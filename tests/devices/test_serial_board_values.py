@@ -23,7 +23,7 @@ from btlang.devices.kinds import (
     Wheels,
     WheelSpeeds,
 )
-from btlang.devices.serial_board.values import COMMANDS, KIND_NUMBERS, READINGS, Tally
+from btlang.devices.serial_board.messages import COMMANDS, KIND_NUMBERS, READINGS, Tally
 from tests.profiles import searches
 
 

@@ -11,8 +11,8 @@ from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 
 from btlang.diagnostics.errors import MissionError
+from btlang.maps.data_text import notation
 from btlang.maps.importing import import_world
-from btlang.maps.notation import notation
 from btlang.robots.geometry import Pose
 from btlang.robots.worlds.world import World
 from tests.profiles import searches

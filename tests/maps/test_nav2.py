@@ -10,10 +10,9 @@ import pytest
 from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 
-from btlang.maps.images import read_image
 from btlang.maps.importing import import_world
 from btlang.maps.nav2 import nav2_files
-from btlang.maps.occupancy import read_map
+from btlang.maps.occupancy import read_image, read_map
 from btlang.robots.geometry import Pose, segment_distance
 from btlang.robots.worlds.world import KEEP_OUT, SLOW, Door, FurnitureBox, Place, World, Zone
 from tests.profiles import searches

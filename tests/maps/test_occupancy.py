@@ -12,8 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.maps.contours import outlines, simplified, walls_of
-from btlang.maps.occupancy import OccupancyMap, read_map
+from btlang.maps.occupancy import OccupancyMap, outlines, read_map, simplified, walls_of
 from btlang.robots.geometry import Pose, segment_distance
 from btlang.text.toml_table import Problem
 from tests.profiles import searches

@@ -28,7 +28,10 @@ def test_examples_load(path):
 
 
 def test_names_need_no_numpy():
-    code = "import sys\nfrom btlang.robots.worlds.world_file import world_names\nworld_names()\nprint('numpy' in sys.modules)"
+    code = (
+        "import sys; from btlang.robots.worlds.world_file import world_names; world_names(); "
+        "print('numpy' in sys.modules)"
+    )
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "False\n"
 
 

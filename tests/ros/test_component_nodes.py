@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.components.manager import Keeper
+from btlang.components.manager import ComponentKeeper
 from btlang.robots.registry import connector
 from btlang.ros.components.services import AwaitedReply
 from btlang.run.events import Event
@@ -49,7 +49,7 @@ def table(command: list[str] | None = None, **keys: object) -> str:
 
 
 @contextmanager
-def up(folder: Path, component: str, over: str = "simulated") -> Iterator[tuple[Any, Keeper]]:
+def up(folder: Path, component: str, over: str = "simulated") -> Iterator[tuple[Any, ComponentKeeper]]:
     with btlang.Session(robot_file(folder, component), over=over) as session:
         yield session, session.connection.manager.keeper("arm driver")  # type: ignore[attr-defined]
 
@@ -59,7 +59,7 @@ def mission(folder: Path, text: str) -> btlang.Mission:
     return btlang.parse_tree(text, keywords=[str(folder / "arm.toml")])
 
 
-def becomes(keeper: Keeper, state: str) -> None:
+def becomes(keeper: ComponentKeeper, state: str) -> None:
     wait_until(lambda: keeper.state == state, f"{state}, not {keeper.state} ({keeper.why})", 2 * LONG)
 
 

@@ -14,8 +14,7 @@ from std_msgs.msg import Int16MultiArray
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from btlang.devices import kinds
-from btlang.devices.driver import Device, DeviceError, DeviceSilent
-from btlang.devices.drivers import driver_class
+from btlang.devices.driver import Device, DeviceError, DeviceSilent, driver_class
 from btlang.devices.kinds import KINDS
 from btlang.ros.devices.nodes import TRANSLATIONS, TopicClient
 from btlang.ros.devices.setting import Setting, TopicDevice, topic_name

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from btlang.speech.grammar import Grammar, spoken
-from btlang.speech.pronunciation import accents, guessed
-from btlang.speech.recogniser import Expected
+from btlang.speech.pocketsphinx import accents, guessed
+from btlang.speech.recogniser import Expected, Grammar, spoken
 from tests.speech.sounds import guide, lines
 
 PLACES = {"place": ("Lobby", "Room 12", "Café Zoë", "§")}

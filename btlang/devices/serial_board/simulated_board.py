@@ -1,14 +1,19 @@
-"""A simulated board, which does byte for byte what the firmware does: its wheels and joints obey their commands.
-
-`python -m btlang.devices.serial_board.simulated_board NAME` shows one on a pty, and prints the path of its port.
-"""
+"""A simulated board, which does byte for byte what the firmware does, and a serial line with faults."""
 
 from __future__ import annotations
 
+import os
+import pty
+import select
 import sys
+import threading
 import time
+import tty
 from collections.abc import Iterable
 from contextlib import suppress
+from random import Random
+from types import TracebackType
+from typing import Protocol
 
 from btlang.devices.kinds import (
     KINDS,
@@ -23,37 +28,170 @@ from btlang.devices.kinds import (
     Wheels,
     WheelSpeeds,
 )
-from btlang.devices.serial_board.frames import FrameReader, encode_frame
+from btlang.devices.serial_board.line import FrameReader, encode_frame
 from btlang.devices.serial_board.messages import (
     ASK_HELLO,
+    COMMANDS,
+    READINGS,
     STOP,
     TELL,
     VERSION,
-    Answer,
-    Channel,
+    BoardAnswer,
+    BoardChannel,
+    BoardSample,
     Hello,
-    Sample,
     answer_message,
     hello_message,
     read_ask_hello,
     read_command_head,
     read_commands,
 )
-from btlang.devices.serial_board.simulated_line import SimulatedLine
-from btlang.devices.serial_board.values import COMMANDS, READINGS
 from btlang.text.output import show
+
+_TURN = 0.002  # seconds between two turns of the board
+_BITS = 10
+
+
+class BoardModel(Protocol):
+    """What is at the end of a line; times are seconds of one clock."""
+
+    def receive(self, data: bytes, now: float) -> bytes:
+        """What it answers to bytes."""
+
+    def turn(self, now: float) -> None:
+        """Time has passed."""
+
+    def reset(self, now: float) -> None:
+        """It is started again."""
+
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """Metres a second of its wheels."""
+
+
+class SimulatedLine:
+    """A board on a pty at `path`, while it is entered. Its faults can be changed at any time:
+
+    `flipped`: the share of bytes that change on their way; `baud`: bits a second that it carries (0: no limit); `echo`:
+    what is sent comes back too; `cut`: the share of answers that are cut in half; `deaf`: nothing reaches the
+    board; `noise`: what comes besides, at each turn; `still_since`: when the wheels came to rest, None while they turn.
+    """
+
+    def __init__(self, board: BoardModel, seed: int = 0) -> None:
+        self.board = board
+        self.flipped = self.cut = 0.0
+        self.baud = 0
+        self.echo = self.deaf = False
+        self.noise = b""
+        self.still_since: float | None = time.monotonic()
+        self.path = ""
+        self._master = self._slave = -1
+        self._random = Random(seed)
+        self._lock = threading.Lock()
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._work, name="btlang simulated line", daemon=True)
+        with self._lock:
+            self.board.reset(time.monotonic())
+
+    def __enter__(self) -> SimulatedLine:
+        self.plug()
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
+        self._over.set()
+        self._thread.join()
+        self.unplug()
+        os.close(self._slave)
+
+    def plug(self) -> None:
+        """The cable is connected, and gets another path than before."""
+        master, slave = pty.openpty()
+        tty.setraw(slave)
+        os.set_blocking(master, False)
+        with self._lock:
+            before, self._slave = self._slave, slave
+            self.path, self._master = os.ttyname(slave), master
+        if before >= 0:
+            os.close(before)
+
+    def unplug(self) -> None:
+        """The cable is pulled; the board goes on. No other terminal of this machine gets its path before `plug`."""
+        with self._lock:
+            master, self._master = self._master, -1
+        if master >= 0:
+            os.close(master)
+
+    @property
+    def plugged(self) -> bool:
+        """Whether the cable is connected."""
+        return self._master >= 0
+
+    def reset(self) -> None:
+        """The board is started again."""
+        with self._lock:
+            self.board.reset(time.monotonic())
+
+    def _work(self) -> None:
+        while not self._over.is_set():
+            with self._lock:
+                master = self._master
+            ready = []
+            if master < 0:
+                self._over.wait(_TURN)
+            else:
+                with suppress(OSError, ValueError):  # it was pulled meanwhile
+                    ready = select.select([master], [], [], _TURN)[0]
+            with self._lock:
+                now = time.monotonic()
+                self.board.turn(now)
+                if 0 <= self._master == master:
+                    self._carry(master, bool(ready))
+                if any(self.board.speeds):
+                    self.still_since = None
+                elif self.still_since is None:
+                    self.still_since = time.monotonic()
+
+    def _carry(self, master: int, ready: bool) -> None:
+        data = b""
+        if ready:
+            with suppress(OSError):
+                data = os.read(master, 4096)
+        if data and self.echo:
+            self._send(master, data)
+        data = self._paced(self._damaged(data))
+        answer = b"" if self.deaf else self.board.receive(data, time.monotonic())
+        if answer and self._random.random() < self.cut:
+            answer = answer[: len(answer) // 2]
+        self._send(master, self._paced(self._damaged(answer)) + self.noise)
+
+    def _send(self, master: int, data: bytes) -> None:
+        with suppress(OSError):  # nobody reads: a line keeps nothing
+            os.write(master, data)
+
+    def _damaged(self, data: bytes) -> bytes:
+        if not self.flipped:
+            return data
+        random, share = self._random, self.flipped
+        return bytes(byte ^ random.randint(1, 255) if random.random() < share else byte for byte in data)
+
+    def _paced(self, data: bytes) -> bytes:
+        if self.baud and data:
+            time.sleep(len(data) * _BITS / self.baud)
+        return data
+
 
 SILENCE = 0.18
 """Seconds without a command after which a channel comes to rest: all is at rest in 0.2 s."""
 CHANNELS = (
-    Channel(1, "range", 0.05),
-    Channel(2, "drive", 0.02),
-    Channel(3, "imu", 0.02),
-    Channel(4, "battery", 0.5),
-    Channel(5, "button", 0.02),
-    Channel(6, "joint", 0.02),
-    Channel(7, "light", 0.0),
-    Channel(8, "display", 0.0),
+    BoardChannel(1, "range", 0.05),
+    BoardChannel(2, "drive", 0.02),
+    BoardChannel(3, "imu", 0.02),
+    BoardChannel(4, "battery", 0.5),
+    BoardChannel(5, "button", 0.02),
+    BoardChannel(6, "joint", 0.02),
+    BoardChannel(7, "light", 0.0),
+    BoardChannel(8, "display", 0.0),
 )
 """One of each kind."""
 _FIRST: dict[str, Reading] = {
@@ -74,7 +212,7 @@ class SimulatedBoard:
     seconds that its clock is ahead.
     """
 
-    def __init__(self, name: str, channels: Iterable[Channel] = CHANNELS, version: int = VERSION) -> None:
+    def __init__(self, name: str, channels: Iterable[BoardChannel] = CHANNELS, version: int = VERSION) -> None:
         self.name, self.channels, self._version = name, tuple(channels), version
         self.frozen: set[int] = set()
         self.claims: dict[int, int] = {}
@@ -137,10 +275,10 @@ class SimulatedBoard:
         elif message[0] == TELL and (head := read_command_head(message)):
             session, sequence = head
             if session == 0 or session != self._session:
-                yield answer_message(Answer(self._session, sequence, self._milliseconds(now), ()))
+                yield answer_message(BoardAnswer(self._session, sequence, self._milliseconds(now), ()))
             elif self._obey(read_commands(message), now):
                 samples = tuple(
-                    Sample(
+                    BoardSample(
                         self.claims.get(channel.number, channel.number),
                         channel.kind,
                         self._counts[channel.number],
@@ -149,7 +287,7 @@ class SimulatedBoard:
                     for channel in self.channels
                     if channel.number in self._samples
                 )
-                yield answer_message(Answer(self._session, sequence, self._milliseconds(now), samples))
+                yield answer_message(BoardAnswer(self._session, sequence, self._milliseconds(now), samples))
 
     def _obey(self, commands: tuple[tuple[int, str, bytes], ...] | None, now: float) -> bool:
         kinds = {channel.number: channel.kind for channel in self.channels}

@@ -59,7 +59,7 @@ def engine_of(body: Body, language: str = "") -> SpeechEngine:
     voice = body.voice or VoiceSpec(Settings())
     settings = voice.settings.replace(language=language) if language else voice.settings
     if not voice.engine:
-        from btlang.speech.estimate import Estimate
+        from btlang.speech.engine import Estimate
 
         return Estimate(settings)
     if voice.engine == ESPEAK:

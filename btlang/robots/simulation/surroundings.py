@@ -14,9 +14,8 @@ from btlang.robots.worlds.obstacles import Obstacles
 from btlang.robots.worlds.sight import Sight, View
 from btlang.robots.worlds.world import World, WorldObject, said
 from btlang.run.robot_state import Whereabouts
-from btlang.speech.attention import Attention
-from btlang.speech.grammar import Grammar
-from btlang.speech.recogniser import Understood
+from btlang.speech.listener import Attention
+from btlang.speech.recogniser import Grammar, RecognisedSpeech
 
 _REACH = 1.2  # metres to a door or a switch
 _HAND = 1.5  # metres to somebody who takes something
@@ -156,7 +155,7 @@ class Surroundings(Knowledge):
             return
         expected = self._attention.expected(self.ears.expected(self._now), bool(self.ears.asking), self._now)
         if expected.anything or Grammar(expected).holds(text):
-            meant = self._attention.meant(Understood(text), self._now)
+            meant = self._attention.meant(RecognisedSpeech(text), self._now)
             if meant is not None:
                 self.hear(meant.text, who)
 

@@ -15,8 +15,16 @@ from rclpy.parameter import Parameter
 from rclpy.qos import LivelinessPolicy, QoSProfile
 from std_msgs.msg import Empty
 
-from btlang.components.component import ComponentAbsent, ComponentError
-from btlang.components.life_cycle import ACTIVE, FINALIZED, INACTIVE, STATES, TRANSITIONS, UNCONFIGURED
+from btlang.components.component import (
+    ACTIVE,
+    FINALIZED,
+    INACTIVE,
+    STATES,
+    TRANSITIONS,
+    UNCONFIGURED,
+    ComponentAbsent,
+    ComponentError,
+)
 from btlang.components.started_process import StartedProcess
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.leaves.leaf import ActionFailed
@@ -64,7 +72,7 @@ _ALIVE = QoSProfile(
 
 
 class NodeHost:
-    """See btlang.components.host.Host. It knows no words: those of a ROS 2 node have `ros` tables.
+    """See btlang.components.component.Host. It knows no words: those of a ROS 2 node have `ros` tables.
 
     `changed` is called, from any thread, when there is something to look at; `closing` says whether waiting for the
     node is of no use any more. A node that somebody else has started is left unconfigured at the end, for the next one.

@@ -13,9 +13,8 @@ from rclpy.action import ActionServer, CancelResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 
-from btlang.actions.docking import APPROACH, CONNECTION, RETRY, STAGING, enter_dock
 from btlang.actions.motion import Steps
-from btlang.actions.power import undock
+from btlang.actions.power import APPROACH, CONNECTION, RETRY, STAGING, enter_dock, undock
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.robot import Station

@@ -1,16 +1,17 @@
-"""What the devices of a robot see around it, as readings for the guard and as a scan."""
+"""The sensors of a robot over its devices: readings for the guard, a scan, and the angles of servos."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import inf
 
-from btlang.devices.device_set import DeviceSet, reader
+from btlang.devices.device_set import DeviceSet, Reads, reader
 from btlang.devices.driver import DeviceError
-from btlang.devices.kinds import Distance, Pressed, Scan
-from btlang.robots.bodies.body import Sensor
+from btlang.devices.kinds import Distance, JointState, Pressed, Scan
+from btlang.robots.bodies.body import Body, Sensor
 from btlang.robots.geometry import CENTRE
 from btlang.robots.motion.guard.readings import ContactReading, ObstacleReading, RangeReading, ScanReading
+from btlang.robots.robot import joint_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -76,3 +77,10 @@ class DeviceSensors:
             found = around(ranges, angles, self._scanner.pose if self._scanner.frame else CENTRE, abs(reading.step))
             self._seen = reading, found, *summary(found, self._radius)
         return self._seen[1:]
+
+
+def servo_angle(body: Body, devices: Mapping[str, Reads], name: str) -> float:
+    """Where a joint is, as its servo measures it. Raises RobotError for an unknown joint, and DeviceSilent."""
+    reading = reader(devices, joint_of(body, name).name, name).read(name)
+    assert isinstance(reading, JointState)
+    return reading.position

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from btlang.components.servos import servo_angle
+from btlang.components.parts.sensors import servo_angle
 from btlang.devices.device_set import Reads
 from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import JointTarget

@@ -10,8 +10,7 @@ from btlang.actions.conversation import MEANINGS, answers, meaning_of
 from btlang.devices.kinds import Pressed, Reading, Sound
 from btlang.robots.bodies.speech_tables import recogniser_of
 from btlang.robots.robot import RobotError
-from btlang.speech.attention import Attention
-from btlang.speech.listener import Listener
+from btlang.speech.listener import Attention, Listener
 from btlang.speech.recogniser import RATE, Expected
 
 TYPE_CHECKING = False

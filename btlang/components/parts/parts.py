@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from math import inf
 
-from btlang.components.base import DeviceBase
-from btlang.components.sensors import DeviceSensors
-from btlang.components.servos import servo_angle
+from btlang.components.parts.base import DeviceBase
+from btlang.components.parts.sensors import DeviceSensors, servo_angle
 from btlang.devices.device_set import DeviceSet, Reads, reader
 from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import Charge, Grip, GripTarget, JointTarget, Play, Shown
@@ -121,7 +120,7 @@ def joints_over(body: Body, devices: Mapping[str, Reads]) -> JointsPart:
     """Joints over servos, whose movements are planned where they are smooth."""
     if not body.is_smooth:
         return DeviceJoints(body, devices)
-    from btlang.components.servo_joints import ServoJoints  # brings numpy and ruckig
+    from btlang.components.parts.servo_joints import ServoJoints  # brings numpy and ruckig
 
     return ServoJoints(body, devices)
 

@@ -1,20 +1,157 @@
-"""The driver `sound`: microphones and speakers over ALSA, and files in their place, through PyAV (FFmpeg)."""
+"""Cameras, microphones and speakers of this computer, and files in their place, through PyAV (FFmpeg)."""
 
 from __future__ import annotations
 
 import threading
+import time
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from importlib.util import find_spec
 from typing import ClassVar
 
 from btlang.devices.driver import Device, DeviceError
-from btlang.devices.kinds import Command, Play, Playing, Reading, Sound
-from btlang.devices.media.source import MediaSource, missing
+from btlang.devices.kinds import Command, Image, Play, Playing, Reading, Sound
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+
+_JOIN = 1.0  # seconds that a camera gets to give the picture that it is about to give
+
+
+def missing(extra: str) -> DeviceError:
+    """PyAV isn't installed."""
+    return DeviceError(f"it needs the Python package av, which isn't installed: pip install 'btlang[{extra}]'")
+
+
+class MediaSource:
+    """Opens a place with PyAV and hands each frame to `take`, in a thread; files at the speed of their time.
+
+    `form` is the FFmpeg format of a device, such as v4l2; "" for a file, which begins again when it is over if it
+    `repeats`. Raises DeviceError where it can't be opened.
+    """
+
+    def __init__(
+        self, place: str, form: str, kind: str, options: dict[str, str], repeats: bool, take: Callable[[Any], object]
+    ) -> None:
+        self._place, self._form, self._kind, self._options = place, form, kind, options
+        self._repeats, self._take = repeats, take
+        self._problem: str | None = None
+        self._ended = threading.Event()
+        container = self._open()
+        self._thread = threading.Thread(target=self._work, args=(container,), name="btlang media", daemon=True)
+        self._thread.start()
+
+    def check(self) -> None:
+        """Raises DeviceError where nothing more comes."""
+        if self._problem is not None:
+            raise DeviceError(self._problem)
+
+    def close(self) -> None:
+        """Lets go of it; of a device that gives nothing any more, as soon as it does."""
+        self._ended.set()
+        self._thread.join(_JOIN)
+
+    def _open(self) -> Any:
+        import av
+
+        try:
+            container = av.open(self._place, format=self._form or None, options=self._options)
+        except (av.FFmpegError, OSError, ValueError) as problem:
+            reason = getattr(problem, "strerror", None) or str(problem)
+            raise DeviceError(f"{self._place} can't be opened: {reason}") from None
+        if not getattr(container.streams, self._kind):
+            container.close()
+            raise DeviceError(f"{self._place} has no {self._kind}")
+        return container
+
+    def _work(self, container: Any) -> None:
+        try:
+            self._read(container)
+            while self._repeats and not self._ended.is_set():
+                self._read(self._open())
+            self._problem = f"{self._place} is over"
+        except Exception as problem:  # of FFmpeg, when a device is pulled
+            self._problem = f"{self._place} is lost: {getattr(problem, 'strerror', None) or problem}"
+
+    def _read(self, container: Any) -> None:
+        began, first = time.monotonic(), None
+        try:
+            for frame in container.decode(**{self._kind: 0}):
+                if not self._form and frame.time is not None:
+                    first = frame.time if first is None else first
+                    self._ended.wait(max(0.0, began + frame.time - first - time.monotonic()))
+                if self._ended.is_set():
+                    return
+                self._take(frame)
+        finally:
+            with suppress(Exception):
+                container.close()
+
+
+_OPTIONS = ("width", "height", "rate", "repeat")
+
+
+class Camera:
+    """See btlang.devices.driver.Driver. The port is a device such as /dev/video0, or a video or picture file.
+
+    Options: `width`, `height` and `rate` that a device is asked for, pictures a second at most (10); `repeat` = false
+    ends a file when it is over.
+    """
+
+    kinds: ClassVar[Sequence[str]] = ("camera",)
+    needs_port: ClassVar[bool] = True
+
+    def __init__(self, port: str, devices: Sequence[Device]) -> None:
+        if len(devices) > 1:
+            raise DeviceError(f"{port} is one camera: the {devices[1].name} needs another port")
+        self._port, self._device = port, devices[0]
+        for name in self._device.options:
+            if name not in _OPTIONS:
+                listed = ", ".join(_OPTIONS)
+                raise DeviceError(f'unknown option "{name}" of the {self._device.name}; it has {listed}')
+        options = self._device.options
+        for name in ("width", "height", "rate"):
+            if name in options and not (isinstance(options[name], int | float) and options[name] > 0):
+                raise DeviceError(f'"{name}" of the {self._device.name} must be a positive number')
+        self.rate = float(options.get("rate", 10.0))
+        self._source: MediaSource | None = None
+        self._newest: Any = None
+
+    def open(self) -> None:
+        """See Driver."""
+        if find_spec("av") is None:
+            raise missing("camera")
+        options, wanted = self._device.options, {}
+        is_device = self._port.startswith("/dev/")
+        if is_device and "width" in options and "height" in options:
+            wanted["video_size"] = f"{options['width']:g}x{options['height']:g}"
+        if is_device and "rate" in options:
+            wanted["framerate"] = f"{options['rate']:g}"
+        repeats = not is_device and options.get("repeat", True) is True
+        self._source = MediaSource(self._port, "v4l2" if is_device else "", "video", wanted, repeats, self._take)
+
+    def exchange(self, commands: Mapping[str, Command]) -> Mapping[str, Reading | DeviceError]:
+        """See Driver."""
+        assert self._source is not None
+        frame, self._newest = self._newest, None
+        if frame is None:
+            self._source.check()
+            return {}
+        pixels = frame.to_ndarray(format="rgb24")
+        return {self._device.name: Image(frame.width, frame.height, pixels.tobytes())}
+
+    def close(self) -> None:
+        """See Driver."""
+        source, self._source, self._newest = self._source, None, None
+        if source is not None:
+            source.close()
+
+    def _take(self, frame: Any) -> None:
+        self._newest = frame
+
 
 _RATE = 16_000
 _LONGEST = 5 * _RATE * 2  # bytes that wait for somebody who listens

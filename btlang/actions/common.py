@@ -1,0 +1,102 @@
+"""What actions share: what moving actions look out for, the pace, and the places and things that texts mean."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import Protocol
+
+from btlang.engine.leaves.leaf import ActionFailed
+from btlang.robots.geometry import Point
+from btlang.robots.robot import Base, Machine, Power, RobotError, Sensors
+
+
+def where(robot: Base, place: str | None, x: float | None, y: float | None) -> Point:
+    """Metres on the map. Raises RobotError for an unknown place, and where neither it nor a point is given."""
+    if place is not None:
+        return robot.locate(place)
+    if x is None or y is None:
+        raise RobotError("neither a place nor a point is given")
+    return x, y
+
+
+def spot(x: float | None, y: float | None) -> str:
+    """What a point is called in messages."""
+    return f"({x}, {y})"
+
+
+def things_described(robot: Base, type: str, **parts: str) -> list[str]:
+    """The names of the type "object" or "person" with these parts that the robot knows, nearest first.
+
+    The parts are `kind`, `color` and `use` of objects, `clothing`, `color` and `gesture` of people; "" is any.
+    """
+    return robot.described(type, {name: text for name, text in parts.items() if text})
+
+
+_SHARES = {"slowly": 0.5, "carefully": 0.5, "quietly": 0.4}
+"""Of the normal speed. Who goes quickly goes as fast as the robot can."""
+
+
+def paced(robot: Base, manner: str | None, steps: Generator[None, None, None]) -> Generator[None, None, None]:
+    """Does the steps in this manner, without one at the pace there is; halted, they are halted."""
+    if manner is None:
+        yield from steps
+        return
+    before, robot.pace = robot.pace, share_of(robot, manner)
+    try:
+        yield from steps
+    finally:
+        robot.pace = before
+
+
+def share_of(robot: Base, manner: str | None) -> float:
+    """The share of the normal speed; 1 without a manner."""
+    return 1.0 if manner is None else _SHARES.get(manner, robot.max_speed / robot.normal_speed)
+
+
+STUCK = "the wheels turn but the robot doesn't move"
+
+
+class Driving(Base, Sensors, Power, Protocol):
+    """A base that says what keeps it from driving on, as far as it has a bumper and a battery."""
+
+
+class Watch:
+    """Notices emergency stops that happen after it was made."""
+
+    def __init__(self, robot: Machine) -> None:
+        self._machine = robot
+        self._stops = robot.stops
+
+    def check_stop(self) -> None:
+        """Raises ActionFailed when somebody has stopped the robot."""
+        if self._machine.stops != self._stops:
+            raise ActionFailed("the robot was stopped")
+
+    def pause(self, seconds: float) -> Generator[None, None, None]:
+        """Waits. Raises as `check_stop`."""
+        until = self._machine.time + seconds
+        while self._machine.time < until:
+            yield
+            self.check_stop()
+
+
+class BaseWatch(Watch):
+    """Notices bumps and the like, too."""
+
+    def __init__(self, robot: Driving) -> None:
+        super().__init__(robot)
+        self._robot = robot
+        self._bumps = robot.bumps
+
+    def check_base(self, so_far: str) -> None:
+        """Raises ActionFailed when the base cannot go on; `so_far` says how far it got: "0.31 m"."""
+        self.check_stop()
+        if self._robot.bumps != self._bumps:
+            raise ActionFailed(f"bumped into something after {so_far}")
+        if self._robot.battery_empty:
+            raise ActionFailed(f"the battery is empty after {so_far}")
+        reason = self._robot.held_back
+        if self._robot.stuck:
+            raise ActionFailed(f"stuck after {so_far}: {reason or STUCK}")
+        if reason:
+            raise ActionFailed(f"stopped after {so_far}: {reason}")
