@@ -16,12 +16,15 @@ _ASLEEP = 1.5  # seconds in which no thread looks
 
 
 def _real() -> float:
-    """Seconds of real time; those of a suspended computer count if the system reports them."""
+    """Return seconds of real time, including those of a suspended computer if the system reports them."""
     return time.clock_gettime(time.CLOCK_BOOTTIME) if hasattr(time, "CLOCK_BOOTTIME") else time.monotonic()
 
 
 class AwakeClock:
-    """May be read from any thread, and from handlers of signals. Naps are noticed while some node watches for them."""
+    """A clock that stands still while this process sleeps; for any thread and for signal handlers.
+
+    Naps are noticed while some node watches for them.
+    """
 
     def __init__(self, real: Callable[[], float] = _real) -> None:
         self.naps = 0
@@ -34,18 +37,18 @@ class AwakeClock:
         self._watchers = 0
 
     def watch(self) -> None:
-        """From now on somebody calls `now` with each heartbeat."""
+        """Count a watcher, which calls `now` with each heartbeat from now on."""
         with self._lock:
             self.now()
             self._watchers += 1
 
     def unwatch(self) -> None:
-        """Nobody does so any more, for one call of `watch`."""
+        """End one `watch`."""
         with self._lock:
             self._watchers -= 1
 
     def now(self) -> float:
-        """Seconds that go on only while this process runs."""
+        """Return the seconds for which this process has run."""
         with self._lock:
             real = self._real()
             gap, self._seen = real - self._seen, real
@@ -55,7 +58,7 @@ class AwakeClock:
             return real - self._slept
 
     def since_woke(self) -> float:
-        """Seconds since it was asleep; infinite where it never was."""
+        """Return the seconds since the last nap; infinite if there was none."""
         return self.now() - self._woke
 
 
@@ -70,12 +73,12 @@ _LEAP, _FASTEST = 10.0, 1000.0  # seconds that a clock may be ahead of a look, a
 
 
 class SteadyTime:
-    """Seconds that follow the clock `read` and never go back; from any thread.
+    """Seconds that follow the clock `read` and never go back; for any thread.
 
-    A clock may stand still, run backwards or leap, and two programs may publish it in turn. What isn't a step forward
-    is not counted. After STANDING seconds of that, time goes on with the computer's clock until the other one steps
-    forward again from where it then is, as that of a simulator that was restarted does. So what waits for a time always
-    gets there. `said` is called once with each thing that a clock should not do.
+    A clock may stand still, run backwards or leap, and two programs may publish it in turn. Only steps forward are
+    counted. After STANDING seconds without one, time goes on with the computer's clock until the other clock steps
+    forward again, as that of a restarted simulator does. So every wait ends. `said` is called once with each thing that
+    a clock shouldn't do.
     """
 
     def __init__(self, read: Callable[[], float], said: Callable[[str], object] = str) -> None:
@@ -88,7 +91,7 @@ class SteadyTime:
         self._seen: tuple[float, float, float, float] = now, time.monotonic(), 0.0, now
 
     def now(self) -> float:
-        """Seconds."""
+        """Return the seconds that have passed."""
         before, looked, stood, now = self._seen
         clock, real = self._read(), time.monotonic()
         elapsed, step = real - looked, clock - before
@@ -118,7 +121,7 @@ _LOOK = 0.01  # seconds between two looks
 
 
 def wait_until(holds: Callable[[], object], limit: float) -> None:
-    """Blocks until something holds, for so many real seconds at most. It is asked once in any case."""
+    """Block until something holds, for at most `limit` real seconds. It is checked at least once."""
     until = time.monotonic() + limit
     while not holds() and time.monotonic() < until:
         time.sleep(_LOOK)
@@ -130,11 +133,11 @@ _CLOCK_LOOK = 0.002  # seconds between two looks at a clock that may run faster 
 
 
 class RosPace(Pace):
-    """Sleeps by a simulator's clock `now`, or by that of the system (None).
+    """The pace of a run by a simulator's clock `now`, or by that of the system (None).
 
-    What `sleep` returns is all the time since the sleep before it, the tick included. A simulator's clock may do what
-    it likes (see SteadyTime): the mission still ticks, its leaves find out what is wrong, and it ends. `said` is called
-    once with each thing that the clock should not do.
+    `sleep` returns all the time since the previous sleep, the tick included. A simulator's clock may do anything (see
+    SteadyTime): the mission still ticks, its leaves find out what is wrong, and it ends. `said` is called once with
+    each thing that the clock shouldn't do.
     """
 
     def __init__(
@@ -149,11 +152,11 @@ class RosPace(Pace):
         self._rested = 0.0  # real seconds that it has taken
 
     def begin(self) -> None:
-        """A period begins now."""
+        """Begin a period now."""
         self._last = self._due = self._time()
 
     def sleep(self, period: float, wait: float = math.inf) -> float:
-        """Sleeps as Pace does; returns the seconds that have passed."""
+        """Sleep as Pace does; return the seconds that have passed."""
         now = self._time()
         if now >= self._due + period:
             self.late += 1
@@ -166,8 +169,10 @@ class RosPace(Pace):
         return passed
 
     def rest(self, seconds: float) -> float:
-        """As `sleep`, whatever is asked for meanwhile. Waits for no clock that stands still or is much too slow, and a
-        second in sum for one that has failed.
+        """Sleep like `sleep`, whatever is requested meanwhile.
+
+        Doesn't wait for a clock that stands still or is much too slow, and waits at most a second in total for one that
+        has failed.
         """
         begin, began = self._time(), time.monotonic()
         allowed, took = self._spare + _SLOW * seconds, 0.0
@@ -179,5 +184,5 @@ class RosPace(Pace):
         return max(passed, seconds)
 
     def _left(self) -> float:
-        """Real seconds that the time after a run may still take."""
+        """Return the real seconds that the time after a run may still take."""
         return _ENDING - self._rested if self._steady is not None and self._steady.has_failed else math.inf

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 class EndingSignals:
-    """Those that have come; `on_arrival` is called by each."""
+    """The signals that have come; each calls `on_arrival`."""
 
     def __init__(self) -> None:
         self.numbers: list[int] = []
@@ -48,7 +48,7 @@ class EndingSignals:
 
 @contextmanager
 def ending_signals() -> Iterator[EndingSignals]:
-    """Ctrl-C and signals to end are kept instead of ending the process at once. One that is ignored stays so."""
+    """Keep Ctrl-C and other ending signals, instead of ending the process at once. Ignored ones stay ignored."""
     came = EndingSignals()
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, *ENDING_SIGNALS)}
     taken = [number for number, handler in before.items() if handler != signal.SIG_IGN]
@@ -67,7 +67,7 @@ _COMPILE = "Compile it: python -m btlang.ros.interfaces tests/ros/composition_in
 
 
 def connect_ros(world: World, **options: Any) -> RosConnection:
-    """A connection to a ROS 2 robot, with the options of RosConnection. Raises MissionError (BT100) without ROS 2."""
+    """Connect to a ROS 2 robot, with the options of RosConnection. Raises MissionError (BT100) without ROS 2."""
     require_ros(*_PACKAGES)
     from btlang.ros.robot.connection import RosConnection
 
@@ -75,7 +75,7 @@ def connect_ros(world: World, **options: Any) -> RosConnection:
 
 
 def connect_actions(world: World, *, namespace: str = "", servers: str = "", **options: Any) -> RosConnection:
-    """As connect_ros, where each action is done by its server, by default one of the same namespace.
+    """Connect like connect_ros, but let servers do the actions, by default those of the same namespace.
 
     Raises MissionError (BT100, BT110).
     """
@@ -86,7 +86,7 @@ def connect_actions(world: World, *, namespace: str = "", servers: str = "", **o
 
 
 def component_nodes(robot: Any, body: Body) -> ComponentNodes:
-    """What leads the components of a robot that are nodes. Raises MissionError (BT100) without ROS 2."""
+    """Return the node that leads the components that are ROS 2 nodes. Raises MissionError (BT100) without ROS 2."""
     containers = any(part.node is not None and part.node.container for part in body.components)
     require_ros("lifecycle_msgs", "rcl_interfaces", "std_msgs")
     if containers and find_spec("composition_interfaces") is None:
@@ -97,7 +97,7 @@ def component_nodes(robot: Any, body: Body) -> ComponentNodes:
 
 
 def add_robot_options(parser: ArgumentParser) -> None:
-    """The options of `btc run` that choose a robot."""
+    """Add the options of `btc run` that choose a robot."""
     add_body_options(parser)
     add_simulate(parser)
     parser.add_argument(
@@ -115,7 +115,7 @@ def add_robot_options(parser: ArgumentParser) -> None:
 
 
 def add_body_options(parser: ArgumentParser, platforms: Sequence[str] = tuple(ROBOTS)) -> None:
-    """The options --robot and --over, for a verb whose robot runs on these."""
+    """Add the options --robot and --over, for a verb whose robot runs on these."""
     parser.add_argument(
         "--robot",
         type=robot_on(platforms),
@@ -129,12 +129,15 @@ def add_body_options(parser: ArgumentParser, platforms: Sequence[str] = tuple(RO
 
 
 def add_namespace(parser: ArgumentParser, what: str) -> None:
-    """The option --namespace."""
+    """Add the option --namespace."""
     parser.add_argument("--namespace", type=namespace, default="", metavar="NS", help=what)
 
 
 def chosen_robot(options: Namespace) -> Connector:
-    """As `btlang.Session` takes it. Ends with a usage error where options do not go together. Raises MissionError."""
+    """Return the chosen robot as `btlang.Session` takes it.
+
+    Exits with a usage error if options exclude each other. Raises MissionError.
+    """
     if options.simulate:
         if options.over not in (None, "devices"):
             options.refuse("--simulate is for robots that run over devices")
@@ -152,7 +155,10 @@ def chosen_robot(options: Namespace) -> Connector:
 
 
 def platform_of(options: Namespace) -> str:
-    """What the chosen robot runs on. Ends with a usage error where that takes no --speed. Raises MissionError."""
+    """Return what the chosen robot runs on.
+
+    Exits with a usage error if that takes no --speed. Raises MissionError.
+    """
     body, over = runs_on(options.robot, options.over)
     if options.speed != "real" and runs_in_real_time(body, over, getattr(options, "simulate", ())):
         how = f"--robot {over}" if options.robot == over else f"--robot {options.robot} over {over}"
@@ -161,9 +167,9 @@ def platform_of(options: Namespace) -> str:
 
 
 def print_preflight(tree: Tree, vocabulary: Lexicon, world: World, robot: Any) -> bool:
-    """Prints what a tree needs of the robot, a line each; returns whether all of it is there. Raises MissionError.
+    """Print what a tree needs of the robot, one line each; return whether all of it is there.
 
-    `robot` is what `chosen_robot` gives for a ROS 2 robot.
+    `robot` is what `chosen_robot` returns for a ROS 2 robot. Raises MissionError.
     """
     with closing(robot(world)) as connection:
         found = connection.survey(tree, vocabulary)

@@ -18,7 +18,7 @@ from btlang.ros.lease import Leases
 
 
 def unanswered(client: Any, goal_id: UUID) -> ClientGoalHandle:
-    """Of a goal that a client of an action has sent and heard nothing of; for cancelling it, and for its result."""
+    """Return a handle of a goal that was sent and not answered, to cancel it or to get its result."""
     return ClientGoalHandle(client, goal_id, SimpleNamespace(accepted=True))
 
 
@@ -28,7 +28,7 @@ GONE = "its client is gone"
 
 
 class HeldGoal:
-    """A goal that was accepted and goes on until `end`. Both methods may be called from any thread."""
+    """A goal that was accepted and goes on until `end`. Both methods are for any thread."""
 
     def __init__(self, handle: ServerGoalHandle, end: Callable[[bool, Any], object]) -> None:
         self.request: Any = handle.request
@@ -36,20 +36,20 @@ class HeldGoal:
         self._end = end
 
     def publish_feedback(self, feedback: Any) -> None:
-        """Publishes feedback."""
+        """Publish feedback to the client."""
         self._handle.publish_feedback(feedback)
 
     def end(self, success: bool, result: Any) -> None:
-        """Gives the result: it has succeeded, or was cancelled where somebody asked for that, else aborted."""
+        """Send the result: the goal has succeeded, was cancelled if somebody asked for that, or else aborted."""
         self._end(success, result)
 
 
 class GoalServer:
-    """Any number of goals of one action, as far as `accepts` takes them.
+    """An action server for any number of goals, as far as `accepts` takes them.
 
-    `begin` starts the work of a goal that was accepted and returns what cancels it, for a reason; the work calls
-    `HeldGoal.end` once, also after that. A goal whose client has died is cancelled too (see lease.py). Both functions,
-    and what cancels, are called in the thread of the executor and must not wait.
+    `begin` starts the work of an accepted goal and returns a function that cancels it, for a reason; the work calls
+    `HeldGoal.end` once, also after that. A goal whose client has died is cancelled too (see lease.py). All these
+    functions are called in the thread of the executor and must not wait.
     """
 
     def __init__(
@@ -95,7 +95,7 @@ class GoalServer:
         return CancelResponse.ACCEPT
 
     def _finish(self, success: bool, result: Any, handle: ServerGoalHandle) -> Any:
-        """In the thread of the executor, after the cancelling of the goal was answered."""
+        """Finish a goal, in the thread of the executor, after the request to cancel it was answered."""
         goal_id = bytes(handle.goal_id.uuid)
         self._cancels.pop(goal_id, None)
         self._leases.forget(goal_id)

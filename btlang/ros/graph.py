@@ -20,9 +20,10 @@ _LONGEST = 50
 
 
 def graph_names(names: Iterable[str], kind: str) -> dict[str, str]:
-    """A token for each name: "lab_door" for "lab door". What has no letter that ROS 2 allows is called by its kind.
+    """Return a token for each name: "lab_door" for "lab door".
 
-    A token that is taken gets a number, in the order of the names.
+    A name without letters that ROS 2 allows is called by its kind. A token that is taken gets a number, in the order of
+    the names.
     """
     tokens: dict[str, str] = {}
     for name in names:
@@ -37,9 +38,9 @@ def graph_names(names: Iterable[str], kind: str) -> dict[str, str]:
 
 
 def is_connected(node: Node, name: str) -> bool:
-    """Whether somebody hears what the node publishes on a topic, or serves its client of a service.
+    """Return whether somebody hears what the node publishes on a topic, or serves its client of a service.
 
-    `name` is the full one. True where the node has neither.
+    `name` is the full name. True if the node has neither.
     """
     heard = (publisher.get_subscription_count() > 0 for publisher in node.publishers if publisher.topic_name == name)
     served = (client.service_is_ready() for client in node.clients if client.service_name == name)
@@ -61,7 +62,8 @@ def full_name(node: Any, kind: str, name: str) -> str:
 
 
 def absent(node: Any, kind: str, name: str, wanted: Any) -> str:
-    """Why there is no publisher, listener, service or action: nobody has it, or it is of another type; "" where it is.
+    """Return why there is no publisher, listener, service or action: nobody has it, or it has another type; "" if it
+    exists.
 
     `wanted` is the class of the type, or its name.
     """
@@ -80,9 +82,10 @@ def absent(node: Any, kind: str, name: str, wanted: Any) -> str:
 
 
 def mismatch(node: Any, kind: str, name: str) -> str:
-    """Why nothing that the node hears or publishes on a topic can be exchanged with anybody, "" where it can.
+    """Return why nothing on a topic can be exchanged with anybody, "" if it can.
 
-    Reliability and durability alone: rclpy shows limits of time that aren't set differently at both ends.
+    Only reliability and durability count: rclpy reports limits of time even if they aren't set differently at both
+    ends.
     """
     heard = kind == "publisher"
     name = full_name(node, kind, name)
@@ -104,7 +107,7 @@ def mismatch(node: Any, kind: str, name: str) -> str:
 
 
 def _lacking(offered: QoSProfile, requested: QoSProfile) -> list[tuple[Any, Any]]:
-    """The policies of a publisher that are too weak, each with what the listener asks for."""
+    """Return the policies of a publisher that are too weak, each with what the listener requests."""
     policies = (
         (offered.reliability, requested.reliability, ReliabilityPolicy.BEST_EFFORT, ReliabilityPolicy.RELIABLE),
         (offered.durability, requested.durability, DurabilityPolicy.VOLATILE, DurabilityPolicy.TRANSIENT_LOCAL),
@@ -113,29 +116,29 @@ def _lacking(offered: QoSProfile, requested: QoSProfile) -> list[tuple[Any, Any]
 
 
 def is_ready(client: Any) -> bool:
-    """Whether there is a server for a client of an action or a service."""
+    """Return whether there is a server for a client of an action or a service."""
     return bool(client.server_is_ready() if isinstance(client, ActionClient) else client.service_is_ready())
 
 
 def no_server(node: Any, cls: Any, name: str) -> str:
-    """Why a client has no server."""
+    """Return why a client has no server."""
     kind = type_name(cls).split("/")[1].replace("srv", "service")
     return absent(node, kind, name, cls) or f"the {kind} server {name} is not connected yet"
 
 
 def no_listener(node: Any, cls: Any, name: str) -> str:
-    """Why nobody hears what is published."""
+    """Return why nobody hears what is published."""
     why = absent(node, "listener", name, cls) or mismatch(node, "listener", name)
     return why or f"nobody listens to {name} yet"
 
 
 def no_publisher(node: Any, cls: Any, name: str) -> str:
-    """Why nothing comes on a topic, "" where it is only silent."""
+    """Return why nothing comes on a topic, "" if it is only silent."""
     return absent(node, "publisher", name, cls) or mismatch(node, "publisher", name)
 
 
 def types_of(node: Any, kind: str, name: str) -> set[str]:
-    """The types with which the graph has a full name; `kind` is as in `absent`."""
+    """Return the types of a full name in the graph; `kind` is as in `absent`."""
     if kind == "publisher":
         return {end.topic_type for end in node.get_publishers_info_by_topic(name)}
     if kind == "listener":

@@ -33,7 +33,9 @@ _ASKED = 11  # rounds before the end of these in which it is asked for an answer
 
 
 class Lease:
-    """Of a client, for as long as its node lives. Make it before clients of actions: then their servers know it."""
+    """A lease of a client, for as long as its node lives. Make it before clients of actions,
+    so that servers know it.
+    """
 
     def __init__(self, node: Node) -> None:
         self._client = os.urandom(_CLIENT)
@@ -41,12 +43,12 @@ class Lease:
         self._publisher = node.create_publisher(Empty, _topic(self._client), _qos(_ASSERTED))
 
     def goal_id(self) -> UUID:
-        """The `goal_uuid` for send_goal_async of a goal that is to be halted when this process dies."""
+        """Return the `goal_uuid` for send_goal_async of a goal that is to be halted if this process dies."""
         return UUID(uuid=list(_MARK + self._client + next(self._numbers).to_bytes(_GOAL, "big")))
 
 
 class Leases:
-    """What the servers of a node know of their clients. To be used in the thread that spins the node."""
+    """What the servers of a node know of their clients, for the thread that spins the node."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -54,7 +56,7 @@ class Leases:
         self._clients: dict[bytes, _LeaseHolder] = {}
 
     def watch(self, goal_id: bytes, lost: Callable[[], object]) -> None:
-        """Calls `lost` once when the client of a goal has been silent for a second, unless the goal is forgotten."""
+        """Call `lost` once if the client of a goal has been silent for a second, unless the goal is forgotten."""
         name = _client_of(goal_id)
         if name is None:
             return
@@ -63,16 +65,17 @@ class Leases:
         self._clients[name].goals[goal_id] = lost
 
     def forget(self, goal_id: bytes) -> None:
-        """The goal is over."""
+        """Forget a goal that is over."""
         name = _client_of(goal_id)
         if name in self._clients:
             self._clients[name].goals.pop(goal_id, None)
 
 
 class _LeaseHolder:
-    """One that has sent goals, watched until it is gone: a second subscription would hear nothing of it in Fast DDS.
+    """A client that has sent goals, watched until it is gone.
 
-    `goals` has what to call when it is lost, `gone` is called then.
+    It is never subscribed twice: in Fast DDS a second subscription would hear nothing of it. `goals` has the functions
+    to call when it is lost; `gone` is called then.
     """
 
     def __init__(self, node: Node, name: bytes, clock: Clock, gone: Callable[[], object]) -> None:
@@ -88,7 +91,9 @@ class _LeaseHolder:
         )  # fmt: skip
 
     def _changed(self, info: Any) -> None:
-        """Silence may be that of this process, which was held up: what has come meanwhile is then heard in a moment."""
+        """Doubt a silent client: the silence may be that of this process, which then hears in a
+        moment what has come.
+        """
         if info.alive_count:
             self._heard = True
             self._timer.cancel()
@@ -97,7 +102,7 @@ class _LeaseHolder:
             self._timer.reset()
 
     def _doubt(self) -> None:
-        """Rounds are counted, and not seconds: in each of them this process was there to hear something."""
+        """Count rounds rather than seconds: in each round this process was able to hear something."""
         self._rounds -= 1
         if not self._heard and self._rounds < _ASKED:
             self._ask()
@@ -115,7 +120,9 @@ class _LeaseHolder:
             notify()
 
     def _ask(self) -> None:
-        """Whether its node answers, as any does that is spun, where liveliness has not come though it should have."""
+        """Ask the node of the client, which answers if it is spun, when liveliness hasn't come
+        although it should have.
+        """
         if self._question is None:
             for end in self._node.get_publishers_info_by_topic(self._topic):
                 name = f"{end.node_namespace.rstrip('/')}/{end.node_name}/get_parameters"
@@ -129,7 +136,7 @@ class _LeaseHolder:
 
 
 def _client_of(goal_id: bytes) -> bytes | None:
-    """None for a goal without a lease."""
+    """Return the client of a goal; None for a goal without a lease."""
     return goal_id[len(_MARK) : len(_MARK) + _CLIENT] if goal_id.startswith(_MARK) else None
 
 

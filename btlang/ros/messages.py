@@ -21,19 +21,19 @@ from btlang.robots.robot import RobotError
 
 
 def duration(seconds: float) -> Duration:
-    """builtin_interfaces/Duration."""
+    """Return seconds as builtin_interfaces/Duration."""
     whole, part = _parts(seconds)
     return Duration(sec=whole, nanosec=part)
 
 
 def stamp(seconds: float) -> Time:
-    """builtin_interfaces/Time."""
+    """Return seconds as builtin_interfaces/Time."""
     whole, part = _parts(seconds)
     return Time(sec=whole, nanosec=part)
 
 
 def seconds_of(message: Any) -> float:
-    """A Time or a Duration in seconds."""
+    """Return a Time or a Duration in seconds."""
     return float(message.sec + message.nanosec * 1e-9)
 
 
@@ -42,7 +42,7 @@ def _parts(seconds: float) -> tuple[int, int]:
 
 
 def type_name(cls: Any) -> str:
-    """A class as ROS 2 names its type: std_msgs/msg/String."""
+    """Return the name of a message class in ROS 2: std_msgs/msg/String."""
     if isinstance(cls, str):
         return cls
     package, module = cls.__module__.split(".")[:2]
@@ -54,7 +54,7 @@ MAP, ODOM, BASE = "map", "odom", "base_link"
 
 
 def pose_message(pose: Pose) -> PoseMessage:
-    """The message of a pose."""
+    """Return the message of a pose."""
     message = PoseMessage()
     message.position.x, message.position.y = pose.x, pose.y
     set_yaw(message.orientation, radians(pose.heading))
@@ -62,24 +62,24 @@ def pose_message(pose: Pose) -> PoseMessage:
 
 
 def stamped_pose(pose: Pose, stamp: Any) -> PoseStamped:
-    """A pose on the map at a time."""
+    """Return a PoseStamped on the map at a time."""
     message = PoseStamped(pose=pose_message(pose))
     message.header.frame_id, message.header.stamp = MAP, stamp
     return message
 
 
 def pose_of(message: Any) -> Pose:
-    """The pose of a geometry_msgs/Pose: what is above the floor, and roll and pitch, do not count."""
+    """Return the pose of a geometry_msgs/Pose; height, roll and pitch don't count."""
     return Pose(message.position.x, message.position.y, degrees(yaw_of(message.orientation)))
 
 
 def set_yaw(quaternion: Any, yaw: float) -> None:
-    """Makes an upright quaternion face a direction in radians."""
+    """Make an upright quaternion face a direction in radians."""
     quaternion.z, quaternion.w = sin(yaw / 2), cos(yaw / 2)
 
 
 def yaw_of(quaternion: Any) -> float:
-    """The direction that a quaternion faces, in radians."""
+    """Return the direction that a quaternion faces, in radians."""
     q = quaternion
     return atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
 
@@ -88,10 +88,10 @@ _TOUCHING = 0.01  # metres of an echo that is too close, where a scanner measure
 
 
 def echoes(scan: Any) -> npt.NDArray[np.float64]:
-    """The metres of each beam by REP 117: inf where nothing is in range, NaN where it says nothing.
+    """Return the metres of each beam by REP 117: inf if nothing is in range, NaN if the beam has no measurement.
 
-    What is too close to be measured, -inf, is as near as the scanner can measure. One that does not say how far it
-    sees, with a `range_max` of 0, sees as far as its echoes are.
+    A beam of -inf is too close to be measured, and becomes the nearest distance of the scanner. A scanner with a
+    `range_max` of 0 sees as far as its echoes are.
     """
     ranges = np.array(scan.ranges, dtype=np.float64)
     close = ranges == -np.inf
@@ -107,7 +107,7 @@ _ROUNDING = 1.05  # of a limit
 
 
 class JointReach(Record):
-    """Where a joint may be, and how fast, in radians or metres."""
+    """The limits of a joint, and of its speed, in radians or metres."""
 
     low: float
     high: float
@@ -115,7 +115,9 @@ class JointReach(Record):
 
 
 def velocity(kind: Any, linear: float, angular: float, stamp: Any) -> Any:
-    """A Twist or a TwistStamped, in metres and radians a second. Raises RobotError for what is no velocity."""
+    """Return a Twist or a TwistStamped, in metres and radians a second. Raises RobotError for numbers that aren't
+    finite.
+    """
     check_velocity(linear, degrees(angular))
     message = twist = kind()
     if hasattr(message, "header"):
@@ -126,7 +128,10 @@ def velocity(kind: Any, linear: float, angular: float, stamp: Any) -> Any:
 
 
 def trajectory(positions: Mapping[str, float], seconds: float) -> JointTrajectory:
-    """Joints by their names on the wire, to radians or metres. Raises RobotError for what is no position."""
+    """Return a trajectory of one point for joints, by their names in messages, in radians or metres.
+
+    Raises RobotError for positions that aren't finite.
+    """
     for name, position in positions.items():
         if not abs(position) <= _ABSURD:
             raise RobotError(f"{position:g} isn't a valid position for the joint {name}")
@@ -140,10 +145,10 @@ def motion(
     rows: Sequence[tuple[Sequence[float], Sequence[float]]],
     stamp: Any,
 ) -> JointTrajectory:
-    """Joints by their names on the wire, which are at each time (seconds from `stamp` on) at positions with velocities.
+    """Return a trajectory of joints, by their names in messages, with positions and velocities at each time.
 
-    Raises RobotError where times don't rise, and for what is beyond the limits of a joint. One that begins beyond them
-    may come back.
+    Times are seconds from `stamp` on. Raises RobotError if times don't rise, or a position is beyond the limits of its
+    joint. A joint that begins beyond them may come back.
     """
     if not times or times[0] < 0.0 or not all(one < other for one, other in pairwise(times)):
         raise RobotError("the times of a trajectory don't rise")

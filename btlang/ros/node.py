@@ -26,7 +26,9 @@ if TYPE_CHECKING:
 
 
 class ExecutorThread:
-    """Runs callables one after the other. `problems` are raised errors that could not be reported at once."""
+    """A queue of callables for the thread that spins a node. `problems` has errors that
+    couldn't be reported at once.
+    """
 
     def __init__(self, node: Node) -> None:
         self.problems: list[str] = []
@@ -34,13 +36,13 @@ class ExecutorThread:
         self._guard = node.create_guard_condition(self._work)
 
     def post(self, work: Callable[[], object]) -> None:
-        """Lets the thread that spins do it; from any thread and from handlers of signals, in the order of calls."""
+        """Queue a callable, from any thread or signal handler; they run in the order of calls."""
         self._posted.append(work)
         self._guard.trigger()
 
     @property
     def left(self) -> int:
-        """How many are not done yet."""
+        """How many callables haven't run yet."""
         return len(self._posted)
 
     def _work(self) -> None:
@@ -62,11 +64,11 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class SpunNode:
-    """`node` in a ROS context of its own; its callbacks run in a thread of their own, one at a time.
+    """A ROS 2 node in its own context, whose callbacks run in one thread, one at a time.
 
-    Use it with `with`, or call `close`: a thread that spins when the process ends would abort it. Signals stay with
-    the program. With `use_sim_time` the node's clock is the topic /clock. `make` makes another sort of node. Raises
-    MissionError (BT100).
+    Use it with `with`, or call `close`: a thread that still spins when the process ends would abort it. Signals stay
+    with the program. With `use_sim_time` the node's clock is the topic /clock. `make` makes another kind of node.
+    Raises MissionError (BT100).
     """
 
     def __init__(
@@ -92,14 +94,14 @@ class SpunNode:
         self._thread = Thread(target=self._watch, name=f"ros {name}", daemon=True)
 
     def start(self) -> None:
-        """Begins to call callbacks; to be called once all publishers and subscriptions are there."""
+        """Begin to call callbacks. Call this once all publishers and subscriptions exist."""
         self.node.create_timer(HEARTBEAT, AWAKE.now, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._thread.start()
 
     def settle(self, seconds: float) -> None:
-        """Waits until what was asked of the thread before now is done and its answers are out.
+        """Wait until the thread has done everything requested so far and its answers are out.
 
-        For so many real seconds at most, and the moment that DDS needs: nothing reports when a client has its answer.
+        At most `limit` real seconds, plus the moment that DDS needs: nothing reports when a client has its answer.
         """
         until = time.monotonic() + seconds
         for _ in range(_TASKS_OF_AN_ANSWER):
@@ -107,7 +109,7 @@ class SpunNode:
         time.sleep(_DELIVERY)
 
     def close(self) -> None:
-        """Ends the thread, then the node, then its context. May be called twice."""
+        """End the thread, then the node, then its context. May be called twice."""
         self._closing = True
         self._executor.shutdown()
         if self._thread.ident is not None:
@@ -128,7 +130,7 @@ class SpunNode:
         self.close()
 
     def _check_domain(self) -> None:
-        """Fast DDS would end the process."""
+        """Check the domain id, since Fast DDS would end the process for a wrong one."""
         number = self.context.get_domain_id()
         if number > _LAST_DOMAIN:
             rclpy.shutdown(context=self.context)
@@ -142,7 +144,7 @@ class SpunNode:
             AWAKE.unwatch()
 
     def _spin(self) -> None:
-        """A callback that raises is logged, and the others go on."""
+        """Spin the node. An exception in a callback is logged, and spinning goes on."""
         while self.context.ok():
             try:
                 self._executor.spin()

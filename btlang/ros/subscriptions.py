@@ -31,10 +31,10 @@ _NOT_FINITE = "sends numbers that are not finite"
 
 
 class MessageGate:
-    """For the messages of one topic, in the order in which they come.
+    """A check of the messages of one topic, in the order in which they come.
 
-    Without `lags` it doesn't judge how long they were under way: the clock of their stamps may be a faster one. With
-    `all_stamps` those of all kinds of messages count, else those of odometry and scans.
+    Without `lags` it doesn't judge how long they were under way: the clock of their stamps may run faster. With
+    `all_stamps` the stamps of all kinds of messages count, otherwise those of odometry and scans.
     """
 
     def __init__(self, kind: Any, lags: bool = True, all_stamps: bool = False) -> None:
@@ -50,7 +50,7 @@ class MessageGate:
         self._stamped = kind in (Odometry, LaserScan) or (all_stamps and hasattr(kind, "header"))
 
     def refuses(self, message: Any) -> str:
-        """Why a message is not to be believed, to be read behind the name of its topic; "" where it is."""
+        """Return why a message can't be true, to be read after the name of its topic; "" if it can."""
         reason = self._check(message)
         if not self._stamped:
             return reason
@@ -70,7 +70,9 @@ class MessageGate:
         return self._jump(pose.position.x, pose.position.y, seconds_of(message.header.stamp))
 
     def _jump(self, x: float, y: float, stamp: float) -> str:
-        """The next message is compared with this one: odometry that restarted is believed again."""
+        """Compare with the previous message; the next one is compared with this one, so that restarted odometry is
+        believed.
+        """
         now = time.monotonic()
         before, self._before = self._before, (x, y, stamp, now)
         if before is None:
@@ -81,7 +83,7 @@ class MessageGate:
 
 
 def pose_fault(pose: Any) -> str:
-    """Why a geometry_msgs/Pose is not to be believed, "" where it is."""
+    """Return why a geometry_msgs/Pose can't be true, "" if it can."""
     at, q = pose.position, pose.orientation
     if not all(map(isfinite, (at.x, at.y, q.x, q.y, q.z, q.w))):
         return _NOT_FINITE
@@ -109,9 +111,9 @@ AGE = 5.0
 
 
 class NodeClock:
-    """The clock of a node in seconds, from any thread.
+    """The clock of a node in seconds, for any thread.
 
-    Without simulated time those are real ones in which this process is awake; else those of SteadyTime: a limit is
+    Without simulated time these are real seconds in which this process runs; with it those of SteadyTime: a limit is
     always reached.
     """
 
@@ -122,7 +124,7 @@ class NodeClock:
         """Seconds of the node's clock."""
 
     def message(self) -> Any:
-        """The time as builtin_interfaces/Time."""
+        """Return the time as builtin_interfaces/Time."""
         return self._clock.now().to_msg()
 
     def _seconds(self) -> float:
@@ -130,10 +132,10 @@ class NodeClock:
 
 
 class Latest:
-    """What came last. `store` is for the thread of the callbacks, all else for any one.
+    """The latest message of a topic. `store` is for the thread of the callbacks, everything else for any thread.
 
-    `named` is what it is called, such as "/scan"; `absence` says why nothing may have come, "" for no known reason.
-    A message that `refuses` gives a reason for counts as silence (see `btlang.ros.subscriptions`).
+    `named` is the name of the topic, such as "/scan"; `absence` returns why nothing may have come, "" for no known
+    reason. A message for which `refuses` returns a reason counts as silence.
     """
 
     depth = 5
@@ -170,7 +172,7 @@ class Latest:
         return None if self._last is None else self._last[0]
 
     def store(self, message: Any) -> bool:
-        """Keeps a message in place of the one before, unless it is refused."""
+        """Keep a message in place of the previous one, unless it is refused."""
         reason = self._refuses(message)
         self.refused = f"{self.named} {reason}" if reason else ""
         if not reason:
@@ -178,11 +180,13 @@ class Latest:
         return not reason
 
     def silence(self) -> float:
-        """Seconds since it came. While this process was asleep nothing could come."""
+        """Return the seconds since it came, without those in which this process was asleep."""
         return math.inf if self._last is None else min(self._now() - self._last[1], AWAKE.since_woke())
 
     def take(self, age: float | None = AGE) -> Any:
-        """The message, not older than so many seconds; None for any age. Raises Unknown with the reason."""
+        """Return the message if it isn't older than so many seconds; None means any age. Raises Unknown with the
+        reason.
+        """
         last = self._last
         if last is None:
             raise Unknown(self.why_not())
@@ -193,7 +197,7 @@ class Latest:
         return last[0]
 
     def why_not(self) -> str:
-        """Why nothing has come, "" where something has."""
+        """Return why nothing has come, "" if something has."""
         if self.has_come:
             return ""
         return self.refused or self._absence() or f"nothing has arrived on {self.named} yet"
@@ -209,7 +213,6 @@ class LatestJoints(Latest):
         self._joints: dict[str, tuple[float, float, float]] = {}  # position, time of arrival, stamp
 
     def store(self, message: Any) -> bool:
-        """See Latest."""
         if not super().store(message):
             return False
         now, stamp = self._now(), seconds_of(message.header.stamp)
@@ -217,11 +220,13 @@ class LatestJoints(Latest):
         return True
 
     def missing(self, joints: Iterable[str]) -> list[str]:
-        """Those of some joints of which no position has ever come."""
+        """Return the joints, of these, whose position has never come."""
         return [joint for joint in joints if joint not in self._joints]
 
     def position(self, joint: str, age: float) -> tuple[float, float]:
-        """Where a joint is, in radians or metres, and the stamp of that. Raises SensorSilent if it isn't known."""
+        """Return the position of a joint, in radians or metres, and its stamp. Raises
+        SensorSilent if it isn't known.
+        """
         position, arrived, stamp = self._joints.get(joint, (math.nan, math.inf, 0.0))
         if not math.isfinite(position):
             raise SensorSilent(f'{self.named} doesn\'t report the joint "{joint}"')
@@ -231,7 +236,7 @@ class LatestJoints(Latest):
 
 
 def latest_of(cls: type) -> type[Latest]:
-    """What keeps the latest messages of a type."""
+    """Return the class that keeps the latest messages of a type."""
     return LatestJoints if type_name(cls) == "sensor_msgs/msg/JointState" else Latest
 
 
@@ -243,7 +248,10 @@ QOS = {"events": QoSProfile(depth=100), "state": _KEPT}
 
 
 class SubscriptionCache:
-    """Ages are counted from arrival, in the seconds of `now`. What the gate refuses counts as silence."""
+    """The latest messages of a robot: callbacks put them in, the tick takes them out.
+
+    Ages count from arrival, in the seconds of `now`. A message that the gate refuses counts as silence.
+    """
 
     def __init__(self, node: Node, now: Callable[[], float] = AWAKE.now) -> None:
         self._node = node
@@ -263,10 +271,10 @@ class SubscriptionCache:
         refuses: Callable[[Any], str] | None = None,
         key: str = "",
     ) -> None:
-        """Subscribes; `what` names the messages for people. `also` is called with each, in the thread that spins.
+        """Subscribe; `what` names the messages for people.
 
-        `refuses` is a gate in place of the one that messages of this kind have, `key` the name in place of the topic by
-        which they are asked for.
+        `also` is called with each message, in the thread that spins. `refuses` replaces the gate for messages of this
+        type, `key` the topic as the name by which they are asked for.
         """
         key = key or topic
         self._what[key] = what
@@ -291,32 +299,32 @@ class SubscriptionCache:
         return MessageGate(kind, lags=not self._node.get_clock().ros_time_is_active)
 
     def read(self) -> None:
-        """From now on `get` gives what has arrived until now, so that all leaves of a tick see the same."""
+        """Take what has arrived until now, so that all leaves of a tick get the same messages."""
         self._read = {topic: latest.message for topic, latest in self._latest.items() if latest.has_come}
 
     def events(self, topic: str) -> list[Any]:
-        """The messages since the last call, oldest first."""
+        """Return the messages since the last call, oldest first."""
         waiting = self._events[topic]
         return [waiting.popleft() for _ in range(len(waiting))]
 
     def has(self, topic: str) -> bool:
-        """Whether a message has ever come, also since the latest `read`."""
+        """Return whether a message has ever come, also since the latest `read`."""
         return self._latest[topic].has_come
 
     def why_not(self, topic: str) -> str:
-        """Why there is no message to believe, "" where the latest one is."""
+        """Return why there is no message to believe, "" if there is one."""
         return self._latest[topic].refused or self._latest[topic].why_not()
 
     def is_published(self, topic: str) -> bool:
-        """Whether somebody publishes a topic that is listened to."""
+        """Return whether somebody publishes a subscribed topic."""
         return bool(self._node.count_publishers(self._latest[topic].named))
 
     def shown(self, topic: str) -> str:
-        """The name of a topic that is listened to, with the namespace."""
+        """Return the name of a subscribed topic, with the namespace."""
         return self._latest[topic].named
 
     def get(self, topic: str, limit: float | None = None) -> Any:
-        """The latest message. Raises SensorSilent if there is none, or none for `limit` seconds."""
+        """Return the latest message. Raises SensorSilent if there is none, or none for `limit` seconds."""
         what, latest = self._what[topic], self._latest[topic]
         if topic not in self._read:
             raise SensorSilent(f"no {what}: {latest.refused or f'nothing has arrived on {latest.named}'}")
@@ -328,8 +336,10 @@ class SubscriptionCache:
         return self._read[topic]
 
     def reading(self, topic: str, fresh: float) -> tuple[Any, float, str] | None:
-        """The latest message, when it arrived, and why it isn't to be believed: nothing that can be true has come for
-        `fresh` seconds. None if no message has ever come.
+        """Return the latest message, when it arrived, and why it can't be believed: nothing true has come for `fresh`
+        seconds.
+
+        None if no message has ever come.
         """
         latest = self._latest[topic]
         if not latest.has_come:
@@ -339,13 +349,13 @@ class SubscriptionCache:
         return latest.message, latest.arrived, reason if silence > fresh else ""
 
     def latest_joints(self, topic: str) -> LatestJoints:
-        """The joints that a topic reports."""
+        """Return the joints that a topic reports."""
         latest = self._latest[topic]
         assert isinstance(latest, LatestJoints)
         return latest
 
     def latest(self, topic: str, limit: float) -> Any:
-        """As `get`, but None in place of an error."""
+        """Return the latest message like `get`, but None in place of an error."""
         try:
             return self.get(topic, limit)
         except SensorSilent:

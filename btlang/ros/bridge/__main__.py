@@ -22,7 +22,7 @@ _ENDING = 2.0  # seconds for goals to be cancelled
 
 
 def main() -> int:
-    """Until standard input or SIGTERM ends it; returns the exit code."""
+    """Run the bridge until standard input or SIGTERM ends it; return the exit code."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # which a terminal sends to the server, too
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     output = os.fdopen(os.dup(1), "wb")
@@ -36,7 +36,7 @@ def main() -> int:
 
 
 def _run(lines: BinaryIO, output: BinaryIO) -> None:
-    """Raises MissionError (BT100) without ROS 2."""
+    """Serve clients until standard input ends. Raises MissionError (BT100) without ROS 2."""
     require_ros()
     from btlang.ros.bridge.bridge import Bridge
     from btlang.ros.node import ExecutorThread, SpunNode

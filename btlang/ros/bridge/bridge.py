@@ -27,10 +27,10 @@ _FEEDBACK = 10  # messages that wait for a client
 
 
 class Bridge:
-    """Does what clients ask for. Used by the thread that spins `node`.
+    """The clients of a server, for the thread that spins `node`.
 
-    `write` gets the `client` that a text is for, its `topic` ("" for an answer), how many texts of that count (`most`,
-    the newest), and the text.
+    `write` gets the `client` that a text is for, its `topic` ("" for an answer), how many texts of that topic to keep
+    (`most`, the newest), and the text.
     """
 
     def __init__(self, node: Node, write: Write) -> None:
@@ -41,7 +41,7 @@ class Bridge:
         node.create_timer(_LOOK, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def take(self, line: bytes) -> None:
-        """Does what a line asks for."""
+        """Do what a line of a client asks for."""
         asked: Asked = json.loads(line)
         number = asked.pop("client")
         if asked["op"] == "leave":
@@ -56,12 +56,12 @@ class Bridge:
             client.fail(asked, reason_of(error))
 
     def left(self) -> list[BridgeGoal]:
-        """The goals that were cancelled and haven't ended."""
+        """Return the goals that were cancelled and haven't ended."""
         self._leaving = [goal for goal in self._leaving if not goal.ended]
         return self._leaving
 
     def close(self) -> None:
-        """All clients are gone."""
+        """Disconnect all clients."""
         for number in tuple(self._clients):
             self._leave(number)
 
@@ -93,17 +93,17 @@ class _BridgeClient:
         }  # fmt: skip
 
     def fail(self, asked: Asked, text: str) -> None:
-        """Sends the client the reason why something isn't done."""
+        """Send the client the reason why something isn't done."""
         for message in failures(asked, text):
             self._send(json.dumps(message))
 
     def look(self) -> None:
-        """Goes on with subscriptions as the graph changes."""
+        """Update the subscriptions as the graph changes."""
         for topic in tuple(self._subscriptions):
             self._look_at(topic)
 
     def leave(self) -> list[BridgeGoal]:
-        """Ends all; the goals that are to be cancelled, and may take a moment for that."""
+        """End everything of this client; return the goals to cancel, which may take a moment to end."""
         for goal in self._goals.values():
             goal.cancel()
         for call in self._calls:

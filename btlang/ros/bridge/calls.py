@@ -39,7 +39,7 @@ class _Wait(Record):
 
 
 class Waits:
-    """Those of a node, which another thread spins."""
+    """The waits of one node, which another thread spins."""
 
     def __init__(self, node: Node) -> None:
         self._waits: list[_Wait] = []
@@ -54,7 +54,7 @@ class Waits:
         reason: Callable[[], str],
         seconds: float,
     ) -> None:
-        """Calls `then` once `ready` holds, or `late` with a reason: the given one, or why one of these two failed."""
+        """Call `then` once `ready` holds, or `late` with a reason: the given one, or the error of one of the two."""
         self._waits.append(_Wait(ready, then, late, reason, time.monotonic() + seconds))
         self._timer.reset()
 
@@ -84,7 +84,7 @@ _SETTLE = 0.3  # seconds: a server that hasn't found its new client yet drops th
 
 
 class Servers:
-    """Clients on a node of the servers that are asked, one for each name and type. Used by the thread that spins."""
+    """Clients of servers on a node, one for each name and type, for the thread that spins the node."""
 
     def __init__(self, node: Node) -> None:
         self.node, self.waits = node, Waits(node)
@@ -93,9 +93,9 @@ class Servers:
         self._clients: dict[tuple[str, Any], tuple[Any, float]] = {}
 
     def find(self, kind: str, name: str, cls: Any, then: Callable[[Any, Any], object], fail: Fail) -> None:
-        """Calls `then` with the class and a client that can be used now, or `fail`.
+        """Call `then` with the class and a client that can be used now, or `fail`.
 
-        `kind` is "service" or "action"; a class of None is that which the graph has.
+        `kind` is "service" or "action". If the class is None, it is the one in the graph.
         """
         found = cls
         name = full(name)
@@ -139,7 +139,7 @@ class BridgeCall:
         servers.find("service", asked["service"], None, self._send, self._late)
 
     def end(self) -> None:
-        """Nobody waits for the answer any more."""
+        """Stop waiting for the answer."""
         self.ended = True
 
     def _send(self, cls: Any, client: Any) -> None:
@@ -180,7 +180,7 @@ class BridgeGoal:
         servers.find("action", asked["action"], cls, self._send, self._end_badly)
 
     def cancel(self) -> None:
-        """The robot is to do no more for it. One that isn't sent yet never is."""
+        """Cancel the goal. One that isn't sent yet never is."""
         if self._is_cancelled:
             return
         self._is_cancelled = True
@@ -198,7 +198,7 @@ class BridgeGoal:
         self._watch()
 
     def _watch(self) -> None:
-        """A server that dies says nothing."""
+        """End the goal if its server has died: a dead server reports nothing."""
         gone = partial(self._end_badly, f"The action server {self._asked['action']} has gone.")
         self._servers.waits.when(lambda: self.ended or not is_ready(self._client), gone, self._end_badly, str, math.inf)
 

@@ -32,7 +32,9 @@ _FORMS = {"msg": "a type of messages", "srv": "a type of services", "action": "a
 
 @cache
 def type_of(name: str, kind: str) -> Any:
-    """The class of a type, with or without its kind: std_msgs/msg/String, std_msgs/String. Raises BridgeError."""
+    """Return the class of a type, with or without its kind: std_msgs/msg/String,
+    std_msgs/String. Raises BridgeError.
+    """
     found = _TYPE.fullmatch(name)
     shown = one_line(name[:100])
     if found is None:
@@ -48,7 +50,7 @@ def type_of(name: str, kind: str) -> Any:
 
 
 def _is_interfaces(package: str) -> bool:
-    """Whether rosidl made it. To import any other package would run the code of that."""
+    """Return whether rosidl generated a package. Importing any other package would run its code."""
     spec = PathFinder.find_spec(package)
     folders = (spec.submodule_search_locations or ()) if spec is not None else ()
     return any(any(Path(folder).glob("*__rosidl_typesupport_c*")) for folder in folders)
@@ -59,7 +61,7 @@ _HEADER = "std_msgs/Header"
 
 
 def as_data(message: Any) -> dict[str, Any]:
-    """The fields of a message, for JSON."""
+    """Return the fields of a message, for JSON."""
     cls: Any = type(message)
     return {name: write(getattr(message, name)) for name, write in _writers(cls)}
 
@@ -99,7 +101,7 @@ def _all_finite(values: Any) -> list[float | None]:
 
 
 def filled(cls: Any, data: object, now: Now) -> Any:
-    """A message of a class with these fields; the others stay as they are by default.
+    """Return a message of a class with these fields; other fields keep their defaults.
 
     A header without a stamp gets that of `now`. Raises BridgeError.
     """

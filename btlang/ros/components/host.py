@@ -72,10 +72,10 @@ _ALIVE = QoSProfile(
 
 
 class NodeHost:
-    """See btlang.components.component.Host. It knows no words: those of a ROS 2 node have `ros` tables.
+    """A component that is a ROS 2 lifecycle node. It has no words: those of a ROS 2 node have `ros` tables.
 
-    `changed` is called, from any thread, when there is something to look at; `closing` says whether waiting for the
-    node is of no use any more. A node that somebody else has started is left unconfigured at the end, for the next one.
+    `changed` is called, from any thread, when there is something to look at; `closing` returns whether waiting for the
+    node is pointless by now. A node that somebody else has started is left unconfigured at the end, for the next robot.
     """
 
     def __init__(self, part: ComponentPart, changed: Callable[[], object], closing: Callable[[], bool]) -> None:
@@ -97,7 +97,7 @@ class NodeHost:
         return self._program.number if self._program is not None and self._program.ending is None else None
 
     def load(self) -> Mapping[str, Any]:
-        """See Host. Raises ComponentAbsent where somebody else has to start it."""
+        """Implement Host. Raises ComponentAbsent if somebody else has to start the node."""
         self._questions = self._connect()
         if self._node.command:
             self._program = StartedProcess(self._node.command)
@@ -110,13 +110,12 @@ class NodeHost:
         return {"version": "", "needs": []}
 
     def transition(self, name: str) -> None:
-        """See Host. An answer that is slow or lost is no failure: the node is asked for its state."""
+        """Implement Host. A slow or lost answer is no failure: the node is then asked for its state."""
         self._failed = True  # until it has done it: what hangs is not asked to end
         self._lead(name)
         self._failed = False
 
     def look(self) -> str | None:
-        """See Host."""
         try:
             self._check_life()
         except ComponentError as problem:
@@ -139,15 +138,14 @@ class NodeHost:
     def leaf(
         self, method: str, outputs: tuple[str, ...], robot: Any, wake: Callable[[], object], beside: set[object]
     ) -> Any:
-        """See Host. Raises ActionFailed."""
+        """Implement Host. Raises ActionFailed."""
         raise self._no_method(method)
 
     def ask(self, method: str, ports: Mapping[str, Any], robot: Any) -> Any:
-        """See Host. Raises ActionFailed."""
+        """Implement Host. Raises ActionFailed."""
         raise self._no_method(method)
 
     def close(self) -> None:
-        """See Host."""
         self.state = UNCONFIGURED
         try:
             if self._container is not None:
@@ -184,7 +182,7 @@ class NodeHost:
         self._answered = time.monotonic()
 
     def _wait_for_node(self) -> None:
-        """In the graph. Raises ComponentError."""
+        """Wait until the node is in the graph. Raises ComponentError."""
         name, limit = self._node.name, _STARTING if self._program is not None else _DISCOVERY
 
         def is_over() -> bool:
@@ -200,7 +198,7 @@ class NodeHost:
             raise ComponentError(f"has started, but there is no node {name}")
 
     def _connect(self) -> ServiceCaller:
-        """A separate node for each life: one that knew a killed node before takes seconds to find the next.
+        """Return a new node for each life: one that knew a killed node takes seconds to find its successor.
 
         Raises ComponentError.
         """
@@ -224,18 +222,18 @@ class NodeHost:
         return questions
 
     def _live(self, info: Any) -> None:
-        """In the thread that spins: DDS itself says whether the node lives, where that publishes ~/alive."""
+        """Note, in the thread that spins, whether the node lives: DDS reports it if the node publishes ~/alive."""
         self._lived = self._lived or info.alive_count > 0
         self._died = self._lived and not info.alive_count
         self._changed()
 
     def _hear(self, event: TransitionEvent) -> None:
-        """In the thread that spins."""
+        """Take a message, in the thread that spins."""
         self._asked = 0.0  # asked again at the next look: this may be an older event
         self._changed()
 
     def _reset(self) -> None:
-        """Brings a node down that a robot before this one has left up. Raises ComponentError."""
+        """Bring down a node that an earlier robot left up. Raises ComponentError."""
         until = time.monotonic() + self._limit
         while (state := self._ask_state(_ANSWER)) not in STATES:
             self._check_life()
@@ -249,7 +247,7 @@ class NodeHost:
             self._lead(_DOWNWARDS[self.state])
 
     def _set_parameters(self) -> None:
-        """Raises ComponentError where the node refuses one."""
+        """Set the parameters. Raises ComponentError if the node refuses one."""
         values = [Parameter(name, value=value).to_parameter_msg() for name, value in self._part.parameters.items()]
         if not values:
             return
@@ -269,11 +267,11 @@ class NodeHost:
         return self._questions.begin(self._clients["change"], request)
 
     def _ask_state(self, seconds: float) -> str:
-        """ "" where it doesn't answer."""
+        """Ask for the state; return "" if the node doesn't answer."""
         return _label(self._questions.ask(self._clients["get"], GetState.Request(), seconds))
 
     def _check_life(self) -> None:
-        """Raises ComponentError where it is gone."""
+        """Raise ComponentError if the node is gone."""
         self._check_program()
         if self._died and self._clients and self._ask_state(_DOUBT):
             self._died = False  # it was another one of its name
@@ -290,7 +288,7 @@ class NodeHost:
 
 
 def _label(answer: Any) -> str:
-    """That of a state as STATES has it."""
+    """Return the label of a state as in STATES."""
     return "" if answer is None else str(answer.current_state.label)
 
 
@@ -298,7 +296,10 @@ _LAST_ANSWERS = 2.0  # seconds that goals which were halted get to end
 
 
 class ComponentNodes:
-    """Those of one robot, from the start to `close`. Raises MissionError (BT100) where ROS 2 doesn't start."""
+    """The node for the ROS 2 components of one robot, until `close`.
+
+    Raises MissionError (BT100) if ROS 2 doesn't start.
+    """
 
     def __init__(self, robot: Any) -> None:
         self._robot = robot
@@ -311,15 +312,15 @@ class ComponentNodes:
             raise
 
     def host(self, part: ComponentPart, changed: Callable[[], object], closing: Callable[[], bool]) -> NodeHost:
-        """Where a component lives that is a node."""
+        """Return the host of a component that is a node."""
         return NodeHost(part, changed, closing)
 
     def bind(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
-        """What does a word with a `ros` table, for robots that are none of ROS 2. Raises MissionError."""
+        """Bind a word with a `ros` table, for a robot that isn't a ROS 2 robot. Raises MissionError."""
         return bind_ros(entry, vocabulary, self._clients, self._located)
 
     def close(self) -> None:
-        """Leaves the ROS graph."""
+        """Leave the ROS graph."""
         try:
             self._clients.close(_LAST_ANSWERS)
         finally:

@@ -27,31 +27,34 @@ _DONE = 10.0  # seconds within which the thread that spins gets to something, on
 
 
 class AwaitedReply:
-    """A service that was called. `answer` is None until it has come."""
+    """The reply to a service call. `answer` is None until it has come."""
 
     def __init__(self) -> None:
         self.answer: Any = None
         self._come = threading.Event()
 
     def wait(self, seconds: float) -> Any:
-        """The answer, None if there is none by then."""
+        """Wait for the answer; return None if it doesn't come in time."""
         self._come.wait(seconds)
         return self.answer
 
     def came(self, future: Any) -> None:
-        """In the thread that spins."""
+        """Store the answer, in the thread that spins."""
         self.answer = future.result()
         self._come.set()
 
 
 class ServiceCaller:
-    """For any thread but the one that spins the node."""
+    """Calls services, from any thread but the one that spins the node."""
 
     def __init__(self, node: Node) -> None:
         self._node, self._executor = node, ExecutorThread(node)
 
     def do(self, work: Callable[[Node], T]) -> T:
-        """What the thread that spins makes of the node. Raises ComponentError where it can't, or doesn't get to it."""
+        """Run a function of the node in the thread that spins; return its result.
+
+        Raises ComponentError if it fails, or doesn't run in time.
+        """
         results: list[T] = []
         problems: list[str] = []
 
@@ -68,18 +71,18 @@ class ServiceCaller:
         return results[0]
 
     def begin(self, client: Any, request: Any) -> AwaitedReply:
-        """Calls a service, and waits for nothing."""
+        """Call a service without waiting."""
         question = AwaitedReply()
         self._executor.post(lambda: client.call_async(request).add_done_callback(question.came))
         return question
 
     def ask(self, client: Any, request: Any, seconds: float) -> Any:
-        """What a service answers; None where it doesn't in time, or isn't there by then."""
+        """Call a service; return its answer, None if there is none in time."""
         wait_until(client.service_is_ready, seconds)
         return self.begin(client, request).wait(seconds) if client.service_is_ready() else None
 
     def is_there(self, name: str) -> bool:
-        """Whether the graph has a node of this full name."""
+        """Return whether the graph has a node with this full name."""
         nodes = self._node.get_node_names_and_namespaces()
         return any(f"{namespace.rstrip('/')}/{node}" == name for node, namespace in nodes)
 
@@ -89,14 +92,14 @@ _UNLOAD = 3.0
 
 
 class Container:
-    """That of one node. Each method waits for the answer, `limit` seconds at most."""
+    """The container of one node. Each method waits for the answer for at most `limit` seconds."""
 
     def __init__(self, node: RosNode, questions: ServiceCaller, limit: float) -> None:
         self._node, self._questions, self._limit = node, questions, limit
         self._number: int | None = None
 
     def load(self, parameters: Mapping[str, Any]) -> None:
-        """Loads the node; one of its name that is there already is unloaded before. Raises ComponentError."""
+        """Load the node, and unload one with its name before. Raises ComponentError."""
         if not self._is_there(_DISCOVERY):
             raise ComponentAbsent(f"waits for the container {self._node.container}")
         listed = self._ask("ListNodes", self._limit)
@@ -114,7 +117,7 @@ class Container:
         self._number = answer.unique_id
 
     def unload(self) -> None:
-        """Where it was loaded and the container is still there. May be called twice."""
+        """Unload the node if it is loaded and the container still exists. May be called twice."""
         number, self._number = self._number, None
         if number is not None and self._questions.is_there(self._node.container):
             try:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class DriveTranslation(Translation):
-    """A base by Odometry and Twist; how far its wheels have rolled is worked out with their gap, and back."""
+    """A base as Odometry and Twist; the distances that its wheels have rolled follow from their gap, and back."""
 
     reads, takes = Odometry, Twist
 
@@ -36,7 +36,7 @@ class DriveTranslation(Translation):
         self._wheels = 0.0, 0.0
 
     def reading(self, message: Any) -> Reading:
-        """See Translation. What a pose jumps hasn't been rolled."""
+        """Implement Translation. A jump of the pose doesn't count as rolled."""
         try:
             return super().reading(message)
         except DeviceSilent:
@@ -54,7 +54,7 @@ class DriveTranslation(Translation):
         return kinds.Wheels(*self._wheels, *self._sides(message.twist.twist))
 
     def shown(self, reading: Any) -> Any:
-        """See Translation. The pose is that since the first reading."""
+        """Implement Translation. The pose counts from the first reading."""
         gap, wheels = self._setting.wheel_gap, (reading.left, reading.right)
         pose, before = self._pose or Pose(0.0, 0.0, 0.0), self._wheels if self._pose is not None else wheels
         left, right = wheels[0] - before[0], wheels[1] - before[1]
@@ -70,18 +70,16 @@ class DriveTranslation(Translation):
         return message
 
     def sent(self, command: Any) -> Any:
-        """See Translation."""
         turn = (command.right - command.left) / self._setting.wheel_gap
         return velocity(Twist, (command.left + command.right) / 2, turn, None)
 
     def command(self, message: Any) -> Command:
-        """See Translation."""
         if not isfinite(message.linear.x) or not isfinite(message.angular.z):
             raise DeviceError("a velocity that is not finite")
         return kinds.WheelSpeeds(*self._sides(message))
 
     def _sides(self, twist: Any) -> tuple[float, float]:
-        """Metres a second of each wheel."""
+        """Return the metres a second of each wheel."""
         side = twist.angular.z * self._setting.wheel_gap / 2
         return twist.linear.x - side, twist.linear.x + side
 
@@ -96,7 +94,7 @@ class JointTranslation(Translation):
         self._at = 0.0
 
     def concerns(self, message: Any) -> bool:
-        """See Translation: a robot may report its limbs in separate messages."""
+        """Implement Translation. A robot may report its limbs in separate messages."""
         return self._setting.joint in message.name
 
     def _read(self, message: Any) -> Reading:
@@ -110,21 +108,18 @@ class JointTranslation(Translation):
         return kinds.JointState(self._at, 0.0 if isnan(speed) else speed / si)
 
     def shown(self, reading: Any) -> Any:
-        """See Translation."""
         self._at, si = reading.position, self._setting.si
         return JointState(
             name=[self._setting.joint], position=[float(reading.position * si)], velocity=[float(reading.speed * si)]
         )
 
     def sent(self, command: Any) -> Any:
-        """See Translation."""
         if command.position is None or command.loose:
             return JointTrajectory(joint_names=[self._setting.joint])
         seconds = abs(command.position - self._at) / command.speed if command.speed else 0.0
         return trajectory({self._setting.joint: command.position * self._setting.si}, seconds)
 
     def command(self, message: Any) -> Command:
-        """See Translation."""
         if message.joint_names and self._setting.joint not in message.joint_names:
             raise DeviceError(f'it has nothing for the joint "{self._setting.joint}"')
         if not message.points:
@@ -136,7 +131,9 @@ class JointTranslation(Translation):
 
 
 class HandTranslation(Translation):
-    """A JointState with how far it is closed, 0 to 1; its effort is 1 where it holds something, 0 where not."""
+    """A JointState whose position is how far the hand is closed, 0 to 1; its effort is 1 if
+    the hand holds something.
+    """
 
     reads, takes = JointState, Float64
 
@@ -147,16 +144,14 @@ class HandTranslation(Translation):
         return kinds.Grip(number(message.position[0], "position"), None if isnan(effort) else effort >= 0.5)
 
     def shown(self, reading: Any) -> Any:
-        """See Translation."""
         effort = [] if reading.holds is None else [float(reading.holds)]
         return JointState(name=[self._setting.joint], position=[float(reading.closed)], effort=effort)
 
     def sent(self, command: Any) -> Any:
-        """See Translation. NaN: it stays as it is."""
+        """Implement Translation. NaN means that the hand stays as it is."""
         return Float64(data=nan if command.closed is None else float(command.closed))
 
     def command(self, message: Any) -> Command:
-        """See Translation."""
         return kinds.GripTarget(None if isnan(message.data) else min(1.0, max(0.0, message.data)))
 
 
@@ -172,7 +167,6 @@ class MicrophoneTranslation(Translation):
         return kinds.Sound(*_samples(message))
 
     def shown(self, reading: Any) -> Any:
-        """See Translation."""
         return _sound(reading)
 
 
@@ -185,15 +179,12 @@ class SpeakerTranslation(Translation):
         return kinds.Playing(number(message.data, "time"))
 
     def shown(self, reading: Any) -> Any:
-        """See Translation."""
         return Float64(data=float(reading.left))
 
     def sent(self, command: Any) -> Any:
-        """See Translation."""
         return _sound(command)
 
     def command(self, message: Any) -> Command:
-        """See Translation."""
         return kinds.Play(*_samples(message))
 
 
@@ -203,11 +194,9 @@ class LightTranslation(Translation):
     takes = ColorRGBA
 
     def sent(self, command: Any) -> Any:
-        """See Translation."""
         return ColorRGBA(r=float(command.red), g=float(command.green), b=float(command.blue), a=1.0)
 
     def command(self, message: Any) -> Command:
-        """See Translation."""
         return kinds.Colour(*(min(1.0, max(0.0, number(each, "colour"))) for each in (message.r, message.g, message.b)))
 
 
@@ -217,11 +206,9 @@ class DisplayTranslation(Translation):
     takes = String
 
     def sent(self, command: Any) -> Any:
-        """See Translation."""
         return String(data=command.text)
 
     def command(self, message: Any) -> Command:
-        """See Translation."""
         return kinds.Shown(message.data)
 
 

@@ -33,7 +33,7 @@ _RATE = 30.0  # looks a second at the devices
 
 
 def add_device_options(parser: argparse.ArgumentParser) -> None:
-    """The options of `btc ros-devices`."""
+    """Add the options of `btc ros-devices`."""
     add_world(parser)
     parser.add_argument(
         "--robot", type=robot_on(()), required=True, metavar="ROBOT", help="a robot file or the name of one that ships"
@@ -43,7 +43,7 @@ def add_device_options(parser: argparse.ArgumentParser) -> None:
 
 
 def serve(options: argparse.Namespace) -> int:
-    """Until a signal comes; returns the exit code, 128 and the number of the signal.
+    """Publish the devices until a signal comes; return the exit code, 128 plus the number of the signal.
 
     Raises MissionError (BT070, BT071, BT100).
     """
@@ -91,5 +91,5 @@ def _show_devices(options: argparse.Namespace, body: Body, world: World, came: E
 
 
 def _report(kind: str, data: Mapping[str, Any]) -> None:
-    """A device has fallen silent, or is back."""
+    """Print that a device has fallen silent, or is back."""
     show(str(data["text"]))

@@ -69,7 +69,7 @@ _LAST_WORD = 0.1  # seconds that the last command gets to be heard
 
 
 class TopicClient:
-    """One device. `arrived` is for the thread that spins, all else for that of the loop."""
+    """One device over topics. `arrived` is for the thread that spins, everything else for that of the loop."""
 
     def __init__(self, device: TopicDevice, node: Node) -> None:
         self._device, self._kind = device, KINDS[device.kind]
@@ -86,23 +86,23 @@ class TopicClient:
             self._publisher = node.create_publisher(self._translation.takes, device.command, qos)
 
     def arrived(self, message: Any) -> None:
-        """A message has come."""
+        """Take a message."""
         self._messages.append((message, time.monotonic()))
 
     def send(self, command: Command | None) -> None:
-        """Publishes a command: in each cycle if the device moves, else once. Raises RobotError."""
+        """Publish a command: in each cycle if the device moves, else once. Raises RobotError."""
         if command is None or (command is self._sent and not self._kind.moves):
             return
         self._sent = command
         self._publisher.publish(self._translation.sent(command))
 
     def rest(self) -> None:
-        """Brings to rest what moves."""
+        """Bring the device to rest if it moves."""
         if self._kind.rest is not None:
             self.send(self._kind.rest)
 
     def reading(self) -> Reading | DeviceError | None:
-        """Its latest reading; None where that is old, and soon silence. One that can't be true is silence too."""
+        """Return the latest reading; None if it is old. One that can't be true counts as silence."""
         if not self._device.topic:
             heard = self._publisher.get_subscription_count()
             return Reading() if heard else DeviceSilent(f"nobody listens to {self._device.command}")
@@ -124,7 +124,7 @@ class TopicClient:
         return Sound(b"".join(samples), found.rate) if isinstance(found, Sound) else found
 
     def _read(self, message: Any) -> tuple[str, Reading | None]:
-        """The reading of a message, or why there is none."""
+        """Return the reading in a message, or the reason why there is none."""
         try:
             return "", self._translation.reading(message)
         except DeviceError as problem:
@@ -134,7 +134,7 @@ class TopicClient:
 
 
 class DeviceClient:
-    """All devices of a robot that are topics. Raises MissionError (BT100) where ROS 2 doesn't start."""
+    """The node for all devices of a robot that are topics. Raises MissionError (BT100) if ROS 2 doesn't start."""
 
     def __init__(self, devices: Sequence[TopicDevice]) -> None:
         self._spun = SpunNode("btlang_devices")
@@ -146,7 +146,6 @@ class DeviceClient:
             raise
 
     def exchange(self, commands: Mapping[str, Command]) -> dict[str, Reading | DeviceError]:
-        """See btlang.devices.driver.Driver."""
         readings: dict[str, Reading | DeviceError] = {}
         for name, client in self._clients.items():
             reading = client.reading()
@@ -159,7 +158,7 @@ class DeviceClient:
         return readings
 
     def close(self) -> None:
-        """Brings to rest what moves, and leaves the ROS graph."""
+        """Bring all devices to rest, and leave the ROS graph."""
         for client in self._clients.values():
             client.rest()
         time.sleep(_LAST_WORD)
@@ -171,7 +170,7 @@ _COMPLAIN = 5.0  # seconds between two complaints
 
 
 class ShownDevice:
-    """One device: its readings on the topic of its name, its commands on the topic `command` below that."""
+    """One device as topics: readings on the topic of its name, commands on `command` below it."""
 
     def __init__(self, device: Device, reads: Reads, setting: Setting, node: Node) -> None:
         self._name, self._reads, self._node = device.name, reads, node
@@ -188,7 +187,7 @@ class ShownDevice:
             node.create_subscription(self._translation.takes, below, self._command, 10)
 
     def publish(self, stamp: Callable[[], Any]) -> None:
-        """Its reading, where it is new, it isn't silent, and somebody listens."""
+        """Publish the reading if it is new and somebody listens."""
         now = time.monotonic()
         if self._publisher is None or now < self._due or not self._publisher.get_subscription_count():
             return
@@ -206,7 +205,7 @@ class ShownDevice:
         self._publisher.publish(message)
 
     def _command(self, message: Any) -> None:
-        """In the thread that spins."""
+        """Write a command, in the thread that spins."""
         try:
             self._reads.write(self._name, self._translation.command(message))
         except (RobotError, ValueError, IndexError) as problem:
@@ -216,7 +215,7 @@ class ShownDevice:
 
 
 class DeviceTopics:
-    """Those of a robot, on a node that somebody else spins."""
+    """Topics for the devices of a robot. The caller spins the node."""
 
     def __init__(self, node: Node, devices: Mapping[str, Device], readers: Mapping[str, Reads], body: Body) -> None:
         make = partial(ShownDevice, node=node)
@@ -224,7 +223,7 @@ class DeviceTopics:
         self._shown = [make(device, readers[name], _setting(device, body)) for name, device in devices.items()]
 
     def publish(self) -> None:
-        """What is new."""
+        """Publish all new readings."""
         for device in self._shown:
             device.publish(self._clock.message)
 

@@ -26,7 +26,7 @@ _CHARGES = (BatteryState.POWER_SUPPLY_STATUS_CHARGING, BatteryState.POWER_SUPPLY
 
 
 class RangeTranslation(Translation):
-    """-inf is too close to be measured, inf that there is nothing (REP 117)."""
+    """A range sensor as Range: -inf is too close to be measured, inf means that nothing is in range (REP 117)."""
 
     reads = Range
 
@@ -38,14 +38,13 @@ class RangeTranslation(Translation):
         return kinds.Distance(inf if seen else number(distance, "range"))
 
     def shown(self, reading: Any) -> Any:
-        """See Translation."""
         return Range(
             radiation_type=Range.ULTRASOUND, max_range=self._setting.range or inf, range=float(reading.distance)
         )
 
 
 class LidarTranslation(Translation):
-    """A beam that says nothing is NaN."""
+    """A scanner as LaserScan; a beam without a measurement is NaN."""
 
     reads = LaserScan
 
@@ -53,7 +52,6 @@ class LidarTranslation(Translation):
         return kinds.Scan(echoes(message).tolist(), degrees(message.angle_min), degrees(message.angle_increment))
 
     def shown(self, reading: Any) -> Any:
-        """See Translation."""
         count, step = len(reading.ranges), radians(reading.step)
         start = radians(reading.start)
         return LaserScan(
@@ -63,7 +61,7 @@ class LidarTranslation(Translation):
 
 
 class ImuTranslation(Translation):
-    """Angular velocity and acceleration; the orientation is the heading alone."""
+    """An Imu with angular velocity and acceleration; its orientation is only the heading."""
 
     reads = Imu
 
@@ -80,7 +78,6 @@ class ImuTranslation(Translation):
         return kinds.Motion(degrees(number(turning, "angular velocity")), ahead, left, up, heading)
 
     def shown(self, reading: Any) -> Any:
-        """See Translation."""
         message = Imu()
         message.angular_velocity.z = radians(reading.turning)
         accelerations = reading.ahead, reading.left, reading.up
@@ -97,7 +94,7 @@ class ImuTranslation(Translation):
 
 
 class BatteryTranslation(Translation):
-    """`percentage` is from 0 to 1; what isn't measured is NaN."""
+    """A BatteryState; `percentage` is from 0 to 1, and what isn't measured is NaN."""
 
     reads = BatteryState
 
@@ -111,7 +108,6 @@ class BatteryTranslation(Translation):
         return kinds.Charge(100.0 * message.percentage, volts, amperes, temperature, charging)
 
     def shown(self, reading: Any) -> Any:
-        """See Translation."""
         message = BatteryState(percentage=reading.percent / 100, present=True)
         message.charge = message.capacity = message.design_capacity = nan
         for name, value in (
@@ -125,7 +121,7 @@ class BatteryTranslation(Translation):
 
 
 class ButtonTranslation(Translation):
-    """Whether it is pressed."""
+    """A Bool: whether the button is pressed."""
 
     reads = Bool
 
@@ -133,12 +129,11 @@ class ButtonTranslation(Translation):
         return kinds.Pressed(bool(message.data))
 
     def shown(self, reading: Any) -> Any:
-        """See Translation."""
         return Bool(data=bool(reading.pressed))
 
 
 class CameraTranslation(Translation):
-    """Pictures in rgb8, bgr8 and mono8 are read, those in rgb8 shown."""
+    """An Image: rgb8, bgr8 and mono8 can be read, rgb8 is published."""
 
     reads = ImageMessage
 
@@ -154,7 +149,6 @@ class CameraTranslation(Translation):
         return kinds.Image(width, height, (np.repeat(pixels, 3, axis=1) if depth == 1 else pixels).tobytes())
 
     def shown(self, reading: Any) -> Any:
-        """See Translation."""
         return ImageMessage(
             width=reading.width, height=reading.height, encoding="rgb8", step=3 * reading.width,
             data=array("B", reading.pixels),

@@ -21,7 +21,7 @@ _ANSWERS = 1.0  # seconds that the last answers to clients get
 
 
 def add_node_options(parser: argparse.ArgumentParser) -> None:
-    """The options of `btc ros-node` that are about the node."""
+    """Add the options of `btc ros-node` that are about the node."""
     parser.add_argument("--mission", default="", metavar="FILE", help="mission to run when the node is activated")
     add_body_options(parser)
     parser.add_argument(
@@ -41,9 +41,9 @@ def add_node_options(parser: argparse.ArgumentParser) -> None:
 
 
 def serve(options: argparse.Namespace) -> int:
-    """Spins the node until a signal comes; returns the exit code, 128 and the number of the signal.
+    """Spin the node until a signal comes; return the exit code, 128 plus the number of the signal.
 
-    Raises MissionError where ROS 2 is not there (BT100, BT110), or where the node cannot be configured at its start.
+    Raises MissionError without ROS 2 (BT100, BT110), or if the node can't be configured at its start.
     """
     if platform_of(options) == "simulated" and options.sim_time:
         options.refuse("--sim-time is for --robot ros and --robot actions")

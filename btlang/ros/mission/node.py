@@ -48,10 +48,11 @@ if TYPE_CHECKING:
 
 
 class Setup(Record):
-    """`robot` and `over` are as for Session; `file` is the mission that the node runs when activated, "" for none.
+    """The options of a mission node. `robot` and `over` are as for Session.
 
-    What other programs send may include only files below `include_root`, and use only the keyword files of
-    `allowed_keywords`: names of packs, and folders. `layer` are further arguments of the TaskLayer.
+    `file` is the mission that the node runs when activated, "" for none. Missions of other programs may include only
+    files below `include_root`, and use only the keyword files of `allowed_keywords`: names of packs, and folders.
+    `layer` has further arguments of the TaskLayer.
     """
 
     name: str = "btlang"
@@ -70,14 +71,14 @@ class Setup(Record):
     layer: Mapping[str, Any] = {}
 
     def reader(self) -> MissionReader:
-        """What reads the missions of this robot."""
+        """Return the reader of missions for this robot."""
         return MissionReader(
             self.keywords, self.world, parser=self.parser, language=self.language, include_root=self.include_root,
             allowed_keywords=self.allowed_keywords,
         )  # fmt: skip
 
     def mission(self, text: str, file: str, reader: MissionReader) -> MissionText | None:
-        """That of the node's parameters; None if they name none. Raises MissionError (BT001, BT002)."""
+        """Return the mission of the node's parameters; None if they name none. Raises MissionError (BT001, BT002)."""
         if text:
             return MissionText(text)
         if file in ("", self.file):
@@ -85,19 +86,21 @@ class Setup(Record):
         return MissionText(read_included(file, reader.source("")).text, file)  # any program may set a parameter
 
     def task_layer(self, reader: MissionReader, **options: Any) -> TaskLayer:
-        """The robot, with further arguments for its TaskLayer. Raises MissionError."""
+        """Return the task layer of the robot, made with further arguments. Raises MissionError."""
         named = {"sim_time": self.sim_time, "namespace": self.namespace, "name": f"{self.name}_robot"}
         robot = connector(self.robot, self.over, **named)
         return furnished_layer(robot, reader, speed=self.speed, **self.layer, **options)
 
 
 def robot_name(namespace: str, name: str) -> str:
-    """The name of a node's robot for `btc task --name`."""
+    """Return the name of a node's robot for `btc task --name`."""
     return "-".join([*filter(None, namespace.split("/")), name])
 
 
 class StopNode(Node):  # type: ignore[misc]  # rclpy is seen as untyped
-    """`service` is the full name of the service, `stop` says whether there was a robot to stop."""
+    """A node with the emergency stop. `service` is the full name of its service; `stop` returns whether there was a
+    robot to stop.
+    """
 
     def __init__(self, service: str, stop: Callable[[], bool], name: str, **options: Any) -> None:
         super().__init__(name, start_parameter_services=False, enable_rosout=False, **options)
@@ -118,11 +121,11 @@ _OWN = "node"
 
 
 class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as untyped
-    """configure reads the mission of the parameters `mission` or `mission_file` and reaches for the robot; activate
-    runs it, and then the tasks that are due; deactivate halts them; cleanup lets go of the robot.
+    """A lifecycle node for the missions of a robot. Its callbacks run in one thread, missions in another.
 
-    All of its callbacks are called in one thread; missions run in another. `error` is why configuring failed, `down`
-    ends the process.
+    configure reads the mission of the parameters `mission` or `mission_file` and connects to the robot; activate runs
+    it, and then the tasks that are due; deactivate halts them; cleanup disconnects from the robot. `error` is the
+    reason why configuring failed; `down` ends the process.
     """
 
     def __init__(
@@ -145,7 +148,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         self._server = MissionServer(self, self._hindrance, self.answer, self._topics.complain)
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Fails where the mission cannot be read or the robot cannot be reached; the log says why."""
+        """Read the mission and connect to the robot. Fails if either isn't possible; the log has the reason."""
         text, file = (str(self.get_parameter(name).value) for name in ("mission", "mission_file"))
         try:
             reader = self._setup.reader()
@@ -165,7 +168,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         return _SUCCESS
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Runs the mission of the parameters where there is one; from now on takes missions of others."""
+        """Run the mission of the parameters, if there is one, and accept missions of others from now on."""
         assert self._layer is not None
         try:
             if self._mission is not None:
@@ -181,22 +184,24 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         return _SUCCESS
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Waits until the robot stands still. Fails where a command hangs; the robot is stopped all the same."""
+        """Wait until the robot stands still. Fails if a command hangs; the robot is stopped all the same."""
         return _SUCCESS if self.halt() else _FAILURE
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Lets go of the robot."""
+        """Disconnect from the robot."""
         self.release()
         return _SUCCESS
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """As deactivate and cleanup."""
+        """Deactivate and clean up."""
         self.halt()
         self.release()
         return _SUCCESS
 
     def _LifecycleNodeMixin__on_change_state(self, request: Any, response: Any) -> Any:
-        """rclpy's own one answers nothing where there is no such transition, and a lifecycle manager waits for ever."""
+        """Answer every request: rclpy doesn't if there's no such transition, and a lifecycle manager then waits
+        forever.
+        """
         try:
             return super()._LifecycleNodeMixin__on_change_state(request, response)
         except RuntimeError as error:
@@ -205,7 +210,9 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             return response
 
     def halt(self) -> bool:
-        """Cancels all goals and the node's own mission, and halts what else runs; whether it ended. From any thread."""
+        """Cancel all goals and the node's own mission, and halt what else runs; return whether it ended. For any
+        thread.
+        """
         layer, was_active = self._layer, self._active
         if layer is None:
             return True
@@ -216,7 +223,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         return ended
 
     def release(self) -> None:
-        """Lets go of the robot, at rest. May be called twice."""
+        """Disconnect from the robot, which is left at rest. May be called twice."""
         layer, self._layer = self._layer, None
         if layer is not None:
             if self._follower is not None:
@@ -224,8 +231,10 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             layer.close()
 
     def emergency_stop(self, person: str = _PERSON) -> bool:
-        """Stops the robot at once until it is released, from any thread, or keeps it stopped from when it is configured
-        on; False where even that can't be written down.
+        """Stop the robot at once until it is released, from any thread.
+
+        Before the node is configured, keep the robot stopped from then on. Returns False if even that can't be written
+        down.
         """
         layer = self._layer
         if layer is not None:
@@ -239,31 +248,31 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         return False
 
     def disable(self) -> None:
-        """Stops the robot where there is one, without a latch; from any thread."""
+        """Stop the robot, if there is one, without a latch; from any thread."""
         if self._layer is not None:
             self._layer.disable()
 
     def answer(self, command: Command | dict[str, Any], person: str = _PERSON) -> Answer:
-        """Does a command. From any thread."""
+        """Do a command of the task layer. For any thread."""
         layer = self._layer
         if layer is None:
             return Answer(False, "There is no robot: the node is not configured.")
         return layer.handle(command, person)
 
     def watch(self, *wanted: Any) -> Generator[dict[str, Any]]:
-        """What happens on the robot (see `btlang.task.feed.Feed.watch`); nothing if there is none."""
+        """Follow the events of the robot (see `btlang.task.feed.Feed.watch`); no events without a robot."""
         if self._layer is not None:
             yield from self._layer.feed.watch(*wanted)
 
     def _end_tasks(self, states: frozenset[State], reason: str) -> None:
-        """Those that don't outlive the node's work: of goals, and its own."""
+        """End the tasks that don't outlive the node's work: those of goals, and its own."""
         assert self._layer is not None
         for label in (LABEL, _OWN):
             for task in self._layer.store.tasks(states, label=label):
                 self.answer(messages.Cancel(task.id, reason))
 
     def _hindrance(self) -> str:
-        """Why no mission is taken now; "" where one is."""
+        """Return why the node accepts no mission now; "" if it does."""
         return "" if self._active else "the node is not active"
 
     def _sinks(self, task: Task | None, mission: Mission, run: Run) -> list[Sink]:
@@ -286,7 +295,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         ]
 
     def _changed(self, changes: Sequence[Change]) -> None:
-        """In the thread of the follower."""
+        """Publish a change of tasks, in the thread of the follower."""
         layer = self._layer
         if layer is None:
             return

@@ -34,9 +34,9 @@ LABEL = "goal"
 
 
 class MissionServer:
-    """~/run_mission: any number of goals, none while `hindrance` gives a reason. Callbacks wait for nothing.
+    """The action ~/run_mission for any number of goals, and none while `hindrance` gives a reason.
 
-    `handle` does commands. A goal whose client or node ends is cancelled.
+    Callbacks don't wait. `handle` does commands. A goal whose client or node ends is cancelled.
     """
 
     def __init__(
@@ -54,13 +54,13 @@ class MissionServer:
         GoalServer(node, RunMission, "~/run_mission", self._begin, Leases(node), self._accepts)
 
     def news(self, task: int, news: RunListener) -> None:
-        """What is new in the run of a task."""
+        """Send the progress of a task to its client."""
         goal = self._goals.get(task)
         if goal is not None:
             goal.publish_feedback(filled(RunMission.Feedback(task=task, state="underway"), news))
 
     def changed(self, data: dict[str, Any], report: MissionReport | None) -> None:
-        """A task has another state: `data` as answers have it, and the report if it is over."""
+        """Take a change of a task's state: `data` as in answers, and the report if the task is over."""
         with self._adding:
             goal = self._goals.get(data["id"])
         if goal is None:
@@ -121,7 +121,7 @@ _OF_A_TASK = (
 
 
 def create_services(node: Node, handle: Handle) -> None:
-    """`~/pause`, `~/cancel` and so on, and `~/command` for all commands as JSON; `handle` does them."""
+    """Create `~/pause`, `~/cancel` and so on, and `~/command` for all commands as JSON; `handle` does them."""
     for kind in _PLAIN:
         node.create_service(Trigger, f"~/{kind.tag}", partial(_plain, kind, handle))
     for each in _OF_A_TASK:

@@ -37,9 +37,9 @@ _PAUSE = 0.1  # seconds of real time between two snapshots of all nodes
 
 
 class RunListener(Record):
-    """Statuses of nodes by path at a time of the mission, and the words of the commands that run.
+    """Statuses of nodes by path at a time of the mission, and the words of the running commands.
 
-    `is_last` where the run is over.
+    `is_last` is true when the run is over.
     """
 
     time: float
@@ -49,7 +49,8 @@ class RunListener(Record):
 
 
 class MissionProgress:
-    """A sink that hands on, once a tick at most, the nodes with a new status, and now and then and at the end all.
+    """A sink that passes on the nodes with a new status, at most once a tick, and now and then and at the end all
+    nodes.
 
     `snapshot` is that of the run. The other functions are called in the thread of the run, and at its end.
     """
@@ -94,7 +95,9 @@ _PHRASES = {"success": "succeeded", "failure": "failed", "skipped": "had nothing
 
 
 class MissionReport(Record):
-    """`outcome` is "success", "failure", "skipped" or "stopped"; `seconds` are those of the mission."""
+    """How a mission ended: `outcome` is "success", "failure", "skipped" or "stopped",
+    `seconds` those of the mission.
+    """
 
     outcome: str
     reason: str = ""
@@ -102,7 +105,7 @@ class MissionReport(Record):
 
     @property
     def success(self) -> bool:
-        """Whether it did what it should; a mission that had nothing to do did."""
+        """Whether the mission succeeded; one that had nothing to do did."""
         return self.outcome in ("success", "skipped")
 
     def __str__(self) -> str:
@@ -111,7 +114,7 @@ class MissionReport(Record):
 
 
 def report_of(task: Task, seconds: float) -> MissionReport:
-    """Of a task that is over."""
+    """Return the report of a task that is over."""
     if task.state is State.COMPLETED and task.reason == NOTHING_TO_DO:
         return MissionReport("skipped", "", seconds)
     return MissionReport(_OUTCOMES.get(task.state, "stopped"), task.reason, seconds)
@@ -123,10 +126,10 @@ _PERIOD = 1.0  # seconds between two diagnostics
 
 
 class Topics:
-    """~/tree, ~/tree_changes, ~/status, ~/tasks, ~/log and /diagnostics; may be used from any thread.
+    """The topics ~/tree, ~/tree_changes, ~/status, ~/tasks, ~/log and /diagnostics; for any thread.
 
-    `show` gets each line of the log.
-    `health` says how the node does: level, message and values; it is asked in the thread of the executor.
+    `show` gets each line of the log. `health` returns the state of the node: level, message and values; it is called in
+    the thread of the executor.
     """
 
     def __init__(
@@ -143,30 +146,30 @@ class Topics:
         node.create_timer(_PERIOD, self._publish_health, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def tree(self, snapshot: str) -> None:
-        """The tree that runs now, with its statuses; see btlang.ros.mission.topics."""
+        """Publish the tree that runs now, with its statuses, as TreeTopic makes it."""
         self._tree.publish(String(data=snapshot))
 
     def tree_changes(self, changes: str) -> None:
-        """What is new in it."""
+        """Publish changes of that tree."""
         self._changes.publish(String(data=changes))
 
     def status(self, news: RunListener) -> None:
-        """The nodes that have been reached."""
+        """Publish the nodes that have been reached."""
         self._status.publish(filled(TreeStatus(), news))
 
     def tasks(self, listed: Answer) -> None:
-        """The tasks that are not over, as the command `list` answers them."""
+        """Publish the tasks that aren't over, as the command `list` answers them."""
         if listed.ok:
             tasks = [TaskMessage(**{field: task[field] for field in _OF_A_TASK}) for task in listed.data["tasks"]]
             self._tasks.publish(Tasks(tasks=tasks, hindrance=listed.data["hindrance"]))
 
     def log(self, line: str) -> None:
-        """A line of what happens."""
+        """Publish a line of what happens."""
         self._log.publish(String(data=line))
         self._show(line)
 
     def complain(self, text: str) -> None:
-        """What a caller did wrong, on the log of ROS too."""
+        """Report a caller's mistake, also on the log of ROS."""
         self._log.publish(String(data=text))
         self._node.get_logger().error(text)
 
@@ -180,7 +183,7 @@ class Topics:
 
 
 def filled(message: Any, news: RunListener) -> Any:
-    """A TreeStatus or the feedback of RunMission with the news in it."""
+    """Fill a TreeStatus or the feedback of RunMission with the progress of a run."""
     message.time, message.running = news.time, news.running
     message.paths, message.statuses = list(news.statuses), [int(status) for status in news.statuses.values()]
     return message
@@ -190,8 +193,10 @@ _TREE_PAUSE = 1.0  # seconds of real time between two snapshots while statuses c
 
 
 class TreeTopic:
-    """`snapshot` and `changes` publish a text. Both have the id of the run and a `sequence`, which counts the changes:
-    a snapshot holds those up to its own, so whoever joins applies only later ones, and knows when one was lost.
+    """The tree of a run as a snapshot and changes; `snapshot` and `changes` publish a text.
+
+    Both have the id of the run and a `sequence`, which counts the changes: a snapshot includes those up to its own. So
+    a late listener applies only later ones, and notices if one was lost.
     """
 
     def __init__(
@@ -208,13 +213,13 @@ class TreeTopic:
         self._snapshot(json.dumps({**self._head, "sequence": 0, "time": 0.0, "statuses": {}}))
 
     def changed(self, news: RunListener) -> None:
-        """The nodes with a new status."""
+        """Publish the nodes with a new status."""
         self._sequence += 1
         changes = {"run": self._head["run"], "sequence": self._sequence, "time": news.time, "changes": _named(news)}
         self._changes(json.dumps(changes))
 
     def reached(self, news: RunListener, *, is_last: bool = False) -> None:
-        """All nodes that were reached."""
+        """Publish all nodes that were reached."""
         now = time.monotonic()
         if is_last or now >= self._published_at + _TREE_PAUSE:
             self._published_at = now

@@ -37,12 +37,13 @@ _NEWEST = 1  # velocity is kept: with each that fills what is kept, Fast DDS ask
 
 
 class RosBase:
-    """Publishes the wanted velocity once between two steps while it is not zero, since robots brake without it. It
-    never publishes one that is not finite, or faster than `fastest`: metres and degrees a second.
+    """The base of a ROS 2 robot. It repeats the wanted velocity between two steps, since robots brake without it.
 
-    The pose is the latest one of the localization, moved on by the odometry since; if nothing localizes the robot, the
-    odometry alone. `halt` may be called from any thread. Nothing is published before somebody listens: the type of the
-    listener, Twist or TwistStamped, decides, since a node can use a topic with one type.
+    It never publishes a velocity that isn't finite, or is faster than `fastest`: metres and degrees a second.
+
+    The pose is the latest one of the localization, moved on by the odometry since; if nothing localizes the robot, it
+    is the odometry alone. `halt` may be called from any thread. Nothing is published before somebody listens: the type
+    of the listener, Twist or TwistStamped, decides, since a node can use a topic with only one type.
     """
 
     def __init__(
@@ -73,7 +74,7 @@ class RosBase:
         subscriptions.listen(LOCATED, PoseWithCovarianceStamped, "pose", qos="state", also=self._located)
 
     def adapt(self) -> str:
-        """The type that those who listen take; from now on velocities are published in it."""
+        """Choose the type of velocity messages that listeners take, and return its name."""
         types = {end.topic_type for end in self._node.get_subscriptions_info_by_topic(VELOCITY)} & {TWIST, STAMPED}
         with self._lock:
             if types and (self._publisher is None or self._type not in types):
@@ -84,10 +85,11 @@ class RosBase:
             return self._type
 
     def drive(self, linear: float, angular: float) -> None:
-        """Metres and degrees a second, at most as fast as it can. Raises RobotError for what is no velocity.
+        """Set the wanted metres and degrees a second, within the limits. Raises RobotError for numbers that aren't
+        finite.
 
-        Only zero while the latch refuses commands. It checks the latch within the lock, so that the zero of a stop
-        comes after all that was let through before it.
+        While the latch refuses commands, only zero is accepted. The latch is checked within the lock, so that the zero
+        of a stop comes after all that was let through before it.
         """
         with self._lock:
             wanted = self.clipped(linear, angular)
@@ -105,17 +107,17 @@ class RosBase:
                 raise
 
     def halt(self) -> None:
-        """Zero velocity, from any thread."""
+        """Publish zero velocity, from any thread."""
         self.drive(0.0, 0.0)
 
     def confirm_halt(self) -> None:
-        """Zero velocity, and waits for half a second at most until all who listen have it."""
+        """Publish zero velocity, and wait at most half a second until all listeners have it."""
         self.halt()
         if self._publisher is not None:
             self._publisher.wait_for_all_acked(_ACKNOWLEDGED)
 
     def step(self, dt: float) -> None:
-        """Publishes the wanted velocity again, unless that was done since the last step; `dt` seconds have passed."""
+        """Publish the wanted velocity again, unless it was since the last step; `dt` seconds have passed."""
         with self._lock:
             if self._wanted != (0.0, 0.0):
                 self._watch(min(dt, _STEP))
@@ -124,32 +126,32 @@ class RosBase:
             self._published = False
 
     def clipped(self, linear: float, angular: float) -> tuple[float, float]:
-        """The same velocity, at most as fast as the base can."""
+        """Return a velocity within the limits of the base."""
         return _at_most(linear, self._fastest[0]), _at_most(angular, self._fastest[1])
 
     @property
     def wanted(self) -> tuple[float, float]:
-        """Metres and degrees a second that it has been commanded to move."""
+        """The commanded metres and degrees a second."""
         return self._wanted
 
     @property
     def driving(self) -> bool:
-        """Whether it has been commanded to move."""
+        """Whether it is commanded to move."""
         return self._wanted != (0.0, 0.0)
 
     @property
     def stuck(self) -> bool:
-        """True when it has been commanded to move for a second (to set off: for three) and does not."""
+        """Whether it has been commanded to move for a second (to set off: for three) and doesn't."""
         return self._idle >= (_STUCK_AFTER if self._under_way else _BEGINS)
 
     @property
     def velocity(self) -> tuple[float, float]:
-        """Metres and degrees a second. Raises RobotError where the odometry is silent."""
+        """The measured metres and degrees a second. Raises RobotError if the odometry is silent."""
         return self._measured(_SILENT)
 
     @property
     def motion(self) -> tuple[float, float] | None:
-        """Metres and degrees a second by what was measured a moment ago; None where nothing was."""
+        """The metres and degrees a second measured a moment ago; None if there is no measurement."""
         try:
             return self._measured(_JUST)
         except RobotError:
@@ -162,12 +164,12 @@ class RosBase:
 
     @property
     def pose(self) -> Pose:
-        """Where it is on the map. Raises RobotError where the odometry is silent."""
+        """The pose on the map. Raises RobotError if the odometry is silent."""
         now = pose_of(self._subscriptions.get(ODOMETRY, _SILENT).pose.pose)
         return now if self._fix is None else _carried(*self._fix, now)
 
     def reading(self) -> OdometryReading | None:
-        """The latest odometry, for the guard; None if none has come."""
+        """Return the latest odometry, for the guard; None if none has come."""
         found = self._subscriptions.reading(ODOMETRY, FRESH)
         if found is None:
             return None
@@ -177,11 +179,11 @@ class RosBase:
 
     @property
     def is_localized(self) -> bool:
-        """Whether the pose is more than that of the odometry."""
+        """Whether the pose comes from more than odometry."""
         return self._fix is not None
 
     def where(self) -> Pose | None:
-        """The pose; None where the odometry is silent."""
+        """Return the pose; None if the odometry is silent."""
         try:
             return self.pose
         except RobotError:
@@ -198,7 +200,7 @@ class RosBase:
             self._published = True
 
     def _watch(self, dt: float) -> None:
-        """Counts the time in which it does not move as commanded, by its pose. A command has to arrive first."""
+        """Count the time without the commanded motion, by the pose. A command has to arrive first."""
         try:
             message = self._subscriptions.get(ODOMETRY, _FRESH)
         except RobotError:
@@ -230,11 +232,11 @@ class RosBase:
 
     @property
     def _sent(self) -> tuple[float, float]:
-        """What of the wanted velocity may be sent."""
+        """The part of the wanted velocity that may be sent."""
         return _at_most(self._wanted[0], self.limits[0]), _at_most(self._wanted[1], self.limits[1])
 
     def _arc(self, way: float, angle: float) -> float:
-        """Metres that the rim of the robot moves, of metres and degrees."""
+        """Return the metres that the rim of the robot moves for metres and degrees."""
         return abs(way) + self._radius * radians(abs(angle))
 
     def _moved(self, message: Any) -> None:
@@ -244,7 +246,7 @@ class RosBase:
             self._match(early)
 
     def _located(self, message: Any) -> None:
-        """A pose is matched with the odometry of its time, which may come a moment later."""
+        """Match a pose with the odometry of its time, which may come a moment later."""
         if self._track and seconds_of(message.header.stamp) <= self._track[-1][0]:
             self._match(message)
         else:
@@ -257,12 +259,12 @@ class RosBase:
 
 
 def _at_most(speed: float, most: float) -> float:
-    """What is not finite stays so, and is refused."""
+    """Clip a value to a limit. A value that isn't finite stays so, and is refused later."""
     return max(-most, min(most, speed)) + 0.0 if isfinite(speed) else speed
 
 
 def _carried(located: Pose, before: Pose, now: Pose) -> Pose:
-    """A pose on the map, moved on as the odometry did."""
+    """Return a pose on the map, moved on as the odometry did."""
     turn = wrap(located.heading - before.heading)
     c, s = cos(radians(turn)), sin(radians(turn))
     dx, dy = now.x - before.x, now.y - before.y

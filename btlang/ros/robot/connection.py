@@ -44,11 +44,11 @@ _LAST_ANSWERS = 2.0  # seconds that goals which were halted get to end
 
 
 class RosConnection:
-    """See `btlang.run.connection.Connection`. Names and poses are those of the world file, whose map is the robot's.
+    """A connection to a ROS 2 robot. Names and poses are those of the world file, whose map is the robot's.
 
-    With `sim_time` the mission's clock follows the topic /clock, else the system's. Missions run in real time.
-    `namespace` is that of the robot and of the `node`, which is called `name`. With `servers` actions are done by
-    the servers of `btc serve-actions` in that folder of names; what the robot senses comes from itself all the same.
+    With `sim_time` the mission's clock follows the topic /clock, otherwise the system's. Missions run in real time.
+    `namespace` is that of the robot and of the `node`, which is called `name`. With `servers`, actions are done by the
+    servers of `btc serve-actions` in that folder of names; sensing still uses the robot itself.
     """
 
     def __init__(
@@ -82,7 +82,7 @@ class RosConnection:
             raise
 
     def bind(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
-        """As a client of what its `ros` table names, or of its server; None where neither is there.
+        """Bind an entry to what its `ros` table names, or to its server; None if it has neither.
 
         Raises MissionError (BT104 to BT106).
         """
@@ -91,11 +91,12 @@ class RosConnection:
         return bind_ros(entry, vocabulary, self._clients, self.robot.located)
 
     def survey(self, tree: Tree, vocabulary: Lexicon) -> dict[Interface, tuple[Node | None, str]]:
-        """What a tree needs of the robot, the first leaf that needs it, and what is wrong with it, "" for nothing.
+        """Return what a tree needs of the robot, each with the first leaf that needs it and what is wrong, "" for
+        nothing.
 
-        Waits for what is missing: until the node is seven seconds old, at least for two seconds; and for two seconds
-        for states that may only be published when they change. Raises MissionError where nav2_msgs is needed and is
-        not installed (BT100), or btlang's interfaces aren't compiled (BT110).
+        Waits for what is missing: until the node is seven seconds old, at least for two seconds; and two seconds for
+        states that may only be published when they change. Raises MissionError if nav2_msgs is needed and isn't
+        installed (BT100), or btlang's interfaces aren't compiled (BT110).
         """
         wanted: dict[Interface, Node | None] = {CLOCK: None} if self._sim_time else {}
         declared, own = self._bound(tree, vocabulary)
@@ -123,11 +124,11 @@ class RosConnection:
         return {self._named(interface): lack for interface, lack in found.items()}
 
     def lacking_parts(self, tree: Tree, vocabulary: Lexicon) -> dict[str, Node]:
-        """The parts that a tree needs and the body lacks, each with the first leaf that needs it."""
+        """Return the parts that a tree needs and the body lacks, each with the first leaf that needs it."""
         return lacking(self.robot.body, tree, vocabulary, but=self._bound(tree, vocabulary)[0])
 
     def warnings(self, needs: Iterable[Interface]) -> list[str]:
-        """What is there and may do harm: others who command the robot to move, and two who say the same of it.
+        """Return what may do harm: others that command the robot to move, and two publishers of the same state.
 
         Waits until DDS has found everybody.
         """
@@ -143,7 +144,7 @@ class RosConnection:
             return sorted(each for each in named if each != own)
 
         def are_named() -> bool:
-            """Whether all that can be found has been: with one of a kind there may be another."""
+            """Return whether all that can be found has been: where there is one of a kind, there may be another."""
             found = [others(name) for name in commands] + [others(name)[1:] for name in said]
             return all(found) and not any(node == _UNNAMED for each in found for _, node in each)
 
@@ -160,9 +161,9 @@ class RosConnection:
         ]
 
     def blind(self, found: Mapping[Interface, tuple[Node | None, str]]) -> list[Diagnostic]:
-        """The warning that the mission drives, and nothing comes from the scanner of the robot file (BT107).
+        """Return the warning that the mission drives, but the robot file's scanner sends nothing (BT107).
 
-        `found` is what `survey` gave. Where the mission itself needs the scanner, that is missing already.
+        `found` is the result of `survey`. If the mission itself needs the scanner, it is reported as missing already.
         """
         drives = full_name(self.node, "listener", VELOCITY)
         node = next((node for need, (node, _) in found.items() if (need.kind, need.name) == ("listener", drives)), None)
@@ -173,12 +174,12 @@ class RosConnection:
         return [diagnostic("BT107", _place(node), words=_words(node), reason=reason)] if reason else []
 
     def _spoken(self, wanted: Mapping[Interface, Node | None]) -> dict[Interface, Node | None]:
-        """With the type of velocity that the robot listens to."""
+        """Return the interfaces with the type of velocity that the robot listens to."""
         types = {VELOCITY: self.robot.velocity_type()}
         return {i.replace(type=types.get(i.name, i.type)): node for i, node in wanted.items()}
 
     def _offered(self, wanted: Interface) -> tuple[Interface, str]:
-        """What the robot has for it, and what is wrong with that, "" for nothing."""
+        """Return what the robot offers for an interface, and what is wrong with that, "" for nothing."""
         choices = ALTERNATIVES.get(wanted.name, ())
         if any(each.kind == "action" for each in choices) and not self.robot.power.prepare_docking():
             choices = ()
@@ -188,7 +189,7 @@ class RosConnection:
         return offered, ", and ".join(dict.fromkeys(filter(None, [reason, *others])))
 
     def _lacks(self, wanted: Interface) -> str:
-        """What is wrong with an interface that shipped leaves need, "" for nothing."""
+        """Return what is wrong with an interface that shipped leaves need, "" for nothing."""
         node, name = self._spun.node, self._named(wanted).name
         reason = self._absent(wanted)
         if not reason and wanted.kind in ("publisher", "listener"):
@@ -205,7 +206,7 @@ class RosConnection:
         return named
 
     def _bound(self, tree: Tree, vocabulary: Lexicon) -> tuple[set[str], dict[Interface, Node]]:
-        """The ids of leaves that are done by `ros` tables, and what these need, each with the first such leaf."""
+        """Return the ids of leaves with `ros` tables, and what these need, each with the first such leaf."""
         self._clients.begin()
         ids: set[str] = set()
         own: dict[Interface, Node] = {}
@@ -219,9 +220,7 @@ class RosConnection:
         return ids, own
 
     def check(self, tree: Tree, vocabulary: Lexicon) -> None:
-        """Raises MissionError as `check_mission` does, and with all interfaces that the tree needs and the robot lacks
-        (BT101).
-        """
+        """Raise MissionError as `check_mission` does, and for all interfaces that the robot lacks (BT101)."""
         check_mission(self.robot.world, self.robot.body, tree, vocabulary, but=self._bound(tree, vocabulary)[0])
         lacking = [(i, node, reason) for i, (node, reason) in self.survey(tree, vocabulary).items() if reason]
         if lacking:
@@ -229,17 +228,19 @@ class RosConnection:
         self.robot.subscriptions.read()
 
     def begin(self, bus: Bus) -> None:
-        """A new run: what the robot reports goes on this bus."""
+        """Begin a run: what the robot reports goes to this bus."""
         self.bus = bus
 
     def pace(self, speed: float, controls: Controls) -> Pace:
-        """Raises ValueError for another speed than 1: the robot's time passes by itself."""
+        """Return the pace of real time. Raises ValueError for another speed than 1: the robot's
+        time passes by itself.
+        """
         if speed != 1.0:
             raise ValueError('a ROS 2 robot runs in real time: speed must be "real"')
         return RosPace(controls, self._ros_time if self._sim_time else None, self._clock_failed)
 
     def close(self) -> None:
-        """Leaves the robot at rest and its goals cancelled, then the ROS graph. Takes a few seconds at most."""
+        """Leave the robot at rest with its goals cancelled, and leave the ROS graph. Takes a few seconds at most."""
         try:
             self._clients.close(_LAST_ANSWERS)
             self.robot.close()
@@ -263,7 +264,7 @@ def _lack(interface: Interface, node: Node | None, reason: str) -> Any:
 
 
 def _words(node: Node | None) -> str:
-    """Those of a leaf; without one simulated time is what needs something."""
+    """Return the words of a leaf; without one, the option --sim-time needs something."""
     if node is None:
         return "--sim-time"
     return node.id if node.span is None else node.span.text

@@ -23,7 +23,7 @@ _HANDS: tuple[Hand, Hand] = ("left", "right")
 
 
 class RosHands:
-    """`where` is where the robot is, None where nobody knows; `emit` reports what happens."""
+    """The hands. `where` returns the robot's pose, None if nobody knows it; `emit` reports what happens."""
 
     def __init__(
         self,
@@ -50,19 +50,19 @@ class RosHands:
             services.add(HAND_OVER, service)
 
     def grasp(self, hand: Hand, name: str | None) -> ServiceCall:
-        """Closes a hand; where it closes on another object than the named one, it opens again. Raises RobotError."""
+        """Close a hand. If it closes on another object than the named one, it opens again. Raises RobotError."""
         if name is not None:
             self._places.check_movable(name)
         wanted = None if name is None else self._places.known(name)
         return self._services.call(_close(hand), partial(self._grasped, hand, wanted), data=True)
 
     def release(self, hand: Hand) -> ServiceCall:
-        """Opens a hand. Raises RobotError."""
+        """Open a hand. Raises RobotError."""
         self._opening[hand] = self._services.call(_close(hand), partial(self._released, hand), data=False)
         return self._opening[hand]
 
     def hand_over(self, hand: Hand, person: str) -> ServiceCall:
-        """Gives what a hand holds to a person. Raises RobotError."""
+        """Give what a hand holds to a person. Raises RobotError."""
         name, known = self.holding(hand), self._places.known(person)
         if name is None:
             raise RobotError(f"the {hand} hand is empty")
@@ -73,7 +73,9 @@ class RosHands:
         return self._opening[hand]
 
     def holding(self, hand: Hand) -> str | None:
-        """The name of what it holds, None for no such hand. Raises RobotError if nothing reports it."""
+        """Return the name of what a hand holds; None if there is no such hand. Raises RobotError
+        if nothing reports it.
+        """
         if hand not in self._hands:
             return None
         if hand not in self._holding:
@@ -81,7 +83,7 @@ class RosHands:
         return self._holding.get(hand) or None
 
     def step(self) -> None:
-        """Hears what the hands hold."""
+        """Read what the hands hold."""
         for hand in self._hands:
             for message in self._subscriptions.events(_held(hand)):
                 before = self._holding.get(hand, "")
@@ -91,7 +93,7 @@ class RosHands:
                     self._emit("drop", hand=hand, name=before)
 
     def awaited(self) -> list[str]:
-        """The topics that somebody publishes and that have said nothing yet."""
+        """Return the topics that somebody publishes and that have reported nothing yet."""
         topics = map(_held, self._hands)
         return [each for each in topics if not self._subscriptions.has(each) and self._node.count_publishers(each)]
 

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 class Interface(Record):
     """An interface of the robot: `kind` is "publisher" or "listener" of a topic, "service", "action" or "node".
 
-    A name without a slash before it is in the namespace of the robot. `type` is as ROS 2 tools write it. One that
-    `flows` reports its state to listeners, at once or again and again, so that silence is a fault.
+    A name without a leading slash is in the namespace of the robot. `type` is written as in ROS 2 tools. One that
+    `flows` reports its state to listeners, at once or repeatedly, so that silence is a fault.
     """
 
     kind: str
@@ -28,7 +28,7 @@ class Interface(Record):
 
     @property
     def sort(self) -> str:
-        """What it is in ROS 2."""
+        """The word for it in ROS 2."""
         return "topic" if self.kind in ("publisher", "listener") else self.kind
 
 
@@ -75,7 +75,7 @@ ALTERNATIVES: dict[str, tuple[Interface, ...]] = {
 
 
 def interfaces(need: str, body: Body) -> tuple[Interface, ...]:
-    """What the robot has to offer for what a word needs; nothing for what is unknown."""
+    """Return the interfaces for something that a word needs; none for what is unknown."""
     hands = [hand.name for hand in body.hands]
     if need == "holding":
         return tuple(Interface("publisher", f"{hand}_hand/holding", _HOLDING, flows=True) for hand in hands)
@@ -88,7 +88,9 @@ def interfaces(need: str, body: Body) -> tuple[Interface, ...]:
 
 
 def needs(tree: Tree, vocabulary: Lexicon, body: Body, but: Collection[str] = ()) -> dict[Interface, Node]:
-    """What a tree needs of the robot, each with the first leaf that needs it; but for leaves of some ids."""
+    """Return what a tree needs of the robot, each with the first leaf that needs it; leaves with ids in `but` don't
+    count.
+    """
     found: dict[Interface, Node] = {}
     for node in tree.walk():
         for need in needs_of(node, vocabulary) if node.id not in but else ():

@@ -22,23 +22,26 @@ _SILENT = 2.0  # seconds without joint states
 
 
 class JointStates:
-    """Degrees here, radians on the wire, metres in both of a joint that slides; names have `_` for blanks there."""
+    """The angles of joints: degrees here, radians in messages, metres in both for a joint that slides.
+
+    In messages names have `_` for blanks.
+    """
 
     def __init__(self, subscriptions: SubscriptionCache, body: Body) -> None:
         self._subscriptions, self._body = subscriptions, body
         subscriptions.listen(STATES, JointState, "joint states")
 
     def awaited(self) -> list[str]:
-        """The joints of the body that haven't been reported yet, although others have."""
+        """Return the joints of the body that haven't been reported yet, although others have."""
         states = self._subscriptions.latest_joints(STATES)
         return states.missing(on_wire(joint.name) for joint in self._body.joints) if states.has_come else []
 
     def angle(self, name: str) -> float:
-        """Raises RobotError for an unknown joint, and where the joint states are silent."""
+        """Return the angle of a joint. Raises RobotError for an unknown joint, or if the joint states are silent."""
         return self.stamped(name)[0]
 
     def stamped(self, name: str) -> tuple[float, float]:
-        """As `angle`, with the time stamp of the message."""
+        """Return the angle of a joint with the time stamp of its message. Raises as `angle`."""
         joint = joint_of(self._body, name)
         self._subscriptions.get(STATES, _SILENT)
         position, stamp = self._subscriptions.latest_joints(STATES).position(on_wire(name), _SILENT)
@@ -46,12 +49,12 @@ class JointStates:
 
 
 def on_wire(name: str) -> str:
-    """The name of a joint in messages."""
+    """Return the name of a joint in messages."""
     return name.replace(" ", "_")
 
 
 class JointsOverRos(Protocol):
-    """Joints of any kind. `freeze`, which without names is for all of them, may be called from any thread."""
+    """Joints of any kind. `freeze`, which is for all joints if none are named, may be called from any thread."""
 
     @property
     def moving(self) -> bool: ...
@@ -64,7 +67,7 @@ class JointsOverRos(Protocol):
 
 
 class RosJoints:
-    """See JointsOverRos: each command is one point, and how the joints get there is up to the robot."""
+    """Joints that are commanded one point at a time; how they get there is up to the robot."""
 
     def __init__(self, node: Node, subscriptions: SubscriptionCache, body: Body) -> None:
         self._body = body
@@ -74,7 +77,6 @@ class RosJoints:
         self._publisher = node.create_publisher(JointTrajectory, TRAJECTORY, 10)
 
     def awaited(self) -> list[str]:
-        """See JointStates."""
         return self._states.awaited()
 
     @property
@@ -83,14 +85,13 @@ class RosJoints:
         return bool(self._targets)
 
     def angle(self, name: str) -> float:
-        """See JointStates."""
         return self._states.angle(name)
 
     def step(self) -> None:
-        """Nothing: they move by themselves."""
+        """Do nothing: the joints move by themselves."""
 
     def move(self, targets: Mapping[str, float]) -> None:
-        """Sets off towards the targets, clipped to the limits. Raises RobotError as `angle` does."""
+        """Set off towards the targets, clipped to the limits. Raises RobotError as `angle` does."""
         goals = clipped(self._body, targets)
         times = (abs(goal - self.angle(name)) / joint_of(self._body, name).speed for name, goal in goals.items())
         self._publish(goals, max(times, default=0.0))
@@ -98,7 +99,7 @@ class RosJoints:
         self._progress.start(goals)
 
     def at_target(self, names: tuple[str, ...]) -> bool:
-        """True when none of them is on its way. Raises RobotError where one of them is stuck."""
+        """Return whether none of these joints is on its way. Raises RobotError if one of them is stuck."""
         for name in names:
             target = self._targets.get(name)
             if target is not None and self._progress.has_arrived(name, target - self.angle(name)):
@@ -106,7 +107,7 @@ class RosJoints:
         return not any(name in self._targets for name in names)
 
     def freeze(self, names: tuple[str, ...] = ()) -> None:
-        """Those of them (without names: of all) that are on their way stay where they are."""
+        """Hold these joints, or all if none are named, where they are."""
         under_way = [name for name in (names or tuple(self._targets)) if self._targets.pop(name, None) is not None]
         try:
             self._publish({name: self.angle(name) for name in under_way}, 0.0)

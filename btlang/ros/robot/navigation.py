@@ -39,11 +39,11 @@ _MOVED, _TURNED = 0.05, 5.0  # metres and degrees that it has to move
 
 
 class GoalTask(Record):
-    """What a server is asked for: the `sort` of server, the `name` of what it is for, and both in sentences, as
-    "the navigation to the lab", "navigate to the lab" and " on the way to the lab".
+    """What a server is asked for.
 
-    `reasons` are those of its error codes. `regular` is whether it gives feedback again and again. The robot has to be
-    within the `tolerance` of the `goal` at the end, in metres.
+    It has the `sort` of server, the `name` of the target, and both in sentences, such as "the navigation to the lab",
+    "navigate to the lab" and " on the way to the lab". `reasons` are those of its error codes. `regular` is whether it
+    sends feedback repeatedly. The robot has to be within the `tolerance` of the `goal` at the end, in metres.
     """
 
     sort: str
@@ -58,12 +58,12 @@ class GoalTask(Record):
 
 
 class ServerGoal:
-    """One goal; see `btlang.robots.robot.Operation`. `end` may be called from any thread.
+    """One goal, as an Operation. `end` may be called from any thread.
 
-    Nothing waits: `step` looks at what has come, so that a server that never answers costs the tick nothing. `spin` has
-    a function called in the thread that spins, where alone the client of an action may be used: elsewhere it could
-    meet an answer before it has noted the question. `where` gives the pose of the robot, None where nobody knows it,
-    and `localized` whether that is more than odometry: else a pose that the server reports goes before.
+    Nothing waits: `step` looks at what has come, so that a server that never answers costs the tick nothing. `spin`
+    calls a function in the thread that spins, the only one that may use the client of an action: elsewhere an answer
+    could come before the request is noted. `where` returns the pose of the robot, None if nobody knows it, and
+    `localized` whether it comes from more than odometry: otherwise a pose that the server reports is preferred.
     """
 
     def __init__(
@@ -101,11 +101,11 @@ class ServerGoal:
         self._reported: Pose | None = None
 
     def cancel(self) -> None:
-        """Gives up: the goal is withdrawn."""
+        """Withdraw the goal."""
         self.end(f"{self._task.noun} was cancelled")
 
     def end(self, failure: str | None, *, withdraw: bool = True) -> None:
-        """Arrived, or the reason why not. Does nothing when done."""
+        """End the goal, as arrived or with the reason why not. Does nothing if it has ended."""
         with self._lock:
             if self.done:
                 return
@@ -118,7 +118,7 @@ class ServerGoal:
             self.withdrawn.set()
 
     def step(self) -> None:
-        """Goes on with what has come since the last call."""
+        """Go on with what has come since the last call."""
         if self.done:
             return
         if not self._sent:
@@ -140,7 +140,7 @@ class ServerGoal:
         return AWAKE.now() - self._since > limit
 
     def _stands(self, limit: float) -> bool:
-        """Whether the robot, or what the server says of it, has not moved for so long."""
+        """Return whether the robot, or what the server reports of it, hasn't moved for so long."""
         before, since = self._stood
         now = self._where() or self._reported
         if now is not None and (
@@ -173,7 +173,7 @@ class ServerGoal:
         self.end((getattr(answer.result, "error_msg", "") or reason) + again, withdraw=False)
 
     def _arrive(self) -> None:
-        """The server reports success: so it is, if the robot is there. Its pose may come a moment later."""
+        """Take the server's success, if the robot is there. Its pose may come a moment later."""
         goal, at = self._task.goal, self._where() if self._localized() else self._reported or self._where()
         away = 0.0 if goal is None or at is None else at.distance_to((goal.x, goal.y))
         if self._succeeded_at is None:
@@ -212,7 +212,7 @@ class ServerGoal:
         self._result.add_done_callback(lambda _: self._over())
 
     def _withdraw(self) -> None:
-        """One that is not accepted, as far as is known, is withdrawn by its id, and again when it is accepted."""
+        """Cancel a goal that may not be accepted yet by its id, and again once it is accepted."""
         if not self._withdrawing:  # the second answer would call it terminated
             self._withdrawing = True
             was_accepted = self._handle is not None
@@ -237,13 +237,13 @@ class ServerGoal:
             self.withdrawn.set()
 
     def _over(self) -> None:
-        """The server does nothing more for it."""
+        """Note that the server does nothing more for the goal."""
         self.pending = ""
         self.withdrawn.set()
 
 
 class ServerGoals:
-    """The goals of a kind of server, and the one under way. `stop` may be called from any thread."""
+    """The goals of one kind of server, and the current one. `stop` may be called from any thread."""
 
     def __init__(
         self,
@@ -261,14 +261,14 @@ class ServerGoals:
         self._given_up: list[ServerGoal] = []
 
     def begin(self, task: GoalTask, client: Any, server: str, request: Any) -> ServerGoal:
-        """Sends a goal; see ServerGoal."""
+        """Send a goal as a ServerGoal."""
         goal_id, spin = self._lease.goal_id(), self._executor.post
         self._goal = ServerGoal(task, client, server, request, goal_id, spin, self._where, self._now, self._localized)
         self._goal.step()
         return self._goal
 
     def stop(self, reason: str) -> None:
-        """Gives up the goal under way, if there is one."""
+        """Withdraw the current goal, if there is one."""
         goal = self._goal
         if goal is not None and not goal.done:
             goal.end(reason)
@@ -276,7 +276,7 @@ class ServerGoals:
             self._stopped = AWAKE.now()
 
     def step(self) -> ServerGoal | None:
-        """Goes on; returns the goal when it has ended since the last call."""
+        """Go on; return the goal if it has ended since the last call."""
         goal = self._goal
         if goal is None:
             return None
@@ -288,16 +288,16 @@ class ServerGoals:
         return goal
 
     def pending(self) -> list[str]:
-        """Why the server may still drive the robot, for goals that were given up."""
+        """Return why the server may still drive the robot, for goals that were withdrawn."""
         return [goal.pending for goal in self._given_up if goal.pending]
 
     @property
     def has_just_stopped(self) -> bool:
-        """Whether a goal was given up so short a time ago that nobody may have seen yet what became of the robot."""
+        """Whether a goal was withdrawn so recently that nobody can know yet what became of the robot."""
         return AWAKE.now() - self._stopped < _SEEN
 
     def confirm_stop(self, seconds: float) -> None:
-        """Waits so long at most until the server has given up all goals that were withdrawn."""
+        """Wait at most `limit` seconds until the server has ended all goals that were withdrawn."""
         until = time.monotonic() + seconds
         for goal in (*self._given_up, *((self._goal,) if self._goal is not None else ())):
             goal.withdrawn.wait(max(0.0, until - time.monotonic()))
@@ -307,7 +307,7 @@ ACTION = "navigate_to_pose"
 
 
 class RosNavigation(ServerGoals):
-    """The client of the navigation server, and the goal under way."""
+    """The client of the navigation server, and the current goal."""
 
     def __init__(
         self,
@@ -324,7 +324,7 @@ class RosNavigation(ServerGoals):
         self._server = node.resolve_service_name(ACTION)
 
     def start(self, name: str, pose: Pose) -> ServerGoal:
-        """Sets out; a goal under way is given up."""
+        """Send a goal, and withdraw the current one."""
         self.stop(f"the robot set out for {said(name)} instead")
         goal = said(name)
         nouns = f"the navigation to {goal}", f"navigate to {goal}", f" on the way to {goal}"
@@ -338,8 +338,10 @@ _AGAIN = 2.0  # seconds between two goals
 
 
 class Pursuit:
-    """See `btlang.robots.robot.Operation`. `set_out` sends a goal for where it was seen last; another one is
-    sent when it is seen elsewhere. Raises what `set_out` does.
+    """A navigation to somebody who may walk, as an Operation.
+
+    `set_out` sends a goal for where the person was seen last; another one is sent if they are seen elsewhere. Raises
+    what `set_out` does.
     """
 
     def __init__(self, name: str, sight: Sight, set_out: Callable[[], ServerGoal], now: float) -> None:
@@ -350,17 +352,17 @@ class Pursuit:
         self._since, self._target = now, self._where()
 
     def cancel(self) -> None:
-        """Gives up. Does nothing when done."""
+        """Withdraw the goal. Does nothing if it has ended."""
         self.end(f"the navigation to {said(self._name)} was cancelled")
 
     def end(self, failure: str | None) -> None:
-        """There, or the reason why not. Does nothing when done."""
+        """End, as arrived or with the reason why not. Does nothing if it has ended."""
         if not self.done:
             self.done, self.failure = True, failure
             self._goal.end(failure)
 
     def step(self, now: float) -> None:
-        """Goes on at a second of the run."""
+        """Go on at a second of the run."""
         if self.done:
             return
         if self._goal.done:

@@ -31,10 +31,11 @@ _DOCK = "dock"
 
 
 class RosPlaces(Knowledge):
-    """Metres on the map, which is that of the world file. Objects move when the robot carries them.
+    """What the robot knows of its world, in metres on the map of the world file. Objects move with a robot that carries
+    them.
 
-    `notice` says what is in view: people who walk and unknown things are where they were seen. `report` gets each name
-    when it is first seen.
+    `notice` takes what is in view: people who walk and unknown things are where they were last seen. `report` gets each
+    name when it is first seen.
     """
 
     def __init__(self, world: World, body: Body, report: Callable[[str], object] = lambda name: None) -> None:
@@ -45,7 +46,7 @@ class RosPlaces(Knowledge):
         self._planner: PathPlanner | None = None
 
     def notice(self, seen: Mapping[str, tuple[str, Point]], now: float, pose: Pose) -> None:
-        """This is in view, and nothing else: the kind of each, "person" or "object", and where it is."""
+        """Take all that is in view: the kind of each, "person" or "object", and where it is."""
         names = {name.lower(): name for name in self.obstacles.things} if seen else {}
         self._in_view = {}
         for said_name, (kind, point) in seen.items():
@@ -62,15 +63,19 @@ class RosPlaces(Knowledge):
         self.sight.look(now, pose)
 
     def is_watched(self, name: str) -> bool:
-        """Whether it is known only where it was seen."""
+        """Return whether its position is only known from sightings."""
         return name in self.sight.watched
 
     def whereabouts(self) -> tuple[Whereabouts, ...]:
-        """Where those were seen who walk, and what isn't known, to the centimetre, and whether they are in view."""
+        """Return where walking people and unknown things were last seen, to the centimetre, and whether they are in
+        view.
+        """
         return self._watched(self.sight.where, self._in_view.__contains__)
 
     def located(self, name: str) -> tuple[float, float, float | None]:
-        """Metres, and the direction to face in radians, None for any. Raises KeyError for an unknown name."""
+        """Return the position in metres and the direction to face in radians, None for any. Raises KeyError for an
+        unknown name.
+        """
         try:
             point = self.locate(self.known(name), Pose(0.0, 0.0, 0.0))
         except RobotError:
@@ -79,21 +84,21 @@ class RosPlaces(Knowledge):
         return *point, None if facing is None else radians(facing)
 
     def dock(self, robot: Pose) -> Pose | None:
-        """The nearest of the world, which faces as the robot does in it."""
+        """Return the nearest dock of the world, which faces as the robot does in it."""
         return next((Pose(dock.x, dock.y, dock.facing or 0.0) for dock in self.world.docks_from(robot)), None)
 
     def stations(self, robot: Pose) -> list[Station]:
-        """The docks, the nearest first: where the robot has to stand to be connected; where it is, if there is none."""
+        """Return the docks, nearest first: where the robot stands to be connected; its own pose if there are none."""
         names = [dock.name for dock in self.world.docks_from(robot)] or [_DOCK]
         known = {name.lower() for name in self.world.names.places}
         spots = {name: self.goal(name, robot) for name in names if name.lower() in known}
         return [Station(name, spots.get(name, robot), spots.get(name, robot)) for name in names]
 
     def goal(self, name: str, robot: Pose) -> Pose:
-        """Where the robot has to stand for it, and which way to face. Raises RobotError for an unknown name, and for
-        what somebody was given.
+        """Return where the robot has to stand for a name, and which way to face.
 
-        Before an object or a person that is where the free way there ends, by the walls and boxes of the world file.
+        Before an object or a person that is the end of the free way there, by the walls and boxes of the world file.
+        Raises RobotError for an unknown name, and for what somebody was given.
         """
         known = self.known(name)
         self.check_free(known)
@@ -107,22 +112,22 @@ class RosPlaces(Knowledge):
         return Pose(*stand, stand_heading(stand, point))
 
     def picked_up(self, name: str) -> None:
-        """The robot carries it from now on."""
+        """Note that the robot carries an object from now on."""
         self.obstacles.pick_up(name)
 
     def put_down(self, name: str, robot: Pose, hand: Hand) -> None:
-        """It lies just in front of the robot."""
+        """Put an object just in front of the robot."""
         part = self._body.hand(hand)
         ahead = (part.puts_at if part is not None else self._body.radius) + self.obstacles.things[name].radius
         self.obstacles.put_down(name, *robot.ahead(ahead))
 
     def give(self, name: str, person: str) -> None:
-        """A person has an object from now on."""
+        """Note that a person has an object from now on."""
         self.obstacles.pick_up(name)
         super().give(name, person)
 
     def swing(self, name: str, is_open: bool) -> None:
-        """A door is open or closed from now on."""
+        """Open or close a door in the world."""
         if self.obstacles.doors[name].open != is_open:
             self.obstacles.swing(name, is_open)
 
@@ -139,7 +144,7 @@ class RosPlaces(Knowledge):
 
 
 def stand_heading(stand: Point, point: Point) -> float:
-    """Degrees that face a point."""
+    """Return the degrees that face a point."""
     return Pose(*stand).bearing_to(point)
 
 
@@ -150,7 +155,10 @@ def _stranger(name: str, kind: str, point: Point) -> Thing:
 
 
 class RosDoors:
-    """`emit` reports what happens. All raise RobotError for unknown names, and if nothing reports what is asked."""
+    """Doors and switches. `emit` reports what happens.
+
+    All methods raise RobotError for unknown names, and if nothing reports the state.
+    """
 
     def __init__(
         self,
@@ -170,32 +178,32 @@ class RosDoors:
             subscriptions.listen(state_topic(service), Bool, f"message from {said(name)}", qos="state")
 
     def move_door(self, name: str, is_open: bool) -> ServiceCall:
-        """Opens or closes a door."""
+        """Open or close a door."""
         door = self._places.door(name).name
         return self._services.call(self._doors[door], partial(self._moved, door, is_open), data=is_open)
 
     def is_open(self, name: str) -> bool:
-        """Whether a door is open."""
+        """Return whether a door is open."""
         return self._state(self._doors[self._places.door(name).name])
 
     def switch(self, name: str, on: bool | None) -> ServiceCall:
-        """Switches an object on or off, with None to the other of both."""
+        """Switch an object on or off; None toggles it."""
         known = self._switchable(name)
         wanted = not self._state(self._switches[known]) if on is None else on
         return self._services.call(self._switches[known], partial(self._switched, known, wanted), data=wanted)
 
     def is_on(self, name: str) -> bool:
-        """Whether an object is switched on."""
+        """Return whether an object is switched on."""
         return self._state(self._switches[self._switchable(name)])
 
     def step(self) -> None:
-        """Hears how doors and switches are."""
+        """Read the states of doors and switches."""
         for name, service in (*self._doors.items(), *self._switches.items()):
             for message in self._subscriptions.events(state_topic(service)):
                 self._note(name, service, bool(message.data))
 
     def awaited(self) -> list[str]:
-        """The topics that somebody publishes and that have said nothing yet."""
+        """Return the topics that somebody publishes and that have reported nothing yet."""
         topics = map(state_topic, (*self._doors.values(), *self._switches.values()))
         return [each for each in topics if not self._subscriptions.has(each) and self._node.count_publishers(each)]
 
@@ -225,17 +233,17 @@ class RosDoors:
 
 
 def door_services(world: World) -> dict[str, str]:
-    """The service of each door of a world."""
+    """Return the service of each door of a world."""
     return _services("doors", "door", (door.name for door in world.doors))
 
 
 def switch_services(world: World) -> dict[str, str]:
-    """The service of each object of a world that can be switched."""
+    """Return the service of each object of a world that can be switched."""
     return _services("switches", "switch", (thing.name for thing in world.objects if thing.switch))
 
 
 def state_topic(service: str) -> str:
-    """The topic that says whether a door is open, or an object is on."""
+    """Return the topic that reports whether a door is open, or an object is on."""
     return f"{service}/state"
 
 

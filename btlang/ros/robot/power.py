@@ -35,7 +35,7 @@ _UNDOCKING = {**_REASONS, 905: "the robot couldn't be driven out of the dock", 9
 
 
 class RosDocking(ServerGoals):
-    """The clients of the docking server, and the goal under way. Docking drives to the staging pose by itself."""
+    """The clients of the docking server, and the current goal. Docking drives to the staging pose by itself."""
 
     def __init__(
         self, node: Node, executor: ExecutorThread, where: Callable[[], Pose | None], now: Callable[[], float]
@@ -50,7 +50,7 @@ class RosDocking(ServerGoals):
         return bool(self._dock.server_is_ready() and self._undock.server_is_ready())
 
     def dock(self, pose: Pose | None) -> ServerGoal:
-        """Docks at a pose of the map; None: at the dock that the server calls "dock"."""
+        """Dock at a pose of the map; with None, at the dock that the server calls "dock"."""
         self.stop("the robot docks instead")
         request = DockRobot.Goal(use_dock_id=pose is None, dock_id="" if pose is not None else "dock")
         request.navigate_to_staging_pose = True
@@ -60,7 +60,7 @@ class RosDocking(ServerGoals):
         return self.begin(task, self._dock, self._node.resolve_service_name(DOCK_ROBOT), request)
 
     def undock(self) -> ServerGoal:
-        """Leaves the dock."""
+        """Leave the dock."""
         self.stop("the robot undocks instead")
         task = GoalTask("docking", "dock", "undocking", "undock", " on the way out of the dock", _UNDOCKING, False)
         server = self._node.resolve_service_name(UNDOCK_ROBOT)
@@ -80,9 +80,9 @@ _AT_CHARGER = {
 
 
 class RosPower:
-    """`emit` reports what happens. All raise RobotError if nothing reports what is asked for.
+    """The battery and the dock. `emit` reports what happens; everything raises RobotError if nothing reports the state.
 
-    `make_docking` makes the clients of the docking server; it raises ImportError where nav2_msgs has none.
+    `make_docking` makes the clients of the docking server; it raises ImportError if nav2_msgs has none.
     """
 
     def __init__(
@@ -108,12 +108,12 @@ class RosPower:
 
     @property
     def battery(self) -> float:
-        """Percent left."""
+        """The percentage that is left."""
         return 100.0 * float(self._subscriptions.get(BATTERY, _SILENT).percentage)
 
     @property
     def empty(self) -> bool:
-        """Only where the robot says so."""
+        """Whether the robot reports an empty battery."""
         try:
             return self.battery <= 0.0
         except RobotError:
@@ -121,19 +121,24 @@ class RosPower:
 
     @property
     def charging(self) -> bool:
-        """True while the battery is being charged."""
+        """Whether the battery is being charged."""
         state = self._subscriptions.get(STATUS, _SILENT)
         return bool(state.power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING)
 
     @property
     def docked(self) -> bool:
-        """True while connected to the dock. Where no topic reports it, the battery does: it charges, or is full."""
+        """Whether it is connected to the dock.
+
+        If no topic reports it, the battery does: it charges, or is full.
+        """
         if self._docked is None:
             self._hear_battery()
         return self._docked if self._docked is not None else bool(self._subscriptions.get(DOCKED).data)
 
     def prepare_docking(self) -> bool:
-        """Makes the clients of the docking server, which find it in a moment. False where nav2_msgs has no docking."""
+        """Make the clients of the docking server, which find it in a moment; return False if
+        nav2_msgs has no docking.
+        """
         if self.docking is None:
             with suppress(ImportError):
                 self.docking = self._make_docking()
@@ -145,21 +150,21 @@ class RosPower:
         return self.prepare_docking() and self.docking is not None and self.docking.served
 
     def dock(self, pose: Pose | None) -> Operation:
-        """Connects to the charger; a docking server drives to it, at a pose of the map where that is known."""
+        """Connect to the charger. A docking server drives there, at a pose of the map if that is known."""
         if self.docking is None or not self.docks_by_itself:
             return self._services.call(DOCK, lambda _: self._connected(True))
         self._docks = True
         return self.docking.dock(pose)
 
     def undock(self) -> Operation:
-        """Disconnects; a docking server drives out of the dock."""
+        """Disconnect. A docking server drives out of the dock."""
         if self.docking is None or not self.docks_by_itself:
             return self._services.call(UNDOCK, lambda _: self._connected(False))
         self._docks = False
         return self.docking.undock()
 
     def step(self) -> None:
-        """Hears whether it is docked."""
+        """Read whether it is docked."""
         for message in self._subscriptions.events(DOCKED):
             self._docked = bool(message.data)
         self._hear_battery()
@@ -173,7 +178,7 @@ class RosPower:
         return self._charge.fault(100.0 * state.percentage, AWAKE.now())
 
     def _hear_battery(self) -> None:
-        """What the battery reports about the dock, if no topic does."""
+        """Take what the battery reports about the dock, if no topic does."""
         if not self._subscriptions.has(DOCKED) and AWAKE.now() - self._since > _SETTLED:
             with suppress(RobotError):
                 status = self._subscriptions.get(STATUS, _SILENT).power_supply_status
@@ -187,6 +192,6 @@ class RosPower:
 def make_docking_clients(
     node: Node, executor: ExecutorThread, where: Callable[[], Pose | None], now: Callable[[], float]
 ) -> RosDocking:
-    """Those of the docking server. Raises ImportError where nav2_msgs has no docking, or is not installed."""
+    """Make the clients of the docking server. Raises ImportError if nav2_msgs isn't installed or has no docking."""
 
     return RosDocking(node, executor, where, now)

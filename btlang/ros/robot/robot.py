@@ -66,10 +66,10 @@ _LAST_WORDS = 2.0  # seconds that servers get to answer at the end
 
 
 class RosRobot(Guarded):
-    """Implements `btlang.robots.robot.Robot`; the pose is on the map of the world file.
+    """A `btlang.robots.robot.Robot` over ROS 2, whose pose is on the map of the world file.
 
-    A sensor that is silent is a RobotError for who asks for it, never a wait. The node has to be spun in a thread of
-    its own; its namespace is that of the robot. Sensors get old by the seconds of `now`.
+    A silent sensor is a RobotError for who asks for it, never a wait. Another thread has to spin the node, whose
+    namespace is that of the robot. Readings age by the seconds of `now`.
     """
 
     moves_by_itself = True
@@ -132,7 +132,7 @@ class RosRobot(Guarded):
         self._closed = False
 
     def prepare_navigation(self) -> None:
-        """Makes the client of the navigation server, which finds it in a moment. Needs nav2_msgs."""
+        """Make the client of the navigation server, which finds it in a moment. Needs nav2_msgs."""
         if self._navigation is None:
             from btlang.ros.robot.navigation import RosNavigation
 
@@ -146,7 +146,7 @@ class RosRobot(Guarded):
         return [each for each in (self._navigation, self.power.docking) if each is not None]
 
     def step(self, dt: float) -> None:
-        """`dt` seconds have passed: reads what has come, and publishes the wanted velocity again."""
+        """Read what has come, and publish the wanted velocity again; `dt` seconds have passed."""
         self.time += dt
         self.subscriptions.read()
         self._joints.step()
@@ -185,30 +185,32 @@ class RosRobot(Guarded):
 
     @property
     def refuses(self) -> bool:
-        """Whether it takes no command: it was stopped."""
+        """Whether it takes no commands, because it was stopped."""
         return self._latch.refuses
 
     @property
     def time_of_day(self) -> float:
-        """That of this computer, in its time zone; in simulated time that of the world, which began at 0."""
+        """The time of this computer in its time zone; in simulated time, that of the world, which began at 0."""
         seconds, is_simulated = self._moment()
         return (self._world_began + seconds) % DAY if is_simulated else local(seconds)
 
     @property
     def weekday(self) -> int:
-        """As `time_of_day`: that of this computer, or that of the world."""
+        """The weekday of this computer, or in simulated time that of the world."""
         seconds, is_simulated = self._moment()
         if not is_simulated:
             return time.localtime(seconds).tm_wday
         return weekday_after(self.world.weekday, self._world_began + seconds)
 
     def _moment(self) -> tuple[float, bool]:
-        """Seconds since 1970, or since simulated time began; whether time is simulated."""
+        """Return the seconds since 1970, or since simulated time began, and whether time is simulated."""
         clock = self._node.get_clock()
         return float(clock.now().nanoseconds * 1e-9), clock.ros_time_is_active
 
     def stop(self) -> None:
-        """Zero velocity, no journey, frozen joints, silence, the robot's own stop. From any thread, without waiting."""
+        """Stop the base, the goals, joints and speech, and call the robot's own stop. From any
+        thread, without waiting.
+        """
         self._stops_for = _STOPPING
         self._latch.stop()
         self.stops += 1
@@ -218,19 +220,19 @@ class RosRobot(Guarded):
             self._emit("stop")
 
     def disable(self) -> None:
-        """Stops, and takes no command until it is enabled; from any thread."""
+        """Stop, and take no command until `enable`; from any thread."""
         self._latch.shut()
         self.stop()
 
     def enable(self) -> None:
-        """Takes commands again, once the robot's own stop has answered: one that comes later would end the first."""
+        """Take commands again, once the robot's own stop has answered: a later answer would end the first command."""
         self._services.confirm(_ANSWERED)
         self._joints.step()  # `time` goes on from now
         self._voice.step(0.0)
         self._latch.open()
 
     def close(self) -> None:
-        """The end: at rest, and waits a few seconds at most until all who have to know of it do."""
+        """Bring the robot to rest, and wait a few seconds at most until everybody has heard of it."""
         if self._closed:
             return
         self._latch.shut()
@@ -257,7 +259,7 @@ class RosRobot(Guarded):
 
     @property
     def moving(self) -> bool:
-        """True while the base still rolls or a joint moves; False if nothing reports it."""
+        """Whether the base still rolls or a joint moves; False if nothing reports it."""
         try:
             return self._joints.moving or self._base.velocity != (0.0, 0.0)
         except RobotError:
@@ -265,7 +267,7 @@ class RosRobot(Guarded):
 
     @property
     def standstill(self) -> Standstill:
-        """By the odometry, and by what servers answered to the cancelling of their goals."""
+        """Whether it stands, by the odometry and by the servers' answers to cancelled goals."""
         motion = self._base.motion
         pending = [*self.pending(), *(reason for servers in self._servers for reason in servers.pending())]
         early = any(servers.has_just_stopped for servers in self._servers)
@@ -278,22 +280,22 @@ class RosRobot(Guarded):
     # Base
     @property
     def pose(self) -> Pose:
-        """Where it is on the map. Raises RobotError where the odometry is silent."""
+        """The pose on the map. Raises RobotError if the odometry is silent."""
         return self._base.pose
 
     @property
     def velocity(self) -> tuple[float, float]:
-        """Metres and degrees a second, as the odometry measures. Raises RobotError where it is silent."""
+        """The metres and degrees a second of the odometry. Raises RobotError if it is silent."""
         return self._base.velocity
 
     def velocity_type(self) -> str:
-        """The type of message that those who listen to the velocity take."""
+        """Return the type of velocity messages that listeners take."""
         return self._base.adapt()
 
     def drive(self, linear: float, angular: float) -> None:
-        """Sets the wanted metres and degrees a second; ends a journey under way.
+        """Set the wanted metres and degrees a second, and withdraw the current goal.
 
-        Raises RobotError for no numbers, and before a zone to keep out of.
+        Raises RobotError for numbers that aren't finite, and before a zone to keep out of.
         """
         if self._latch.refuses:
             return
@@ -310,14 +312,14 @@ class RosRobot(Guarded):
         self._base.drive(linear, angular)
 
     def _judge(self, linear: float, angular: float) -> Verdict:
-        """The base drives no faster than the guard allows."""
+        """Limit the base to the velocity that the guard allows."""
         verdict = self._guard.judge(linear, angular)
         most = abs(verdict.linear) if verdict.linear != linear else inf
         self._base.limits = most, abs(verdict.angular) if verdict.angular != angular else inf
         return verdict
 
     def judge(self, topic: str, linear: float, angular: float) -> Verdict | None:
-        """What of a velocity that somebody else sends the guard allows; None for a topic that isn't this robot's."""
+        """Return the guard's verdict on somebody else's velocity; None for a topic that isn't this robot's."""
         resolve = self._node.resolve_topic_name
         if resolve(topic) != resolve(VELOCITY):
             return None
@@ -331,21 +333,25 @@ class RosRobot(Guarded):
 
     @property
     def bumped(self) -> bool:
-        """True from a contact until it has moved away."""
+        """Whether it ran into something and hasn't moved away yet."""
         return self._senses.bumped
 
     @property
     def stuck(self) -> bool:
-        """True when it has been commanded to move for a second and does not."""
+        """Whether it has been commanded to move for a second and doesn't."""
         return self._base.stuck or self._guard.stuck
 
     def located(self, name: str) -> tuple[float, float, float | None]:
-        """Where a name of the world is: metres, and the direction to face in radians, None for any. Raises KeyError."""
+        """Return where a name of the world is: metres, and the direction to face in radians, None for any. Raises
+        KeyError.
+        """
         return self._places.located(name)
 
     def navigate_to(self, name: str) -> Operation:
-        """Sends NavigateToPose, again and again to who walks. Raises RobotError for an unknown name, for a goal in a
-        closed zone, and where nobody knows where the robot or its goal is.
+        """Send NavigateToPose, again and again for somebody who walks.
+
+        Raises RobotError for an unknown name, for a goal in a closed zone, and if the pose of the robot or the goal is
+        unknown.
         """
         known = self._places.known(name)
         set_out = partial(self._set_out, known, lambda: self._places.goal(known, self.pose))
@@ -358,7 +364,7 @@ class RosRobot(Guarded):
         return operation
 
     def navigate_to_pose(self, pose: Pose, name: str = "") -> Operation:
-        """Sends NavigateToPose. Raises RobotError for a closed zone, and where nobody knows where the robot is."""
+        """Send NavigateToPose. Raises RobotError for a closed zone, and if the robot's pose is unknown."""
         shown = name or f"({pose.x:.2f}, {pose.y:.2f})"
         operation = self._set_out(shown, lambda: pose)
         self._emit("navigate", name=shown)
@@ -379,12 +385,12 @@ class RosRobot(Guarded):
 
     @property
     def set_out_from(self) -> Pose:
-        """Where it was when the run began. Raises RobotError where the odometry is silent."""
+        """The pose at the begin of the run. Raises RobotError if the odometry is silent."""
         return self._began or self.pose
 
     @property
     def pace(self) -> float:
-        """The share of the normal speed at which it goes its ways; a topic limits the navigation server to it."""
+        """The share of the normal speed for journeys; a topic limits the navigation server to it."""
         return self._zones.pace
 
     @pace.setter
@@ -392,39 +398,39 @@ class RosRobot(Guarded):
         self._zones.pace = share
 
     def place_names(self) -> list[str]:
-        """The names of all places, those of the mission among them."""
+        """Return the names of all places, including those of the mission."""
         return list(self.world.names.places)
 
     def reset_localization(self) -> None:
-        """See `Base.reset_localization`: a service does it, where it is served."""
+        """Call the service that resets the localization, if there is one."""
         self._services.fire(_LOCALIZE)
 
     # Senses
     def scan(self) -> npt.NDArray[np.float64]:
-        """The nearest echo in each degree. Raises RobotError when the scanner is silent."""
+        """Return the nearest echo in each degree. Raises RobotError if the scanner is silent."""
         return self._senses.scan()
 
     @property
     def world(self) -> World:
-        """What it knows of its surroundings."""
+        """The world as far as the robot knows it."""
         return self._places.world
 
     def locate(self, name: str) -> Point:
-        """Where it is by the world file, the mission and what was seen. Raises RobotError for what isn't known."""
+        """Return where a name is by the world file, the mission and sightings. Raises RobotError if it isn't known."""
         return self._places.locate(name, self.pose)
 
     def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
-        """A name of the world file or the mission, or of who was seen. Raises RobotError if there is none."""
+        """Return a name of the world file, the mission, or of somebody seen. Raises RobotError if there is none."""
         return self._places.choose(
             kind, how, parts, lambda: self.pose, lambda: self.set_out_from, self._choices, self.on_event
         )
 
     def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
-        """The objects or people with these parts that the robot knows, nearest first."""
+        """Return the known objects or people with these parts, nearest first."""
         return self._places.described(kind, parts, self.pose)
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
-        """A run begins. Its random choices follow from the seed; so many have been made."""
+        """Begin a run, whose random choices follow from the seed; `made` of them have been made already."""
         self._choices.begin(seed, made)
         self._began = None
         self._zones.begin()
@@ -432,36 +438,36 @@ class RosRobot(Guarded):
         self._voice.speak_in()
 
     def nearby_people(self, within: float) -> list[str]:
-        """Names of people within so many metres, nearest first: those who walk as far as they are in view."""
+        """Return the names of people within so many metres, nearest first: of those who walk, the ones in view."""
         return self._places.nearby_people(within, self.pose)
 
     def name_places(self, places: Iterable[Place]) -> None:
-        """The places of a mission beside those of the world, in place of those of the mission before."""
+        """Set the places of a mission, in addition to those of the world."""
         self._places.name_places(places)
 
     # What is around it, and who
     def sees(self, name: str) -> bool:
-        """Whether it is in view. Raises RobotError for an unknown name, and if nothing reports it."""
+        """Return whether a name is in view. Raises RobotError for an unknown name, and if nothing reports it."""
         return self._perception.sees(name, self.pose)
 
     def seen(self, kind: str) -> list[str]:
-        """The objects or people in view, nearest first. Raises RobotError if nothing reports them."""
+        """Return the objects or people in view, nearest first. Raises RobotError if nothing reports them."""
         return self._perception.seen(kind, self.pose)
 
     def take_picture(self) -> Operation:
-        """An event names what is in view. Raises RobotError if nothing reports it."""
+        """Report what is in view as an event. Raises RobotError if nothing reports it."""
         self._emit("picture", name=", ".join((*self.seen("person"), *self.seen("object"))))
         return CompletedOperation()
 
     @property
     def things(self) -> tuple[Whereabouts, ...]:
-        """Where those were seen who walk, and what isn't known; for whoever watches."""
+        """Where walking people and unknown things were last seen, for observers."""
         return self._places.whereabouts()
 
     def guide(self, person: str, follow: bool) -> None:
-        """Somebody follows the robot from now on, or no longer.
+        """Let somebody follow the robot from now on, or no longer.
 
-        Raises RobotError for who isn't in view, and where nothing serves it.
+        Raises RobotError if the person isn't in view, or there is no such service.
         """
         known = self._places.known(person)
         if follow and not self.sees(known):
@@ -472,48 +478,48 @@ class RosRobot(Guarded):
 
     @property
     def zones(self) -> Zones:
-        """Where it may not go, or only slowly."""
+        """The zones of the world and the mission."""
         return self._zones.zones
 
     held_up = ""
     """No topic reports who is in its way."""
 
     def wait_for_way(self, seconds: float) -> None:
-        """Does nothing: the navigation server decides how long it waits for who is in its way."""
+        """Do nothing: the navigation server decides how long it waits for people in its way."""
 
     def forget_map(self) -> None:
-        """Forgets where it saw objects and people; the costmaps of Nav2 are cleared where there are some."""
+        """Forget where objects and people were seen, and clear the costmaps of Nav2, if there are any."""
         self._places.sight.forget()
         for name in _COSTMAPS:
             if name in self._optional:
                 self._services.fire(name)
 
     def beside_door(self, name: str) -> list[Pose]:
-        """Where it can stand to move a door, the nearer one first. Raises RobotError for an unknown door."""
+        """Return where the robot can stand to move a door, nearest first. Raises RobotError for an unknown door."""
         return self._places.beside_door(name, self.pose)
 
     def move_door(self, name: str, is_open: bool) -> Operation:
-        """Opens or closes a door, or fails with the reason. Raises RobotError where nothing serves it."""
+        """Open or close a door, or fail with the reason. Raises RobotError without a service for it."""
         self._check_stop()
         return self._doors.move_door(name, is_open)
 
     def is_open(self, door: str) -> bool:
-        """Whether a door is open. Raises RobotError if nothing reports it."""
+        """Return whether a door is open. Raises RobotError if nothing reports it."""
         return self._doors.is_open(door)
 
     def switch(self, name: str, on: bool | None) -> Operation:
-        """Switches an object on or off, with None to the other. Raises RobotError where nothing serves it."""
+        """Switch an object on or off; None toggles it. Raises RobotError without a service for it."""
         self._check_stop()
         return self._doors.switch(name, on)
 
     def is_on(self, name: str) -> bool:
-        """Whether an object is switched on. Raises RobotError if nothing reports it."""
+        """Return whether an object is switched on. Raises RobotError if nothing reports it."""
         return self._doors.is_on(name)
 
     def awaited(self, joints: bool = False) -> list[str]:
-        """The topics on the state of things that somebody publishes, but that have reported nothing yet.
+        """Return the topics of states that somebody publishes, but that have reported nothing yet.
 
-        With `joints` these too, if some have been reported and others haven't.
+        With `joints` also the joints that are missing, if some have been reported.
         """
         missing = self._joints.awaited() if joints else []
         return [*self._doors.awaited(), *self._perception.awaited(), *self._hands.awaited(), *missing]
@@ -521,46 +527,46 @@ class RosRobot(Guarded):
     # Power
     @property
     def battery(self) -> float:
-        """Percent left. Raises RobotError if nothing reports it."""
+        """The percentage that is left. Raises RobotError if nothing reports it."""
         return self.power.battery
 
     @property
     def battery_empty(self) -> bool:
-        """Only where the robot says so."""
+        """Whether the robot reports an empty battery."""
         return self.power.empty
 
     @property
     def docked(self) -> bool:
-        """True while connected to the dock. Raises RobotError if nothing reports it."""
+        """Whether it is connected to the dock. Raises RobotError if nothing reports it."""
         return self.power.docked
 
     @property
     def charging(self) -> bool:
-        """True while the battery is being charged. Raises RobotError if nothing reports it."""
+        """Whether the battery is being charged. Raises RobotError if nothing reports it."""
         return self.power.charging
 
     @property
     def stations(self) -> list[Station] | None:
-        """The docks, where the robot has a service; None where it has a docking server."""
+        """The docks, if the robot has a service for docking; None if it has a docking server."""
         return None if self.power.docks_by_itself else self._places.stations(self.pose)
 
     def dock(self) -> Operation:
-        """Connects to the charger, or fails with the robot's reason. Raises RobotError where nothing serves it."""
+        """Connect to the charger, or fail with the robot's reason. Raises RobotError without a server for it."""
         self._check_stop()
         return self.power.dock(self._places.dock(self.pose))
 
     def undock(self) -> Operation:
-        """Disconnects, or fails with the robot's reason. Raises RobotError where nothing serves it."""
+        """Disconnect, or fail with the robot's reason. Raises RobotError without a server for it."""
         self._check_stop()
         return self.power.undock()
 
     # Arms, hands, head
     def joint(self, name: str) -> float:
-        """Degrees. Raises RobotError for an unknown joint, and if nothing reports it."""
+        """Return the degrees of a joint. Raises RobotError for an unknown joint, and if nothing reports it."""
         return self._joints.angle(name)
 
     def move_joints(self, targets: Mapping[str, float]) -> None:
-        """Sets off joints towards angles. Raises RobotError as `joint` does."""
+        """Move joints towards angles. Raises RobotError as `joint` does."""
         if not self._latch.refuses:
             self._joints.move(targets)
             if self._latch.refuses:
@@ -568,15 +574,15 @@ class RosRobot(Guarded):
             self._emit("joint", targets=dict(targets))
 
     def joints_at_target(self, *names: str) -> bool:
-        """True when none of them is on its way. Raises RobotError where one is stuck or silent."""
+        """Return whether none of these joints is on its way. Raises RobotError if one is stuck or silent."""
         return self._joints.at_target(names)
 
     def freeze_joints(self, *names: str) -> None:
-        """These joints stay where they are now."""
+        """Hold these joints where they are."""
         self._joints.freeze(names)
 
     def gesture(self, name: str, *, aim: Point | None = None, stroke_at: float | None = None) -> Operation:
-        """See btlang.robots.robot.Gesturing. Raises RobotError."""
+        """Implement Gesturing. Raises RobotError."""
         self._check_stop()
         room = None if stroke_at is None else stroke_at - self.time
         started, slower = self._gestures.start(name, lambda: self.pose, aim, room)
@@ -586,53 +592,53 @@ class RosRobot(Guarded):
         return started
 
     def lead(self, name: str, aim: Point | None = None) -> float:
-        """See btlang.robots.robot.Gesturing. Raises RobotError."""
+        """Implement Gesturing. Raises RobotError."""
         return self._gestures.lead(name, lambda: self.pose, aim)
 
     def grasp(self, hand: Hand, name: str | None = None) -> Operation:
-        """Closes a hand; where it closes on another object than the named one, it opens again and fails.
+        """Close a hand; if it closes on another object than the named one, open it again and fail.
 
-        Raises RobotError for an unknown name, and where nothing serves it.
+        Raises RobotError for an unknown name, and without a service for it.
         """
         self._check_stop()
         return self._hands.grasp(hand, name)
 
     def release(self, hand: Hand) -> Operation:
-        """Opens a hand, or fails with the robot's reason. Raises RobotError where nothing serves it."""
+        """Open a hand, or fail with the robot's reason. Raises RobotError without a service for it."""
         return CompletedOperation() if self._latch.refuses else self._hands.release(hand)
 
     def hand_over(self, hand: Hand, person: str) -> Operation:
-        """Gives what a hand holds to a person, or fails with the reason. Raises RobotError where nothing serves it."""
+        """Give what a hand holds to a person, or fail with the reason. Raises RobotError without a service for it."""
         self._check_stop()
         return self._hands.hand_over(hand, person)
 
     def holding(self, hand: Hand) -> str | None:
-        """The name of what the hand holds. Raises RobotError if nothing reports it."""
+        """Return the name of what the hand holds. Raises RobotError if nothing reports it."""
         return self._hands.holding(hand)
 
     # Ears and voice
     @property
     def ears(self) -> Ears:
-        """What it has heard. Raises RobotError where it has none."""
+        """What it has heard. Raises RobotError if it has no ears."""
         if self.body.ears is None:
             raise RobotError("the robot has no ears")
         return self._ears.ears
 
     def hear(self, text: str, who: str = "") -> None:
-        """Somebody says it, or types it."""
+        """Take a text that somebody says or types."""
         self._ears.hear(text, who, self.time)
 
     def ask(self, question: str, person: str = "") -> None:
-        """See `Listening.ask`: a topic says which question is open."""
+        """Implement Listening. A topic publishes the open question."""
         self._ears.ask(question or self._last_said, person)
 
     def call(self, text: str) -> None:
-        """Calls people for help, by an event and a topic."""
+        """Call people for help, by an event and a topic."""
         self._calls.publish(String(data=text))
         self._emit("call", text=text)
 
     def say(self, text: str, after: float = 0.0) -> None:
-        """Starts to speak after so many seconds. Raises RobotError where nobody listens."""
+        """Start to speak after so many seconds. Raises RobotError if nobody listens."""
         if not self._latch.refuses:
             self._voice.say(text, after)
             self._last_said = text
@@ -640,45 +646,45 @@ class RosRobot(Guarded):
 
     @property
     def language(self) -> str:
-        """In which it speaks."""
+        """The language in which it speaks."""
         return self._voice.language
 
     def speak_in(self, language: str) -> None:
-        """What is said from now on is in this language, to the end of the run. Raises RobotError where it can't."""
+        """Speak in a language until the end of the run. Raises RobotError if it can't."""
         if language != self._voice.language:
             self._voice.speak_in(language)
             self._emit("language", name=language)
 
     def utterance(self, text: str) -> Utterance:
-        """What it would say. Raises RobotError."""
+        """Return the sound and the times of a text. Raises RobotError."""
         return self._voice.utterance(text)
 
     @property
     def said(self) -> Utterance | None:
-        """What it says, or said last."""
+        """The current or the last utterance."""
         return self._voice.said
 
     @property
     def said_at(self) -> float:
-        """The second of `time` at which that begins, as far as it's known yet."""
+        """The second of `time` at which that utterance begins, as far as it's known."""
         return self.time - self._voice.position
 
     @property
     def speaking(self) -> bool:
-        """True while it speaks. Raises RobotError where it does not come to an end."""
+        """Whether it speaks. Raises RobotError if that doesn't come to an end."""
         return self._voice.speaking
 
     def silence(self) -> None:
-        """Ends speech at once."""
+        """End speech at once."""
         self._voice.silence()
 
     def print(self, text: str) -> None:
-        """Shows text at once. Raises RobotError where nobody listens."""
+        """Show a text at once. Raises RobotError if nobody listens."""
         self._voice.print(text)
         self._emit("print", text=text)
 
     def _offer(self, name: str, kind: str) -> bool:
-        """Makes the client of a service whose type may not be installed; whether it is."""
+        """Make the client of a service whose type may not be installed; return whether it is."""
         found = optional_interface(kind)
         if found is not None:
             self._services.add(name, found)
@@ -694,7 +700,7 @@ class RosRobot(Guarded):
 
 
 def ros_joints(node: Node, subscriptions: SubscriptionCache, body: Body) -> JointsOverRos:
-    """Joints as the body has them: smooth ones plan their movements."""
+    """Return the joints of a body: smooth ones plan their movements."""
     if not body.is_smooth:
         return RosJoints(node, subscriptions, body)
     from btlang.ros.robot.smooth_joints import RosSmoothJoints  # brings ruckig

@@ -31,8 +31,10 @@ _FREE_AGAIN = 0.03  # metres from where it bumped
 
 
 class RosSensors:
-    """`bumps` counts contacts; `emit` reports them, a base that does not move as commanded, and once a scanner that is
-    silent when somebody asks it.
+    """The scanner and the bumper. `bumps` counts contacts.
+
+    `emit` reports contacts, a base that doesn't move as commanded, and once a scanner that is silent when it is asked
+    for.
     """
 
     def __init__(
@@ -52,7 +54,7 @@ class RosSensors:
         subscriptions.listen(BUMP, String, "bumps", qos="events")
 
     def scan(self) -> npt.NDArray[np.float64]:
-        """The nearest echo in each degree. Raises RobotError when the scanner is silent."""
+        """Return the nearest echo in each degree. Raises RobotError if the scanner is silent."""
         try:
             scan = self._subscriptions.get(SCAN, _SILENT)
         except SensorSilent as silent:
@@ -64,7 +66,7 @@ class RosSensors:
         return self._around(scan)
 
     def readings(self, now: float) -> list[ObstacleReading]:
-        """What the guard lets the base drive by; nothing of a scanner that has never sent a scan and isn't there."""
+        """Return the readings for the guard; none of a scanner that isn't there and has never sent a scan."""
         found, scanner = self._subscriptions.reading(SCAN, FRESH), self._scanner
         if found is None:
             reason = self._never(now)
@@ -77,7 +79,7 @@ class RosSensors:
         return [ScanReading("scanner", arrived, fault, lambda: ranges, scanner.view, scanner.angle, room, content)]
 
     def _never(self, now: float) -> str:
-        """Why no scan has come, although something publishes them."""
+        """Return why no scan has come, although somebody publishes scans."""
         if now - self._looked >= _LOOK_AGAIN:
             self._looked = now
             self._published = self._subscriptions.is_published(SCAN)
@@ -85,11 +87,11 @@ class RosSensors:
 
     @property
     def bumped(self) -> bool:
-        """True from a contact until it has moved away."""
+        """Whether it ran into something and hasn't moved away yet."""
         return self._contact is not None
 
     def step(self) -> None:
-        """Reports contacts."""
+        """Report contacts."""
         for message in self._subscriptions.events(BUMP):
             self.bumps += 1
             self._contact = self._base.where()
@@ -122,7 +124,7 @@ KINDS = ("person", "object")
 
 
 class RosPerception:
-    """Hands on to `places` what is in view. Raises SensorSilent if nothing reports what is asked for."""
+    """Passes what is in view on to `places`. Raises SensorSilent if nothing reports it."""
 
     def __init__(self, node: Node, subscriptions: SubscriptionCache, places: RosPlaces) -> None:
         self._node, self._subscriptions, self._places = node, subscriptions, places
@@ -132,25 +134,25 @@ class RosPerception:
             subscriptions.listen(SIGHTINGS, kind, "word of what is in view", refuses=_fault)
 
     def step(self, now: float, pose: Pose | None) -> None:
-        """Notes what is in view at a second of the run."""
+        """Note what is in view at a second of the run."""
         seen = self._subscriptions.latest(SIGHTINGS, _SIGHT_SILENT) if self._listens else None
         found = seen.sightings if seen is not None else ()
         points = {each.name: (each.kind, (each.position.x, each.position.y)) for each in found}
         self._places.notice(points, now, pose or Pose(0.0, 0.0, 0.0))
 
     def sees(self, name: str, pose: Pose) -> bool:
-        """Whether it is in view now. Raises RobotError for an unknown name."""
+        """Return whether a name is in view now. Raises RobotError for an unknown name."""
         known = self._places.known(name)
         self._check()
         return self._places.sight.sees(known, pose)
 
     def seen(self, kind: str, pose: Pose) -> list[str]:
-        """The names of a type that are in view, nearest first."""
+        """Return the names of a type that are in view, nearest first."""
         self._check()
         return self._places.sight.seen(kind, pose)
 
     def awaited(self) -> list[str]:
-        """The topic, where somebody publishes it and it has said nothing yet."""
+        """Return the topic, if somebody publishes it and it has reported nothing yet."""
         comes = not self._listens or self._subscriptions.has(SIGHTINGS) or not self._node.count_publishers(SIGHTINGS)
         return [] if comes else [SIGHTINGS]
 

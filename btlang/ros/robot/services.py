@@ -19,9 +19,9 @@ _ANSWER = 3.0  # seconds of real time
 
 
 class ServiceCall:
-    """A service that was called; see `btlang.robots.robot.Operation`. `end` may be called from any thread.
+    """A service call as an Operation. `end` may be called from any thread.
 
-    A call cannot be taken back: when it is cancelled, nobody looks at the answer.
+    A call can't be taken back: if it is cancelled, the answer is ignored.
     """
 
     def __init__(self, name: str, accomplished: Callable[[str], object]) -> None:
@@ -33,21 +33,21 @@ class ServiceCall:
         self._answer: Any = None
 
     def cancel(self) -> None:
-        """Nobody waits for the answer any more."""
+        """Ignore the answer."""
         self.end(f"the call of {self._name} was cancelled")
 
     def end(self, failure: str | None) -> None:
-        """Accomplished, or the reason why not. Does nothing when done."""
+        """End the call, as accomplished or with the reason why not. Does nothing if it has ended."""
         with self._lock:
             if not self.done:
                 self.failure, self.done = failure, True
 
     def answered(self, answer: Any) -> None:
-        """In the thread that spins."""
+        """Store the answer, in the thread that spins."""
         self._answer = answer
 
     def look(self) -> None:
-        """Goes on with what has come, in the thread that ticks."""
+        """Go on with what has come, in the thread that ticks."""
         answer = self._answer
         if self.done:
             return
@@ -75,14 +75,14 @@ class Services:
         self._fired: list[Event] = []
 
     def add(self, name: str, kind: Any) -> None:
-        """Makes the client, so that it has found its server when it is needed."""
+        """Make a client early, so that it has found its server when it is needed."""
         self._clients[name] = self._node.create_client(kind, name)
         self._types[name] = kind
 
     def call(self, name: str, accomplished: Callable[[str], object], **fields: Any) -> ServiceCall:
-        """Calls it and waits for nothing. Raises RobotError where nobody serves it.
+        """Call a service without waiting. Raises RobotError if nobody serves it.
 
-        When the answer is yes, a `step` calls `accomplished` with its message; a RobotError from there is a failure.
+        If the answer is yes, a `step` calls `accomplished` with its message; a RobotError from there is a failure.
         """
         shown = self._clients[name].service_name
         if not self._clients[name].service_is_ready():
@@ -93,25 +93,25 @@ class Services:
         return call
 
     def fire(self, name: str, **fields: Any) -> None:
-        """Calls it, where somebody serves it, whatever the answer is."""
+        """Call a service, if somebody serves it, and ignore the answer."""
         if self._clients[name].service_is_ready():
             answered = Event()
             self._fired.append(answered)
             self._send(name, fields, lambda answer: answered.set())
 
     def step(self) -> None:
-        """Calls go on with what has been answered since the step before."""
+        """Go on with the answers since the previous step."""
         for call in self._calls:
             call.look()
         self._calls = [call for call in self._calls if not call.done]
 
     def stop(self, reason: str) -> None:
-        """Nobody waits for the calls under way any more."""
+        """Ignore the answers to all calls that are still open."""
         for call in tuple(self._calls):
             call.end(reason)
 
     def confirm(self, seconds: float) -> None:
-        """Waits until all that was fired is answered, but so long at most."""
+        """Wait until every fired call is answered, at most so many seconds."""
         until = time.monotonic() + seconds
         for event in tuple(self._fired):
             if event.wait(max(0.0, until - time.monotonic())):

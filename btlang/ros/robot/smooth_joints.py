@@ -36,7 +36,7 @@ _STAMPED = 1.0  # seconds that a stamp may be old; another one is from another c
 
 
 class Sent(Record):
-    """The movement of all joints from a second of the node's clock on, and the command for some of them."""
+    """A movement of all joints from a second of the node's clock on, and the command for some of them."""
 
     begins: float
     way: MotionState
@@ -44,11 +44,11 @@ class Sent(Record):
 
     @property
     def ends(self) -> float:
-        """When they rest."""
+        """The second at which they rest."""
         return self.begins + PERIOD * (len(self.way.position) - 1)
 
     def at(self, seconds: float) -> MotionState:
-        """The state at a second of the node's clock."""
+        """Return the state at a second of the node's clock."""
         last = len(self.way.position) - 1
         passed = min(max(0.0, (seconds - self.begins) / PERIOD), last)
         before = int(passed)
@@ -56,7 +56,7 @@ class Sent(Record):
 
 
 class Played:
-    """See btlang.robots.robot.Operation: done when the joints say that they have arrived."""
+    """A movement as an Operation, done when the joints report that they have arrived."""
 
     def __init__(self, joints: RosSmoothJoints, play: PlannedMotion, names: Sequence[str]) -> None:
         self._joints, self._play, self._names = joints, play, names
@@ -64,13 +64,13 @@ class Played:
         self.failure: str | None = None
 
     def cancel(self) -> None:
-        """Its joints come to rest, which is sent at once."""
+        """Brake the joints to rest, at once."""
         if not self.done:
             self.done = True
             self._joints.cancel(self._play)
 
     def step(self) -> None:
-        """Ends with its play, and where the joints are then."""
+        """End with the planned motion, once the joints are there."""
         if self.done or not self._play.done:
             return
         own = tuple(self._names[index] for index in sorted(self._play.joints))
@@ -82,10 +82,10 @@ class Played:
 
 
 class RosSmoothJoints:
-    """See btlang.ros.robot.joints.JointsOverRos and btlang.robots.motion.smooth_joints.SmoothJoints.
+    """Joints whose movements are planned here; see SmoothJoints. Plans follow the node's clock, `_AHEAD` of it.
 
-    Plans go by the node's clock, and are `_AHEAD` of it. A new trajectory replaces the rest of the one before. `freeze`
-    of all joints takes no lock: it sends how they brake, from what was sent last.
+    A new trajectory replaces the rest of the previous one. `freeze` of all joints takes no lock: it sends how they
+    brake, from what was sent last.
     """
 
     def __init__(self, node: Node, subscriptions: SubscriptionCache, body: Body) -> None:
@@ -107,29 +107,27 @@ class RosSmoothJoints:
         node.create_timer(_RENEWED, self._renew, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def awaited(self) -> list[str]:
-        """See JointStates."""
         return self._states.awaited()
 
     @property
     def moving(self) -> bool:
-        """True while any joint is on its way, as far as that is known."""
+        """Whether any joint is on its way, as far as that is known."""
         sent = self._sent
         with suppress(RobotError):
             return sent is not None and (self._now() < sent.ends or not self._have_arrived(self._commanded))
         return False
 
     def angle(self, name: str) -> float:
-        """See JointStates."""
         return self._states.angle(name)
 
     def move(self, targets: Mapping[str, float]) -> None:
-        """See SmoothJoints; raises RobotError as `angle` does, too."""
+        """Plan a movement to targets, as SmoothJoints does. Raises RobotError as `angle` does, too."""
         self._begin(targets)
         self._smooth.move(targets)
         self._send()
 
     def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[Played, float]:
-        """See SmoothJoints; `room` counts from the latest step on."""
+        """Plan a gesture, as SmoothJoints does; `room` counts from the latest step on."""
         self._begin(joints_of(wanted))
         play, slower = self._smooth.play(wanted, None if room is None else room - self._passed)
         made = Played(self, play, self._names)
@@ -138,14 +136,16 @@ class RosSmoothJoints:
         return made, slower
 
     def lead(self, wanted: Gesture | Sequence[Mapping[str, float]]) -> float:
-        """See SmoothJoints; from the latest step on."""
+        """Return the seconds to a gesture's stroke, as SmoothJoints does, from the latest step on."""
         self._advance()
         if not self.moving:
             self._seed()
         return self._passed + self._smooth.lead(wanted)
 
     def at_target(self, names: tuple[str, ...]) -> bool:
-        """True when none of them is on its way. Raises RobotError where one is silent, or did not get there."""
+        """Return whether none of these joints is on its way. Raises RobotError if one is
+        silent, or didn't get there.
+        """
         sent, joints = self._sent, [self._names.index(joint_of(self._body, name).name) for name in names]
         if sent is None or not self._smooth.timeline.rests(joints):
             return sent is None
@@ -159,7 +159,7 @@ class RosSmoothJoints:
         return False
 
     def freeze(self, names: tuple[str, ...] = ()) -> None:
-        """They come to rest."""
+        """Brake these joints to rest."""
         if names:
             self._advance()
             self._smooth.freeze(names)
@@ -169,13 +169,13 @@ class RosSmoothJoints:
             self._brake()
 
     def cancel(self, play: PlannedMotion) -> None:
-        """Its joints come to rest."""
+        """Brake the joints of a planned motion to rest."""
         self._advance()
         play.cancel()
         self._send()
 
     def step(self) -> None:
-        """Looks whether the joints are where they should be."""
+        """Check whether the joints are where they should be."""
         self._advance()
         self._stepped = self._now()
         self._compare()
@@ -186,7 +186,7 @@ class RosSmoothJoints:
 
     @property
     def _passed(self) -> float:
-        """Seconds from the latest step to what can be changed."""
+        """Seconds from the latest step to the earliest moment that can be changed."""
         return self._origin + self._smooth.timeline.seconds - self._stepped
 
     def _now(self) -> float:
@@ -211,7 +211,7 @@ class RosSmoothJoints:
             self._origin += passed
 
     def _begin(self, names: Collection[str]) -> None:
-        """Raises RobotError where one of them is silent. From rest, they begin where they are."""
+        """Begin where the joints are, if they rest. Raises RobotError if one of them is silent."""
         for name in names:
             self.angle(name)
         self._advance()
@@ -227,7 +227,7 @@ class RosSmoothJoints:
         self._way = self._smooth.timeline.plan[1]
 
     def _here(self) -> Array:
-        """Of all joints; where one is silent, as planned."""
+        """Return the positions of all joints; the planned one of a joint that is silent."""
         return np.array([self._measured(index) for index in range(len(self._names))])
 
     def _measured(self, index: int) -> float:
@@ -237,7 +237,7 @@ class RosSmoothJoints:
             return float(self._smooth.timeline.state.position[index])
 
     def _have_arrived(self, joints: Sequence[int]) -> bool:
-        """Raises RobotError where one is silent."""
+        """Return whether the joints are at their targets. Raises RobotError if one is silent."""
         if self._sent is None:
             return True
         ends = self._sent.way.position[-1]
@@ -247,7 +247,7 @@ class RosSmoothJoints:
         )
 
     def _compare(self) -> None:
-        """Where a joint was far from the plan for too long, or is silent, all stay where they are."""
+        """Stop all joints if one was far from the plan for too long, or is silent."""
         sent, now = self._sent, self._now()
         if sent is None or not sent.begins < now < sent.ends + _LOST:
             return
@@ -272,7 +272,7 @@ class RosSmoothJoints:
         timeline.follow(range(len(self._names)), staying(self._here()), timeline.seconds, timeline.seconds)
 
     def _brake(self) -> None:
-        """Sends how all joints come to rest from what they do, as it was sent last. From any thread."""
+        """Send how all joints come to rest from the motion that was sent last. For any thread."""
         sent, begins = self._sent, self._now() + _WIRE
         if sent is None or begins >= sent.ends:
             return
@@ -281,7 +281,7 @@ class RosSmoothJoints:
         self._publish(begins, samples([piece]))
 
     def _send(self) -> None:
-        """Sends what is new of the plan."""
+        """Send the new part of the plan."""
         begins, way = self._smooth.timeline.plan
         if way is self._way:
             return
@@ -315,7 +315,7 @@ class RosSmoothJoints:
         }
 
     def _renew(self) -> None:
-        """Sends again what is under way; a joint controller goes on with it."""
+        """Send the current movement again; a joint controller goes on with it."""
         sent: Sent | None = None
         while sent is not self._sent:
             sent = self._sent

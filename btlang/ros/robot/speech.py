@@ -32,8 +32,10 @@ _LATEST = 5.0  # how many times as long as expected it may speak
 
 
 class RosSpeech:
-    """Times are those of the mission; words have those of the engine, from the moment at which the topic says that it
-    speaks. If nothing reports its speaking, it takes as long as the engine says.
+    """The voice and the screen. Times are those of the mission.
+
+    Words have the times of the engine, from the moment at which the topic reports that it speaks. If nothing reports
+    that, it takes as long as the engine estimates.
     """
 
     def __init__(self, node: Node, subscriptions: SubscriptionCache, synthesizer: Synthesizer) -> None:
@@ -54,16 +56,16 @@ class RosSpeech:
         subscriptions.listen(SPEAKING, Bool, "speech status", qos="state", also=self._arrived)
 
     def utterance(self, text: str) -> Utterance:
-        """The text as it would be said. Raises RobotError where the engine can't."""
+        """Return the sound and the times of a text. Raises RobotError if the engine can't speak it."""
         return self._synthesizer.speak(text)
 
     @property
     def language(self) -> str:
-        """In which it speaks."""
+        """The language in which it speaks."""
         return self._synthesizer.language
 
     def speak_in(self, language: str = "") -> None:
-        """See btlang.robots.voice.Synthesizer. A latched topic publishes it when it changes."""
+        """Speak in a language from now on. A latched topic publishes it when it changes."""
         before = self.language
         self._synthesizer.speak_in(language)
         if self.language != before:
@@ -71,11 +73,11 @@ class RosSpeech:
 
     @property
     def position(self) -> float:
-        """Seconds since what it says began, negative before."""
+        """Seconds since the utterance began, negative before."""
         return self._age - self._began
 
     def say(self, text: str, after: float = 0.0) -> None:
-        """Starts to speak after so many seconds. Raises RobotError where nobody listens."""
+        """Start to speak after so many seconds. Raises RobotError if nobody listens."""
         if not self._speech.get_subscription_count():
             raise RobotError(NotThere(f"nobody listens to {self._speech.topic_name}"))
         self.said = self.utterance(text)
@@ -109,14 +111,14 @@ class RosSpeech:
             self._set_in = self._now()
 
     def silence(self) -> None:
-        """Ends speech at once; from any thread."""
+        """End speech at once; from any thread."""
         self._waiting = ""
         if self._asked:
             self._asked = False
             self._speech.publish(String(data=""))
 
     def print(self, text: str) -> None:
-        """Shows text. Raises RobotError where nobody listens."""
+        """Show a text. Raises RobotError if nobody listens."""
         if not self._print.get_subscription_count():
             raise RobotError(NotThere(f"nobody listens to {self._print.topic_name}"))
         self._publish(self._print, text)
@@ -126,10 +128,10 @@ class RosSpeech:
         self._risky = self._risky or time.monotonic() - self._made < _YOUNG
 
     def confirm(self, seconds: float) -> None:
-        """Waits at most so long until whoever listens has all words: a node that is gone sends nothing again.
+        """Wait at most so many seconds until listeners have all words: a node that is gone sends nothing again.
 
-        Only where something was said so early that a listener may have missed it: the answer takes up to three seconds,
-        as DDS asks for it that often.
+        Only if something was said so early that a listener may have missed it: the answer takes up to three seconds,
+        since DDS asks for it that often.
         """
         if not self._risky:
             return
@@ -138,7 +140,7 @@ class RosSpeech:
             publisher.wait_for_all_acked(Duration(seconds=max(0.0, until - time.monotonic())))
 
     def step(self, dt: float) -> None:
-        """`dt` seconds have passed."""
+        """Go on; `dt` seconds have passed."""
         self._age += dt
         self._stepped = self._now()
         if self._waiting and self._age > -1e-9:
@@ -160,7 +162,7 @@ class RosSpeech:
 
     @property
     def speaking(self) -> bool:
-        """True until it has spoken. Raises RobotError where that takes far longer than the text is long."""
+        """Whether it speaks. Raises RobotError if that takes far longer than the text is long."""
         if self._asked and self._age > 2.0 + _LATEST * self._seconds:
             raise RobotError(
                 f"it has been speaking for {self._age:.0f} s: {self._subscriptions.shown(SPEAKING)} does not change"
@@ -177,9 +179,9 @@ WORDLESS = "..."
 
 
 class RosEars:
-    """`ears` are what was heard, from the topic or typed. The topic of questions says which one is open, and to whom;
-    the topic of the phrases that it listens for has one on each line.
+    """What was heard, in `ears`, from the topic or typed.
 
+    The topic of questions publishes the open one, and to whom; the topic of expected phrases has one on each line.
     `emit` gets an event for what is heard and for questions. Without btlang's interfaces it hears only what is typed.
     """
 
@@ -197,23 +199,23 @@ class RosEars:
             subscriptions.listen(HEARD, heard, "message from the ears", qos="events")
 
     def begin(self) -> None:
-        """A run begins: nobody is asked anything."""
+        """Begin a run, without an open question."""
         self.ears.begin()
         self.step(0.0)
 
     def hear(self, text: str, who: str, now: float) -> None:
-        """Somebody says it, or types it, at a second of the run."""
+        """Take a text that somebody says or types at a second of the run."""
         self.ears.hear(text, who, now)
         self._emit("hear", text=text, who=who)
 
     def ask(self, question: str, person: str) -> None:
-        """The robot has asked a person, or anybody for "", and waits for an answer."""
+        """Publish a question to a person, or to anybody for ""."""
         self.ears.asking = question or WORDLESS
         self._emit("ask", text=question, who=person)
         self._publish(person, self.ears.asking)
 
     def step(self, now: float) -> None:
-        """Hears what has come, and says when a question is no longer open."""
+        """Read what was heard, and publish when a question is no longer open."""
         for message in self._subscriptions.events(HEARD) if self._listens else ():
             self.hear(message.text, message.who, now)
         if self._is_open and not self.ears.asking:

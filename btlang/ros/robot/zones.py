@@ -29,9 +29,9 @@ _NO_LIMIT = False, 0.0  # in the message of Nav2: whether it is a percentage, an
 
 
 class RosZones:
-    """A mission may close and open `zones`, those of the world; topics report to the robot which are closed.
+    """The zones of the world, which a mission may close and open; topics publish which are closed.
 
-    A topic limits its speed to that of the slow zone it is in, or to `pace` if that is slower.
+    A topic limits the speed to that of the slow zone that the robot is in, or to `pace` if that is slower.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class RosZones:
             subscriptions.listen(PLAN, Path, "plan", qos="events", refuses=_fault)
 
     def begin(self) -> None:
-        """A run begins, or all are over: zones are as the world says, and the pace is the normal one."""
+        """Begin a run, or end all: zones are as in the world, and the pace is the normal one."""
         self.zones.begin()
         self._announce()
         self.pace = 1.0
@@ -68,7 +68,7 @@ class RosZones:
             self._publish_limit(_NO_LIMIT)
 
     def set_out(self, name: str, pose: Pose) -> None:
-        """The robot is to go there. Raises RobotError for a goal in a closed zone."""
+        """Note the goal of the robot. Raises RobotError for a goal in a closed zone."""
         refusal = self.zones.refusal(name, (pose.x, pose.y))
         if refusal is not None:
             raise RobotError(refusal)
@@ -76,7 +76,7 @@ class RosZones:
         self._goal, self._plan = (name, (pose.x, pose.y)), []
 
     def step(self, dt: float, pose: Pose | None) -> str:
-        """`dt` seconds have passed; returns why the robot must not follow its plan, "" where it may."""
+        """Go on after `dt` seconds; return why the robot must not follow its plan, "" if it may."""
         self._time += dt
         self._announce()
         self._update_limit(pose)
@@ -100,13 +100,13 @@ class RosZones:
         return f"the way to {said(self._goal[0])} leads through the {zone.name}, where the robot may not go"
 
     def limit(self, pose: Pose | None) -> float:
-        """Metres a second that the slow zones at a pose allow; infinite if there is none."""
+        """Return the metres a second that the slow zones at a pose allow; infinite if there are none."""
         if pose is None:
             return inf
         return min((zone.speed for zone in self.zones.slow if zone.contains((pose.x, pose.y))), default=inf)
 
     def _announce(self) -> None:
-        """Topics say which zones are closed, if that has changed."""
+        """Publish which zones are closed, if that has changed."""
         if self._version == self.zones.version:
             return
         if self._version >= 0:
@@ -132,13 +132,13 @@ class RosZones:
 
 
 def zone_topics(zones: Iterable[Zone]) -> dict[str, str]:
-    """The topic of each zone that says whether it is closed."""
+    """Return the topic of each zone that reports whether it is closed."""
     tokens = graph_names((zone.name for zone in zones), "zone")
     return {name: f"zones/{token}/closed" for name, token in tokens.items()}
 
 
 def enters(plan: Sequence[Point], zone: Zone) -> bool:
-    """Whether a plan leads into a zone; one that only leads out of it doesn't."""
+    """Return whether a plan leads into a zone; one that only leads out of it doesn't."""
     was_inside = True
     for (ax, ay), (bx, by) in pairwise((plan[0], *plan)):
         steps = max(1, ceil(dist((ax, ay), (bx, by)) / _STEP))
@@ -152,7 +152,9 @@ def enters(plan: Sequence[Point], zone: Zone) -> bool:
 
 
 def leaves(plan: Sequence[Point], zones: Sequence[Zone]) -> bool:
-    """Whether a plan leads out of zones, so that it is in none of them any more; one that only leads in doesn't."""
+    """Return whether a plan leads out of zones, so that it is in none of them any more; one that
+    only leads in doesn't.
+    """
     inside = [any(zone.contains(point) for zone in zones) for point in plan]
     return any(before and not after for before, after in pairwise(inside)) or not inside[-1]
 

@@ -33,7 +33,7 @@ _ANSWERS = 1.0  # seconds that the last answers to clients get
 
 
 def add_serving_options(parser: argparse.ArgumentParser) -> None:
-    """The options of `btc serve-actions` that are not those of all words and worlds."""
+    """Add the options of `btc serve-actions`, apart from those of words and worlds."""
     add_body_options(parser, ("simulated", "ros"))
     parser.add_argument("--sim-time", action="store_true", help="with --robot ros: use the time of the topic /clock")
     parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
@@ -56,9 +56,9 @@ def add_serving_options(parser: argparse.ArgumentParser) -> None:
 
 
 def serve(options: argparse.Namespace) -> int:
-    """Serves actions until a signal comes; returns the exit code, 128 and the number of the signal.
+    """Serve actions until a signal comes; return the exit code, 128 plus the number of the signal.
 
-    Raises MissionError where ROS 2 is not there (BT100, BT110), or where an action cannot run (BT080, BT104 to BT106).
+    Raises MissionError without ROS 2 (BT100, BT110), or if an action can't run (BT080, BT104 to BT106).
     """
     over = platform_of(options)
     if over == "actions":
@@ -79,7 +79,7 @@ def serve(options: argparse.Namespace) -> int:
 
 
 def _check(connection: Connection, ids: Sequence[str], vocabulary: Lexicon) -> None:
-    """Reports what the robot lacks. Raises MissionError where an action cannot be bound."""
+    """Report what the robot lacks. Raises MissionError if an action can't be bound."""
     everything = Tree(Node(SEQUENCE, tuple(Node(node_id) for node_id in ids)))
     survey = getattr(connection, "survey", None)  # of a ROS 2 robot
     for interface, (node, reason) in survey(everything, vocabulary).items() if survey is not None else ():

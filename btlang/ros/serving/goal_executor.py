@@ -26,13 +26,13 @@ if TYPE_CHECKING:
     from btlang.vocabulary.lexicon import Lexicon
 
     class Caller(Protocol):
-        """Who has sent the goal."""
+        """The client that sent a goal."""
 
         def report(self, share: float, state: str) -> object:
-            """How much is done, from 0 to 1, and what it does now."""
+            """Report the progress, from 0 to 1, and the current command."""
 
         def end(self, success: bool, reason: str) -> object:
-            """It is over; `reason` says why it failed."""
+            """End the goal; `reason` is why it failed."""
 
 
 _PAUSE = 0.1  # seconds of the mission between two words to the caller
@@ -40,9 +40,10 @@ _PATIENCE = 0.2  # real seconds that background leaves get to end after a halt, 
 
 
 class LeafGoal:
-    """`cancelled`, why it is, may be set by any thread; all else is for the one that ticks.
+    """A goal, done by one leaf. Any thread may set `cancelled`, the reason; everything else is for the thread that
+    ticks.
 
-    `reason` is None as long as it is not over, then "" or why it failed.
+    `reason` is None until the goal is over, then "" or why it failed.
     """
 
     def __init__(
@@ -64,11 +65,11 @@ class LeafGoal:
 
     @property
     def running(self) -> bool:
-        """Whether it has begun and is not over."""
+        """Whether it has begun and isn't over."""
         return self.engine is not None and self.reason is None
 
     def start(self, wake: Callable[[], object]) -> None:
-        """Begins with the next `tick`. It is over where the leaf cannot run."""
+        """Begin with the next `tick`. The goal is over if the leaf can't run."""
         connection, vocabulary = self._connection, self._vocabulary
         try:
             self.engine = traced_engine(
@@ -85,7 +86,7 @@ class LeafGoal:
             self.end(str(error))
 
     def tick(self) -> None:
-        """Goes on."""
+        """Tick the leaf."""
         assert self.engine is not None
         self._connection.bus.before = self.engine.flush  # all engines publish into the same stream
         status = self.engine.tick()
@@ -97,7 +98,7 @@ class LeafGoal:
         self.end("" if status == SUCCESS else failure.reason if failure is not None else "it had nothing to do")
 
     def halt(self, reason: str, emergency: bool = False) -> None:
-        """Ends it for a reason, unless it is over."""
+        """End the goal for a reason, unless it is over."""
         if self.reason is not None:
             return
         left = False
@@ -107,11 +108,11 @@ class LeafGoal:
         self.end(f"{reason}, and it did not end after it was halted" if left else reason)
 
     def end(self, reason: str) -> None:
-        """It is over; the caller does not know yet."""
+        """End the goal; the caller doesn't know yet."""
         self.reason, self.ended = reason, self._connection.bus.clock.now
 
     def report(self, waits_for: str = "") -> None:
-        """Reports to the caller what is new, and now and then that it still goes on."""
+        """Report progress to the caller, and now and then that the goal still goes on."""
         news, now = (0.0, waits_for) if waits_for else self._news, self._connection.bus.clock.now
         is_new = news != self._reported and (self._reported is None or now - self._reported_at >= _PAUSE)
         if is_new or time.monotonic() >= self._repeats_at:
@@ -119,7 +120,7 @@ class LeafGoal:
             self._caller.report(*news)
 
     def answer(self) -> None:
-        """Reports to the caller how it ended."""
+        """Report to the caller how it ended."""
         self._caller.end(self.reason == "", self.reason or "")
 
     def _progress(self, share: float, state: str = "") -> None:
@@ -133,9 +134,9 @@ REST = 2.0
 
 
 class GoalExecutor:
-    """Each goal is one leaf. `begin` may be called from any thread, all else by the one that ticks.
+    """All goals as one thing that a run can tick. `begin` is for any thread, everything else for the one that ticks.
 
-    Goals that need the same resource of the robot do not run at the same time: the later one fails. See
+    Goals that need the same resource of the robot don't run at the same time: the later one fails. See
     `btlang.run.runner.Ticked`. `now` gives real seconds.
     """
 
@@ -150,7 +151,7 @@ class GoalExecutor:
         self._halt_failures: list[Failure] = []
 
     def begin(self, node: Node, caller: Caller) -> Callable[[str], None]:
-        """Takes on a goal; returns what cancels it, for a reason."""
+        """Take on a goal; return a function that cancels it, for a reason."""
         goal = LeafGoal(node, caller, self._connection, self._vocabulary, self._now() + BUSY)
         self._new.append(goal)
         self._wake()
@@ -167,7 +168,7 @@ class GoalExecutor:
         return not (self._new or self._goals)
 
     def tick(self) -> int:
-        """Goes on with all goals. RUNNING, also where there are none."""
+        """Tick all goals. Returns RUNNING, also without goals."""
         while self._new:
             self._goals.append(self._new.popleft())
         for goal in self._goals:  # all of them before one begins that needs what they used
@@ -180,27 +181,27 @@ class GoalExecutor:
         return RUNNING
 
     def halt(self, emergency: bool = False) -> None:
-        """Halts all goals. Those that are new never begin."""
+        """Halt all goals. New ones never begin."""
         while self._new:
             self._goals.append(self._new.popleft())
         for goal in self._goals:
             self._halt(goal, "emergency stop" if emergency else "the server was stopped", emergency)
 
     def suspend(self) -> None:
-        """As `halt`: nobody pauses a server."""
+        """Halt: a server can't be paused."""
         self.halt()
 
     def take_halt_failures(self) -> list[Failure]:
-        """What leaves raised while they were halted since it was last asked."""
+        """Return what leaves raised when they were halted, since the last call."""
         failures, self._halt_failures = self._halt_failures, []
         return failures
 
     def close(self, patience: float = 0.0) -> list[Failure]:
-        """Nothing is left: each goal waits for its leaf when it is halted."""
+        """Do nothing: each goal waits for its leaf when it is halted."""
         return []
 
     def answer_all(self) -> None:
-        """Reports the end of each goal that is over."""
+        """Report the end of each goal that is over."""
         self._answer(lambda goal: True)
 
     def _wake(self) -> None:
@@ -208,7 +209,7 @@ class GoalExecutor:
             self.on_wake()
 
     def _starts(self, goal: LeafGoal) -> bool:
-        """Begins a goal where nothing is in its way."""
+        """Begin a goal if nothing is in its way; return whether it began."""
         for other in self._goals:
             shared = sorted(goal.resources & other.resources) if other.running else ()
             if shared:
@@ -227,7 +228,9 @@ class GoalExecutor:
             self._halt_failures += engine.take_halt_failures()
 
     def _at_rest(self, goal: LeafGoal) -> bool:
-        """Whether the end of a goal may be reported. One that took over from a cancelled one moves the robot on."""
+        """Return whether the end of a goal may be reported. A goal that replaced a cancelled one keeps the robot
+        moving.
+        """
         if not goal.cancelled or goal.engine is None or goal.reason == "":
             return True
         taken_over = any(other.running and other.resources & goal.resources for other in self._goals)

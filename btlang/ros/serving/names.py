@@ -23,13 +23,17 @@ FOLDER = "actions"
 
 
 def action_name(node_id: str) -> str:
-    """Of an action by its id: `MoveForward` is served as `move_forward`. "" where ROS 2 allows no such name."""
+    """Return the name of an action by its id: `MoveForward` is served as `move_forward`. "" if ROS 2 allows no such
+    name.
+    """
     name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", node_id).lower()
     return name if re.fullmatch(r"[a-z][a-z0-9_]*", name) and "__" not in name else ""
 
 
 def served(entry: Entry, vocabulary: Lexicon, servers: str) -> Entry:
-    """An action as one that is served by its name in the folder `servers`; what has a `ros` table stays as it is."""
+    """Return an entry as one that is served by its name in the folder `servers`; one with a
+    `ros` table stays as it is.
+    """
     if entry.sort != "action" or entry.ros is not None:
         return entry
     slots = {slot.name: slot for same in vocabulary.entries[entry.id] for slot in same.slots}
@@ -39,7 +43,7 @@ def served(entry: Entry, vocabulary: Lexicon, servers: str) -> Entry:
 
 
 def servable(vocabulary: Lexicon, *, ros: bool) -> list[str]:
-    """The ids of actions that Python does, or with `ros` an interface of ROS 2: but not another server of actions."""
+    """Return the ids of actions that Python or a ROS 2 interface does, but not another server of actions."""
     found = []
     for node_id, entries in vocabulary.entries.items():
         kinds = [entry.ros.kind for entry in entries if entry.ros is not None] if ros else []
@@ -49,9 +53,9 @@ def servable(vocabulary: Lexicon, *, ros: bool) -> list[str]:
 
 
 def chosen(only: Sequence[str], ids: Sequence[str], vocabulary: Lexicon) -> list[str]:
-    """The ids that have one of these names, or are listed under such a topic; all where none is given.
+    """Return the ids that have one of these names, or are listed under such a topic; all if none is given.
 
-    Raises ValueError, in words, for a name that nothing has, and for two actions with the same name in ROS.
+    Raises ValueError for an unknown name, and for two actions with the same name in ROS.
     """
     named: dict[str, list[str]] = {}
     for node_id in ids:

@@ -32,9 +32,9 @@ _FEW = 8  # names that a reason lists
 def requested_leaf(
     phrase: str, names: Sequence[str], values: Sequence[str], entries: Sequence[Entry], vocabulary: Lexicon
 ) -> Node:
-    """The leaf of an action, whose entries have the same id.
+    """Return the leaf that a goal requests, of an action whose entries have the same id.
 
-    `phrase` is one of their patterns, the id or "". Values are written as in a mission; a number alone is in the unit
+    `phrase` is one of their patterns, the id or "". Values are written as in a mission; a plain number is in the unit
     whose factor is 1. Raises ActionFailed with a reason for people.
     """
     node_id = entries[0].id
@@ -94,7 +94,7 @@ def _count(number: int, noun: str) -> str:
 
 
 class _Caller:
-    """See `btlang.ros.serving.goal_executor.Caller`."""
+    """A client of the action server, as a Caller."""
 
     def __init__(self, goal: HeldGoal) -> None:
         self._goal = goal
@@ -109,9 +109,9 @@ class _Caller:
 def serve_actions(
     node: RosNode, ids: Iterable[str], vocabulary: Lexicon, executor: GoalExecutor, stop: Callable[[], object]
 ) -> None:
-    """Each action by its name, see names.py; and ~/stop, the emergency stop, which calls `stop`.
+    """Serve each action by its name, and ~/stop, the emergency stop, which calls `stop`.
 
-    A goal that makes no sense is accepted and aborted: ROS 2 has no reason for one that is rejected.
+    A goal that makes no sense is accepted and aborted: ROS 2 can't give a reason for a rejected one.
     """
 
     def stopped(request: Any, response: Any) -> Any:

@@ -27,7 +27,7 @@ _ON_THE_WAY = 0.3  # real seconds for which velocities that were sent before a g
 
 
 class BaseTopics:
-    """Drives as /cmd_vel says. A journey ends with a command to move; a zero, or silence, leaves it alone."""
+    """The base: /cmd_vel drives it. A goal ends with a command to move; a zero, or silence, leaves it alone."""
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot
@@ -41,7 +41,7 @@ class BaseTopics:
         node.create_subscription(Twist, "cmd_vel", lambda twist: calls.post(lambda: self._drive(twist)), COMMANDS)
 
     def watch(self) -> None:
-        """Brakes where commands have ceased; to be called before each step."""
+        """Brake if commands have ceased. Call this before each step."""
         if self._driven and self._robot.time - self._commanded_at >= _SILENCE - 1e-6:
             self._driven = self._rolls = False
             self._robot.drive(0.0, 0.0)
@@ -52,17 +52,17 @@ class BaseTopics:
         return self._driven
 
     def leave(self) -> None:
-        """A goal drives from now on, also if velocities that were sent before it arrive behind it."""
+        """Let a goal drive from now on, even if velocities that were sent before arrive later."""
         if self._rolls:
             self._ignored_until = monotonic() + _ON_THE_WAY
         self._driven = self._rolls = False
 
     def bumped(self, into: str) -> None:
-        """A contact has just begun."""
+        """Publish a contact that has just begun."""
         self._bump.publish(String(data=into))
 
     def publish(self, now: Moment) -> None:
-        """Publishes where the robot is and how it moves."""
+        """Publish where the robot is and how it moves."""
         if not self._due.is_due(now.seconds):
             return
         linear, angular = self._robot.velocity
@@ -94,7 +94,7 @@ _SCANS = 10
 
 
 class SensorTopics:
-    """Publishes what the robot senses; a silent scanner publishes nothing."""
+    """The sensors, the battery and the dock; a silent scanner publishes nothing."""
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot
@@ -116,7 +116,7 @@ class SensorTopics:
             node.create_service(Trigger, "undock", undock)
 
     def publish(self, now: Moment) -> None:
-        """Publishes what the robot senses."""
+        """Publish the readings."""
         if self._docked is not None:
             self._docked.set(self._robot.docked)
         if self._robot.body.battery is not None and self._battery_due.is_due(now.seconds):

@@ -34,7 +34,7 @@ _JOINTS, _SMOOTH_JOINTS = 20, 50  # states of them a second
 
 
 class BodyTopics:
-    """Moves joints, hands and voice as topics and services say. A `player` moves joints along whole trajectories."""
+    """The joints, hands and voice. A `player` moves joints along whole trajectories."""
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue, player: JointPlayer | None) -> None:
         self._robot, self._player, self._logger = robot, player, node.get_logger()
@@ -58,7 +58,7 @@ class BodyTopics:
         node.create_subscription(String, LANGUAGE, partial(self._hand_over, self._speak_in), LATCHED)
 
     def publish(self, now: Moment) -> None:
-        """Publishes the state of joints, hands and voice."""
+        """Publish the state of joints, hands and voice."""
         self._stepped = monotonic()
         self._speaking.set(self._speaks)
         for hand, topic in self._holding.items():
@@ -83,7 +83,7 @@ class BodyTopics:
         return response
 
     def _turn(self, hand: Hand, closes: bool) -> str | None:
-        """Closes or opens a hand; the name of what it took or put down. Raises RobotError."""
+        """Close or open a hand; return the name of what it took or put down. Raises RobotError."""
         if closes:
             self._robot.grasp(hand)
             return self._robot.holding(hand)
@@ -92,8 +92,8 @@ class BodyTopics:
         return held
 
     def _move(self, message: JointTrajectory) -> None:
-        """Points with velocities are played. Else the last point counts, and how fast is up to the joints. No point at
-        all: they stay where they are.
+        """Play points with velocities. Otherwise only the last point counts; without points, joints stay where they
+        are.
         """
         try:
             if self._player is not None and any(len(point.velocities) for point in message.points):

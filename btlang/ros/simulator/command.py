@@ -32,7 +32,7 @@ _UNCOMPILED = (
 
 
 def add_simulator_options(parser: argparse.ArgumentParser) -> None:
-    """The options of `btc sim-ros`."""
+    """Add the options of `btc sim-ros`."""
     add_world(parser)
     add_body_options(parser, ("simulated",))
     parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
@@ -50,9 +50,9 @@ def add_simulator_options(parser: argparse.ArgumentParser) -> None:
 
 
 def serve(options: argparse.Namespace) -> int:
-    """Steps the simulation `rate` times a simulated second, `speed` simulated seconds a second, until a signal comes.
+    """Step the simulation `rate` times a simulated second, `speed` simulated seconds a second, until a signal comes.
 
-    Returns the exit code, 128 and the number of the signal. Raises MissionError (BT070, BT071, BT100).
+    Returns the exit code, 128 plus the number of the signal. Raises MissionError (BT070, BT071, BT100).
     """
     body = runs_on(options.robot, "simulated")[0]
     world = read_world(options.world, body)

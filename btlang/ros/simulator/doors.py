@@ -17,7 +17,7 @@ from btlang.ros.simulator.shared import CallQueue, LatchedPublisher, Moment
 
 
 class DoorTopics:
-    """Moves what is within reach; zones are closed and opened as the mission says."""
+    """Doors and switches within reach, and zones, which are closed and opened as the mission requests."""
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot
@@ -32,7 +32,7 @@ class DoorTopics:
             )
 
     def publish(self, now: Moment) -> None:
-        """Publishes what has changed."""
+        """Publish the states that have changed."""
         for topic, state in self._states:
             topic.set(state())
 

@@ -27,10 +27,11 @@ _TOLERANCE = 1.05  # of a limit
 
 
 class JointPlayer:
-    """A new trajectory replaces the rest of the old one. One with a stamp has to be sent again while it is played, as
-    velocities have to be: where its sender is silent, the joints brake.
+    """Plays trajectories. A new one replaces the rest of the old one.
 
-    `clocks` give the second of each clock that a stamp may be of, at the simulated second `now` of the joints.
+    One with a stamp has to be sent again while it is played, as velocities have to be: if its sender is silent, the
+    joints brake. `clocks` returns the second of each clock that a stamp may be of, at the simulated second `now` of the
+    joints.
     """
 
     def __init__(self, body: Body, joints: SmoothJoints, clocks: Callable[[], list[float]]) -> None:
@@ -43,7 +44,7 @@ class JointPlayer:
         self._received = self._received_real = inf  # simulated and real second of the latest one to be sent again
 
     def play(self, message: JointTrajectory) -> None:
-        """Raises RobotError for one that can't be played; the joints go on then."""
+        """Play a trajectory. Raises RobotError if it can't be played; the joints then go on."""
         joints, times, way = self._read(message)
         stamp = seconds_of(message.header.stamp)
         now = self._timeline.seconds
@@ -62,14 +63,14 @@ class JointPlayer:
         self._timeline.follow(joints, at, begins, float(times[-1]))
 
     def watch(self) -> None:
-        """Brakes where the sender has fallen silent; to be called before each step."""
+        """Brake if the sender has fallen silent. Call this before each step."""
         quiet = self._timeline.seconds - self._received, monotonic() - self._received_real
         if min(quiet) > _SILENCE:
             self._timeline.freeze(self._playing)
             self._received = self._received_real = inf
 
     def _read(self, message: JointTrajectory) -> tuple[list[int], Array, MotionState]:
-        """Its joints, the seconds of its points and how they are then. Raises RobotError."""
+        """Return its joints, the seconds of its points and their states. Raises RobotError."""
         unknown = [name for name in message.joint_names if name not in self._names]
         if unknown or len(set(message.joint_names)) != len(message.joint_names):
             raise RobotError(f"it has no joint {unknown[0]}" if unknown else "it names a joint twice")
@@ -93,7 +94,7 @@ class JointPlayer:
     def _joined(
         self, joints: list[int], at: Callable[[Array], MotionState], begins: float
     ) -> Callable[[Array], MotionState]:
-        """How they get from what they do to a way that has begun. Raises RobotError where they can't."""
+        """Return how the joints get to a movement that has begun already. Raises RobotError if they can't."""
         tick = PERIOD * np.ceil(begins / PERIOD - 1e-6)
         now, wanted = self._timeline.at(tick).of(joints), at(np.array([tick]))
         off, faster = np.abs(wanted.position[0] - now.position), np.abs(wanted.velocity[0] - now.velocity)
@@ -119,7 +120,7 @@ def _first(piece: CourseSegment, begins: float, at: Callable[[Array], MotionStat
 
 
 def _on(times: Array, way: MotionState, seconds: Array) -> MotionState:
-    """Where they are at some seconds; before and after the points they rest."""
+    """Return the states at some seconds; before and after the points the joints rest."""
     if len(times) == 1:
         return staying(way.position[0])(seconds)
     before = np.clip(np.searchsorted(times, seconds, side="right") - 1, 0, len(times) - 2)

@@ -31,7 +31,7 @@ FAILED = 9000
 
 
 class NavigationRide(AcceptedGoal):
-    """A goal to go to a pose; one that no robot can have has failed from the beginning."""
+    """A goal to navigate to a pose; one that no robot can reach fails at once."""
 
     def __init__(self, node: Node, handle: ServerGoalHandle) -> None:
         super().__init__(node, handle)
@@ -41,14 +41,14 @@ class NavigationRide(AcceptedGoal):
         self.feedback = PeriodicPublisher(5)
 
     def end(self) -> None:
-        """It is over, as its navigation is."""
+        """End the goal with its navigation."""
         if self.navigation is not None:
             self.failure = self.navigation.failure
         super().end()
 
 
 class NavigationServer:
-    """One goal at a time; a new one takes the place of the one under way, which is aborted."""
+    """One goal at a time; a new one replaces the current one, which is aborted."""
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue, wheels: BaseTopics) -> None:
         self._node = node
@@ -71,7 +71,7 @@ class NavigationServer:
         )
 
     def publish(self, now: Moment) -> None:
-        """Publishes the way, how far the goal has come, or that it is over."""
+        """Publish the plan, the progress of the goal, or its end."""
         self._publish_plan(now)
         ride = self._ride
         if ride is None or ride.navigation is None:
@@ -85,7 +85,7 @@ class NavigationServer:
             self._publish_feedback(ride, ride.navigation, now)
 
     def _publish_plan(self, now: Moment) -> None:
-        """Each way once."""
+        """Publish each plan once."""
         way = self._robot.way
         if not way or way is self._way:
             return
@@ -96,7 +96,7 @@ class NavigationServer:
         self._plan.publish(plan)
 
     async def _execute(self, handle: ServerGoalHandle) -> NavigateToPose.Result:
-        """Runs in the thread of the executor."""
+        """Run a goal, in the thread of the executor."""
         ride = NavigationRide(self._node, handle)
         self._calls.post(lambda: self._begin(ride))
         await ride.finished(self._leases)
@@ -105,7 +105,7 @@ class NavigationServer:
         return NavigateToPose.Result(error_code=FAILED, error_msg=ride.failure)
 
     def _limit(self, limit: SpeedLimit) -> None:
-        """As in Nav2: a percentage, or metres a second; 0 for no limit."""
+        """Set the speed limit as in Nav2: a percentage, or metres a second; 0 for no limit."""
         share = limit.speed_limit / (100.0 if limit.percentage else self._robot.normal_speed)
         self._robot.pace = min(1.0, share) if share > 0.0 else 1.0
 
@@ -130,7 +130,7 @@ class NavigationServer:
 
 
 def refusal(frame: str, pose: Pose) -> str | None:
-    """Why a pose in a frame can't be that of a goal; None where it can."""
+    """Return why a pose in a frame can't be a goal; None if it can."""
     if frame not in (MAP, ODOM, ""):
         return f"the goal is in the frame {frame}, and the robot knows only {MAP} and {ODOM}"
     if not all(map(isfinite, (pose.x, pose.y, pose.heading))):
@@ -154,7 +154,7 @@ _CODES = {
 
 
 def _wanted(request: Any, stations: list[Station]) -> Station:
-    """The one that a request means: by its name, else the nearest to a pose."""
+    """Return the dock that a request means: by its name, or the nearest to a pose."""
     if request.use_dock_id:
         return next(station for station in stations if station.name == request.dock_id)
     pose = pose_of(request.dock_pose.pose)
@@ -162,7 +162,7 @@ def _wanted(request: Any, stations: list[Station]) -> Station:
 
 
 class DockingGoal(AcceptedGoal):
-    """A goal to dock or to leave the dock. `code` is that of Nav2 for its failure."""
+    """A goal to dock or to undock. `code` is Nav2's code of its failure."""
 
     def __init__(self, node: Node, handle: ServerGoalHandle, docks: bool) -> None:
         super().__init__(node, handle)
@@ -173,14 +173,14 @@ class DockingGoal(AcceptedGoal):
         self.retries = 0
 
     def fail(self, failure: str, code: int) -> None:
-        """It ends, where it hasn't ended before: the robot brakes."""
+        """End the goal, unless it has ended: the robot brakes."""
         if self.failure is None:
             self.failure, self.code = failure, code
         if self.steps is not None:
             self.steps.close()
 
     def result(self) -> Any:
-        """For its client."""
+        """Return the result for the client."""
         if not self.docks:
             return UndockRobot.Result(success=self.failure is None, error_code=self.code, error_msg=self.failure or "")
         return DockRobot.Result(
@@ -189,7 +189,7 @@ class DockingGoal(AcceptedGoal):
 
 
 class DockingServer:
-    """One goal at a time; a new one takes the place of the one under way, which is aborted."""
+    """One goal at a time; a new one replaces the current one, which is aborted."""
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue, wheels: BaseTopics) -> None:
         self._node, self._robot, self._calls, self._wheels = node, robot, calls, wheels
@@ -199,7 +199,7 @@ class DockingServer:
             ActionServer(node, kind, name, self._execute(docks), cancel_callback=lambda goal: CancelResponse.ACCEPT)
 
     def publish(self, now: Moment) -> None:
-        """Goes on with the goal under way, and publishes the stages of docking."""
+        """Go on with the current goal, and publish the stages of docking."""
         goal = self._goal
         if goal is None or goal.steps is None:
             return
@@ -221,7 +221,7 @@ class DockingServer:
 
     def _execute(self, docks: bool) -> Callable[[ServerGoalHandle], Any]:
         async def execute(handle: ServerGoalHandle) -> Any:
-            """Runs in the thread of the executor."""
+            """Run a goal, in the thread of the executor."""
             goal = DockingGoal(self._node, handle, docks)
             self._calls.post(lambda: self._begin(goal))
             await goal.finished(self._leases)
@@ -248,7 +248,7 @@ class DockingServer:
             yield from enter_dock(self._robot, station, lambda stage: self._publish_feedback(goal, stage))
 
     def _refusal(self, request: Any) -> tuple[str, int] | None:
-        """Why it can't dock as it is asked to, with a code."""
+        """Return why it can't dock as requested, with a code."""
         names = [dock.name for dock in self._robot.world.all_docks]
         if not names:
             return "there is no dock in this world", DockRobot.Result.DOCK_NOT_IN_DB

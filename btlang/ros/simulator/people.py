@@ -20,7 +20,7 @@ from btlang.ros.simulator.shared import COMMANDS, CallQueue, Moment, PeriodicPub
 
 
 class HearingTopics:
-    """Hands questions to the people of the world, and publishes what they say."""
+    """Passes questions to the people of the world, and publishes what they say."""
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot
@@ -28,10 +28,10 @@ class HearingTopics:
         node.create_subscription(Question, ASKING, lambda question: calls.post(lambda: self._ask(question)), LATCHED)
 
     def publish(self, now: Moment) -> None:
-        """Nothing: what is heard is published at once."""
+        """Do nothing: what is heard is published at once."""
 
     def heard(self, text: str, who: str) -> None:
-        """Somebody has just said this."""
+        """Publish what somebody has just said."""
         self._heard.publish(Heard(who=who, text=text))
 
     def _ask(self, question: Question) -> None:
@@ -44,7 +44,7 @@ class HearingTopics:
 
 
 class SightTopics:
-    """Publishes what is in view, where the body recognises anything; people follow and take what they are given."""
+    """Publishes what is in view, if the body has perception; people follow and take what they are given."""
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot
@@ -65,7 +65,7 @@ class SightTopics:
         node.create_service(HandOver, HAND_OVER, hand_over)
 
     def publish(self, now: Moment) -> None:
-        """Publishes what is in view."""
+        """Publish what is in view."""
         robot = self._robot
         if self._sightings is None or not self._due.is_due(now.seconds):
             return

@@ -23,7 +23,7 @@ from btlang.ros.node import LATCHED
 
 
 class CallQueue:
-    """`post` and `ask` are for any thread but the one that calls `work`, which does it all, in order."""
+    """Work for the thread that calls `work`, which does it in order. `post` and `ask` are for all other threads."""
 
     def __init__(self) -> None:
         self._jobs: SimpleQueue[Callable[[], object] | None] = SimpleQueue()
@@ -32,11 +32,11 @@ class CallQueue:
         self._closed = False
 
     def post(self, job: Callable[[], object]) -> None:
-        """Hands over something to do, and waits for nothing."""
+        """Hand over a call without waiting."""
         self._jobs.put(job)
 
     def ask(self, job: Callable[[], object]) -> tuple[bool, str]:
-        """Waits until it is done: True and the text it returned, or False and why the robot cannot do it."""
+        """Wait until a call is done; return True and its text, or False and why the robot can't do it."""
         answer: Future[str] = Future()
 
         def do() -> None:
@@ -61,7 +61,7 @@ class CallQueue:
             self._questions.discard(answer)
 
     def work(self, seconds: float) -> None:
-        """Does what is handed over within so many seconds of real time, or until `wake`."""
+        """Do what is handed over for so many seconds of real time, or until `wake`."""
         end = monotonic() + seconds
         while True:
             try:
@@ -73,11 +73,11 @@ class CallQueue:
             job()
 
     def wake(self) -> None:
-        """Ends `work`, from any thread and from handlers of signals."""
+        """End `work`, from any thread and from handlers of signals."""
         self._jobs.put(None)
 
     def close(self) -> None:
-        """Nobody works any more: whoever asks or waits now gets that as an answer."""
+        """Refuse calls from now on: whoever waits gets that as an answer."""
         with self._lock:
             self._closed = True
             waiting = list(self._questions)
@@ -93,7 +93,7 @@ COMMANDS = 10
 
 
 class Moment(Record):
-    """Seconds of simulated time since the start, and the stamp that messages of now carry."""
+    """The seconds of simulated time since the start, and the stamp for messages of this moment."""
 
     seconds: float
     stamp: Time
@@ -107,7 +107,7 @@ class PeriodicPublisher:
         self._next = -math.inf
 
     def is_due(self, seconds: float) -> bool:
-        """Whether it is now; what has been missed is not caught up with."""
+        """Return whether it is due now; missed periods aren't caught up with."""
         if seconds < self._next - 1e-6:
             return False
         self._next += self._period
@@ -126,7 +126,7 @@ class LatchedPublisher:
         self._publisher.publish(kind(data=value))
 
     def set(self, value: Any) -> None:
-        """Publishes a value that is not the last one."""
+        """Publish a value that differs from the last one."""
         if value != self._value:
             self._value = value
             self._publisher.publish(self._kind(data=value))
@@ -136,7 +136,7 @@ _BRAKING = 1.0  # simulated seconds that a cancelled goal waits at most until th
 
 
 class AcceptedGoal:
-    """A goal that has been accepted; it sets out with the next step. `failure` is why it did not succeed."""
+    """A goal that has been accepted; it begins with the next step. `failure` is why it didn't succeed."""
 
     def __init__(self, node: Node, handle: ServerGoalHandle) -> None:
         self._node, self.handle = node, handle
@@ -148,7 +148,7 @@ class AcceptedGoal:
         self._ended = RosFuture()
 
     async def finished(self, leases: Leases) -> None:
-        """Waits for `end`, and reports how it ended; in the thread of the executor."""
+        """Wait for `end`, and report how the goal ended; in the thread of the executor."""
         goal_id = bytes(self.handle.goal_id.uuid)
         leases.watch(goal_id, self._abandon)
         await self._ended
@@ -161,19 +161,19 @@ class AcceptedGoal:
             self.handle.abort()
 
     def end(self) -> None:
-        """It is over."""
+        """End the goal."""
         self._ended.set_result(None)
         self._node.executor.wake()
 
     def is_withdrawn(self, now: float) -> bool:
-        """Whether its client has cancelled it, or died, since the last call."""
+        """Return whether its client has cancelled it, or died, since the last call."""
         if self.cancelled is not None or not (self.handle.is_cancel_requested or self._abandoned):
             return False
         self.cancelled = now
         return True
 
     def brakes(self, now: float, robot: SimulatedRobot) -> bool:
-        """Whether it was withdrawn and has to wait for the robot to stand still."""
+        """Return whether it was withdrawn and has to wait until the robot stands still."""
         return self.cancelled is not None and now - self.cancelled < _BRAKING and robot.velocity != (0.0, 0.0)
 
     def _abandon(self) -> None:

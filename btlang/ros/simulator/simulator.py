@@ -36,17 +36,16 @@ class SimulatorPart(Protocol):
     """Some topics, services and actions of the robot."""
 
     def publish(self, now: Moment) -> None:
-        """Publishes their state after the step."""
+        """Publish the state after the step."""
 
 
 class Simulator:
-    """A node, `node`, with the simulated robot of a world. To be used with `with`.
+    """A node, `node`, with the simulated robot of a world. Use it with `with`.
 
-    `work` and `step` are for one thread, in turn.
-    With `gives_clock` the simulated time is published on /clock and stamps are of that time, else of the system's.
-    `show` gets what the robot says and prints, a line at a time. Without nav2_msgs nothing is offered that navigates,
-    without btlang's interfaces nothing that hears or sees. What people do by chance follows from `seed`, by default
-    that of the world.
+    `work` and `step` are for one thread, in turn. With `gives_clock` the simulated time is published on /clock and
+    stamps are of that time, otherwise of the system's. `show` gets what the robot says and prints, a line at a time.
+    Without nav2_msgs there is no navigation, without btlang's interfaces no hearing or sight. What people do by chance
+    follows from `seed`, by default that of the world.
     """
 
     def __init__(
@@ -108,15 +107,15 @@ class Simulator:
         self.robot.on_event = self._take_event
 
     def work(self, seconds: float) -> None:
-        """Does what the topics, services and actions ask for, within so many seconds of real time or until `wake`."""
+        """Do what topics, services and actions ask for, for so many seconds of real time or until `wake`."""
         self._calls.work(seconds)
 
     def wake(self) -> None:
-        """Ends `work`, from any thread and from handlers of signals."""
+        """End `work`, from any thread and from handlers of signals."""
         self._calls.wake()
 
     def step(self, seconds: float) -> None:
-        """Lets simulated time pass and publishes what has become of the robot."""
+        """Let simulated time pass and publish the state of the robot."""
         self._wheels.watch()
         if self._player is not None:
             self._player.watch()
@@ -146,11 +145,11 @@ class Simulator:
         return float(self.node.get_clock().now().nanoseconds) * 1e-9
 
     def _clocks(self) -> list[float]:
-        """Seconds of what nodes may go by, at the latest step."""
+        """Return the seconds of all clocks that nodes may use, at the latest step."""
         return [self._stepped, *([self.robot.time] if self._clock is not None else [])]
 
     def _stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """In the thread of the executor, at once: it waits for no step. What is asked for from now on counts again."""
+        """Stop at once, in the thread of the executor, without waiting for a step. Later requests count again."""
         self.robot.stop()
         self._calls.post(self.robot.enable)
         response.success = True
@@ -169,10 +168,10 @@ class Simulator:
 
 
 def can_navigate() -> bool:
-    """Whether the interfaces of Nav2 are installed."""
+    """Return whether the interfaces of Nav2 are installed."""
     return find_spec("nav2_msgs") is not None
 
 
 def can_meet_people() -> bool:
-    """Whether btlang's interfaces are compiled."""
+    """Return whether btlang's interfaces are compiled."""
     return optional_interface(SIGHTINGS_TYPE) is not None

@@ -35,10 +35,10 @@ _LEAVES: dict[str, Callable[[RosWord, RosClients], Callable[..., Any]]] = {
 
 
 def bind_ros(entry: Entry, vocabulary: Lexicon, clients: RosClients, locate: Locate) -> LeafBinding | None:
-    """What does the work of an entry on a ROS 2 robot; None where it has no `ros` table.
+    """Bind an entry to a ROS 2 robot; None if it has no `ros` table.
 
-    Makes the clients that it needs, and waits for nothing. `locate` gives the pose of a place (see Word). Raises
-    MissionError (BT104 to BT106) where a type is not installed or a table does not fit it.
+    Makes the clients that the entry needs, and doesn't wait. `locate` gives the pose of a place (see RosWord). Raises
+    MissionError (BT104 to BT106) if a type isn't installed or a table doesn't fit it.
     """
     if entry.ros is None:
         return None
@@ -53,7 +53,7 @@ def bind_ros(entry: Entry, vocabulary: Lexicon, clients: RosClients, locate: Loc
 
 
 def _name_parameters(call: Callable[..., Any], slots: list[str]) -> None:
-    """Gives a leaf that takes any values the slots of its entry as parameters, so that the engine checks them."""
+    """Give a leaf that takes any values the slots of its entry as parameters, so that the engine checks them."""
     own = [p for p in signature(call).parameters.values() if p.kind != Parameter.VAR_KEYWORD]
     own = [p.replace(kind=Parameter.KEYWORD_ONLY) for p in own]
     named = [Parameter(slot, Parameter.KEYWORD_ONLY, default=None) for slot in slots]

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     Key: TypeAlias = tuple[str, str, str, bool]  # kind, name and type of a Need; whether it is latched
 
     class Ending(Protocol):
-        """Something that was halted and has to be waited for: "" when it has ended, else what it waits for."""
+        """Something that was halted: `waits_for` returns what it waits for, "" when it has ended."""
 
         def waits_for(self) -> str: ...
 
@@ -41,8 +41,9 @@ _HEARD = 0.5  # seconds that those who listen to one topic get to acknowledge
 
 
 class RosNeed(Record):
-    """Something of the robot that a leaf needs: `kind` is "action", "service", "publisher", "listener" or "node",
-    `type` that of its interface; `missing` says why it is not there, "" where it is.
+    """Something that a leaf needs of the robot: `kind` is "action", "service", "publisher", "listener" or "node".
+
+    `type` is that of its interface; `missing` is why it isn't there, "" if it is.
     """
 
     kind: str
@@ -52,13 +53,13 @@ class RosNeed(Record):
 
 
 class Unusable(Exception):
-    """No client can be made; the text says why."""
+    """The reason why no client can be made."""
 
 
 class RosClients:
-    """The clients on one node, which somebody else spins. Made and used by the thread that ticks.
+    """The clients on one node, which somebody else spins; for the thread that ticks.
 
-    Call `close` while the node is still spun.
+    Call `close` while the node still spins.
     """
 
     def __init__(self, node: Any) -> None:
@@ -80,15 +81,15 @@ class RosClients:
 
     @property
     def problems(self) -> list[str]:
-        """Errors in requests that could not be reported at once."""
+        """Errors in requests that couldn't be reported at once."""
         return self.executor.problems
 
     def post(self, work: Callable[[], object]) -> None:
-        """Lets the thread that spins do it; from any thread, in the order of calls."""
+        """Queue a callable for the thread that spins; from any thread, in the order of calls."""
         self.executor.post(work)
 
     def publisher(self, cls: Any, name: str, latched: bool = False) -> Any:
-        """Of messages that get to all who listen; those of a latched topic also to who listens later."""
+        """Return a publisher whose messages reach all listeners; those of a latched topic also later ones."""
         name = self._claim("listener", cls, name)
 
         def make() -> tuple[Any, Missing]:
@@ -103,7 +104,7 @@ class RosClients:
         return MessageGate(cls, lags=not getattr(self.node.get_clock(), "ros_time_is_active", True))
 
     def latest(self, cls: Any, name: str, latched: bool = False) -> Latest:
-        """The latest message of a topic. One that is not latched is heard from reliable and other publishers."""
+        """Return the latest message of a topic. One that isn't latched is heard from reliable and other publishers."""
         name = self._claim("publisher", cls, name)
 
         def make() -> tuple[Latest, Missing]:
@@ -117,16 +118,16 @@ class RosClients:
         return self._once(("publisher", name, type_name(cls), latched), make)  # type: ignore[no-any-return]
 
     def action(self, cls: Any, name: str) -> Any:
-        """An rclpy ActionClient; its requests are for `post`."""
+        """Return an rclpy ActionClient; its requests are for `post`."""
         self.lease = self.lease or Lease(self.node)  # before the client
         return self._client("action", cls, name, lambda: ActionClient(self.node, cls, name))
 
     def service(self, cls: Any, name: str) -> Any:
-        """An rclpy Client; its requests are for `post`."""
+        """Return an rclpy Client; its requests are for `post`."""
         return self._client("service", cls, name, lambda: self.node.create_client(cls, name))
 
     def parameter(self, node: str, parameter: str, ask: Callable[[], Latest]) -> Latest:
-        """The latest value of a parameter of another node; `ask` begins to ask for it."""
+        """Return the latest value of a parameter of another node; `ask` begins to ask for it."""
 
         def make() -> tuple[Latest, Missing]:
             latest = ask()
@@ -135,31 +136,31 @@ class RosClients:
         return self._once(("node", node, parameter, False), make)  # type: ignore[no-any-return]
 
     def begin(self) -> None:
-        """For a new mission: what leaves need is what they ask for from now on. Clients stay."""
+        """Begin a new mission: what leaves need is what they ask for from now on. Clients stay."""
         self._used.clear()
 
     def used(self) -> list[tuple[str, str, str]]:
-        """Kind, name and type of each need, without a look at whether it is there."""
+        """Return kind, name and type of each need, without checking whether it is there."""
         return [(kind, name, type) for kind, name, type, _ in self._used]
 
     def needs(self) -> list[RosNeed]:
-        """All that leaves need of the robot, by kind and name."""
+        """Return everything that leaves need of the robot, by kind and name."""
         needs = [RosNeed(kind, name, type, self._made[key][1]()) for key in self._used for kind, name, type, _ in [key]]
         return sorted(needs, key=lambda need: (need.kind, need.name))
 
     def missing(self) -> list[str]:
-        """For each of them that is not there, a line that says so."""
+        """Return a line for each need that isn't there."""
         return [need.missing for need in self.needs() if need.missing]
 
     def wait(self, limit: float) -> list[str]:
-        """Blocks until nothing is missing, for so many real seconds at most; returns what still is."""
+        """Block until nothing is missing, for at most `limit` real seconds; return what still is."""
         wait_until(lambda: not self.missing(), limit)
         return self.missing()
 
     def close(self, limit: float) -> list[str]:
-        """Waits until all that was halted has ended and who listens has heard it, for so many real seconds at most.
+        """Wait until everything halted has ended and listeners have heard it, for at most `limit` real seconds.
 
-        Says what has not ended.
+        Returns what hasn't ended.
         """
         until = time.monotonic() + limit
         wait_until(lambda: not (self.left() or self.executor.left), limit)
@@ -170,7 +171,7 @@ class RosClients:
         return left
 
     def left(self) -> list[str]:
-        """What goals that were halted wait for."""
+        """Return what halted goals wait for."""
         self.endings = [ending for ending in self.endings if ending.waits_for()]
         return [ending.waits_for() for ending in self.endings]
 
@@ -184,7 +185,9 @@ class RosClients:
         return self._once((kind, name, type_name(cls), False), make)
 
     def _claim(self, kind: str, cls: Any, name: str) -> str:
-        """The name with the namespace. Raises Unusable for a second type: one node can use a name with one."""
+        """Return the name with the namespace. Raises Unusable for a second type: a node can use
+        a name with only one.
+        """
         sort = "topic" if kind in ("listener", "publisher") else kind
         try:
             name = full_name(self.node, kind, name)
@@ -206,7 +209,7 @@ class RosClients:
 
 
 def _refused(error: Exception) -> Unusable:
-    """Of what rclpy raises: a ValueError for a name."""
+    """Return an Unusable for an error of rclpy, which raises ValueError for a name."""
     return Unusable(f"ROS 2 refuses it: {str(error).partition(', at ')[0]}")
 
 

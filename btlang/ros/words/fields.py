@@ -36,12 +36,12 @@ _REDUCERS: dict[str, Callable[[list[Any]], Any]] = {
 
 
 def field_types(cls: Any) -> dict[str, str]:
-    """The type of each field of a message class: `double`, `sequence<string>`, `geometry_msgs/Pose`."""
+    """Return the type of each field of a message class: `double`, `sequence<string>`, `geometry_msgs/Pose`."""
     return dict(cls.get_fields_and_field_types())
 
 
 def array_of(kind: str) -> tuple[str, int | None] | None:
-    """The type of the elements of an array, and how many it has where that is fixed; None for any other type."""
+    """Return the element type of an array, and its length if that is fixed; None for any other type."""
     sequence = re.fullmatch(r"sequence<(.+?)(?:, (\d+))?>", kind)
     if sequence:
         return sequence[1], None
@@ -50,22 +50,22 @@ def array_of(kind: str) -> tuple[str, int | None] | None:
 
 
 def message_class(word: RosWord, kind: str) -> Any:
-    """The class of a field that is a message."""
+    """Return the class of a field that is a message."""
     package, _, name = kind.partition("/")
     return word.interface(f"{package}/msg/{name}")
 
 
 def inner_class(word: RosWord, owner: Any, name: str, kind: str, path: str) -> Any:
-    """The class of a field whose own fields a path names."""
+    """Return the class of a field that a path goes into."""
     if "/" not in kind or array_of(kind) is not None:
         raise word.misfit(owner, path, f"{name} is {kind}, which has no fields of its own")
     return message_class(word, kind)
 
 
 def reader(word: RosWord, cls: Any) -> Callable[[Any], Any]:
-    """A function that gives the value that the table of a word names in a message.
+    """Return a function that reads the value that a word's table names in a message.
 
-    Raises MissionError (BT104 to BT106). The function raises ValueError, in words, where a message has no such value.
+    Raises MissionError (BT104 to BT106). The function raises ValueError if a message has no such value.
     """
     path = word.ros.get("field", "")
     steps: list[tuple[str, int | None]] = []
@@ -114,7 +114,7 @@ def _part(part: str) -> tuple[str, int | None]:
 def _reduced(
     word: RosWord, cls: Any, path: str, follow: Callable[[Any], Any], reduce: Callable[[list[Any]], Any]
 ) -> Callable[[Any], Any]:
-    """One value of those of an array, or of those within indexes, or within angles of a scan."""
+    """Return a function that reduces an array, or part of it by indexes or by angles of a scan, to one value."""
     indexes, degrees = word.ros.get("indexes"), word.ros.get("degrees")
     missing = {"angle_min", "angle_increment"} - field_types(cls).keys()
     if degrees is not None and missing:
@@ -146,10 +146,10 @@ _POINTS = ("Point", "Point32", "Pose", "PoseStamped", "Pose2D")
 
 
 def filler(word: RosWord, cls: Any, fields: Fields | None, now: Now) -> Make:
-    """A function that makes a message of the values of the slots; what a mission left out stays as the message has it.
+    """Return a function that makes a message from the values of slots; what a mission leaves out keeps its default.
 
-    `now` gives the time as a message. Raises MissionError (BT104 to BT106); the function raises ActionFailed where a
-    value does not fit.
+    `now` gives the time as a message. Raises MissionError (BT104 to BT106); the function raises ActionFailed if a value
+    doesn't fit.
     """
     steps = [_step(word, cls, path, value, now) for path, value in (fields.given if fields else ())]
 
@@ -187,7 +187,7 @@ def _step(word: RosWord, cls: Any, path: str, value: Value, now: Now) -> tuple[l
 
 
 def _maker(word: RosWord, owner: Any, name: str, kind: str, value: Value, now: Now) -> Make:
-    """A function that gives the value of a field of a type; or what puts a place into the message that is there."""
+    """Return a function for the value of a field of a type; or one that writes a place into the existing message."""
 
     def misfit(reason: str = "") -> Exception:
         shown = (
@@ -231,7 +231,7 @@ def _maker(word: RosWord, owner: Any, name: str, kind: str, value: Value, now: N
 
 
 def _element(word: RosWord, kind: str, value: Any) -> Any:
-    """An element of an array; a place is written into a new message."""
+    """Return a function for an element of an array; a place is written into a new message."""
     if not callable(value):
         return value
     message = message_class(word, kind)()
@@ -240,7 +240,7 @@ def _element(word: RosWord, kind: str, value: Any) -> Any:
 
 
 def _fitted(value: Any, kind: str) -> Any:
-    """A constant as Python has it for a type of field. Raises ValueError."""
+    """Return a constant as Python has it for a type of field. Raises ValueError."""
     if kind == "boolean" and isinstance(value, bool):
         return value
     if kind in ("float", "double") and isinstance(value, int | float) and not isinstance(value, bool):
@@ -253,7 +253,7 @@ def _fitted(value: Any, kind: str) -> Any:
 
 
 def _slot(word: RosWord, slot: str, unit: str, kind: str, name: str) -> Make:
-    """Raises LookupError where a slot cannot fill a field of the type."""
+    """Return a function for the value of a slot. Raises LookupError if it can't fill a field of the type."""
     sort = word.types[slot].kind
     if sort in ("quantity", "number"):
         factor = word.factor(slot, unit)
@@ -283,7 +283,7 @@ def _whole(value: float, kind: str, name: str) -> int:
 
 
 def _placed(kind: str, pose: tuple[float, float, float | None]) -> Callable[[Any], None]:
-    """What writes a place into a message, and leaves what else is in it."""
+    """Return a function that writes a place into a message, and keeps its other fields."""
     x, y, facing = pose
 
     def write(message: Any) -> None:

@@ -32,7 +32,9 @@ _ODOMETRY_AGE = 1.0  # seconds; a robot that does not know where it is should no
 
 
 def drive_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
-    """A generator leaf. FAILURE where odometry is silent or the robot does not get on; zero velocity at each end."""
+    """Return a generator leaf. FAILURE if odometry is silent or the robot makes no progress;
+    zero velocity at each end.
+    """
     cls, name = word.interface(), word.ros.name
     if type_name(cls) not in ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"):
         raise word.misfit(cls, word.ros.interface, "a drive takes geometry_msgs/msg/Twist or TwistStamped")
@@ -45,7 +47,7 @@ def drive_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
     odometry = clients.latest(Odometry, word.ros.get("odometry", "odom"))
 
     def send(speed: float, turning: float = 0.0) -> str:
-        """Returns why the guard lets it drive slower, "" where it doesn't."""
+        """Send the velocity that the guard allows; return why it is slower, "" if it isn't."""
         speeds = (0.0, speed) if turns else (speed, turning)
         verdict = clients.judge(name, speeds[0], math.degrees(speeds[1]))
         if verdict is not None:
@@ -82,7 +84,7 @@ def drive_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
 def _ready(
     clients: RosClients, cls: Any, name: str, publisher: Any, odometry: Latest, patience: float
 ) -> Generator[None]:
-    """Yields until somebody listens and odometry has come."""
+    """Yield until somebody listens and odometry has come."""
     until = clients.clock.now() + patience
     while not publisher.get_subscription_count() or not odometry.has_come:
         if clients.clock.now() >= until:
@@ -91,18 +93,18 @@ def _ready(
 
 
 def _pose(message: Any) -> tuple[float, float, float]:
-    """x, y in metres and the direction in radians."""
+    """Return x, y in metres and the direction in radians."""
     pose = message.pose.pose
     return pose.position.x, pose.position.y, yaw_of(pose.orientation)
 
 
 def _driven(start: tuple[float, float, float], pose: tuple[float, float, float]) -> float:
-    """Metres ahead, in the direction at the start."""
+    """Return the metres ahead, in the direction at the start."""
     return (pose[0] - start[0]) * math.cos(start[2]) + (pose[1] - start[1]) * math.sin(start[2])
 
 
 def _turned(start: tuple[float, float, float], pose: tuple[float, float, float]) -> float:
-    """Radians to the left, less than half a turn."""
+    """Return the radians to the left, less than half a turn."""
     return math.remainder(pose[2] - start[2], math.tau)
 
 
@@ -113,7 +115,7 @@ _PATIENCE = 5.0  # seconds beyond the duration
 
 
 def joints_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
-    """A generator leaf. FAILURE where a joint does not get there; when it is halted, joints stay where they are."""
+    """Return a generator leaf. FAILURE if a joint doesn't get there; when it is halted, joints stay where they are."""
     cls, name = word.interface(), word.ros.name
     if type_name(cls) != "trajectory_msgs/msg/JointTrajectory":
         raise word.misfit(cls, word.ros.interface, "joints takes trajectory_msgs/msg/JointTrajectory")
@@ -156,7 +158,7 @@ def joints_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
 
 
 def _target(word: RosWord, joint: str, given: Any) -> Callable[[Mapping[str, Any]], float]:
-    """The position of a joint in radians or metres."""
+    """Return the position of a joint in radians or metres."""
     slot = SLOT.fullmatch(given) if isinstance(given, str) else None
     if slot is None:
         if not isinstance(given, int | float) or isinstance(given, bool):
@@ -177,6 +179,6 @@ def _target(word: RosWord, joint: str, given: Any) -> Callable[[Mapping[str, Any
 
 
 def _positions(states: Any, joints: Iterable[str]) -> dict[str, float]:
-    """Where some joints are. Raises ActionFailed."""
+    """Return the positions of some joints. Raises ActionFailed."""
     states.take(AGE)
     return {joint: states.position(joint, AGE)[0] for joint in joints}

@@ -24,7 +24,7 @@ _PERIOD = 0.5  # seconds between two questions for the value of a parameter
 
 
 def parameter_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
-    """A generator leaf that sets it, or a function that compares it or gives its number."""
+    """Return a generator leaf that sets a parameter, or a function that compares it or returns its number."""
     return _setting(word, clients) if word.entry.sort == "action" else _asking(word, clients)
 
 
@@ -46,7 +46,7 @@ def _setting(word: RosWord, clients: RosClients) -> Callable[..., Any]:
 
 
 def _value(word: RosWord) -> Callable[[Mapping[str, Any]], Any]:
-    """What it is set to: a slot in SI, whole where its type is, or the value itself."""
+    """Return the value to set: a slot in SI, whole if its type is, or the value itself."""
     given = word.ros.get("set")
     slot = SLOT.fullmatch(given) if isinstance(given, str) else None
     if slot is None:
@@ -77,7 +77,7 @@ def _asking(word: RosWord, clients: RosClients) -> Callable[..., Any]:
 
 
 def _polled(clients: RosClients, node: str, parameter: str, shown: str) -> Latest:
-    """The value of a parameter, which is asked for as long as the node runs: a condition is to be answered at once."""
+    """Return the value of a parameter, which is polled for as long as the node runs: a condition needs it at once."""
     name = f"{node}/get_parameters"
     client = clients.node.create_client(GetParameters, name)
     absent = False

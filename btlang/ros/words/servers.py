@@ -36,7 +36,7 @@ _PAUSE = 0.5  # real seconds between two looks at a server
 
 
 def awaited(clients: RosClients, client: Any, cls: Any, name: str, limit: float) -> Generator[None]:
-    """Yields until there is a server; raises ActionFailed when the limit is over."""
+    """Yield until there is a server. Raises ActionFailed when the limit is over."""
     until = time.monotonic() + limit
     while not is_ready(client):
         if time.monotonic() >= until:
@@ -47,8 +47,8 @@ def awaited(clients: RosClients, client: Any, cls: Any, name: str, limit: float)
 class Judge:
     """Judges whether an answer is a success, by the fields that the table names.
 
-    If it names none, they are `success`, `error_code` and `message` or `error_msg`, as far as these exist.
-    Raises MissionError (BT105).
+    If it names none, they are `success`, `error_code` and `message` or `error_msg`, as far as these exist. Raises
+    MissionError (BT105).
     """
 
     def __init__(self, word: RosWord, cls: Any) -> None:
@@ -66,11 +66,11 @@ class Judge:
         self._reason = named("reason", _REASONS)
 
     def said(self, answer: Any) -> str:
-        """The reason in an answer, "" where it gives none."""
+        """Return the reason in an answer, "" if it gives none."""
         return str(getattr(answer, self._reason)).strip() if self._reason else ""
 
     def verdict(self, answer: Any) -> bool | Failed:
-        """True, or FAILURE with the reason."""
+        """Return True, or FAILURE with the reason."""
         if self._failed and getattr(answer, self._failed):
             return Failed(self.said(answer) or f"{self._failed} is {getattr(answer, self._failed)}")
         if self._succeeded and not getattr(answer, self._succeeded):
@@ -79,7 +79,9 @@ class Judge:
 
 
 class ServerPresence:
-    """Whether the server that got a request is still there: another one under its name does not know the request."""
+    """A check whether the server that got a request still exists: another one with its name
+    doesn't know the request.
+    """
 
     def __init__(self, there: Callable[[], set[bytes]]) -> None:
         self._there = there
@@ -87,7 +89,7 @@ class ServerPresence:
         self._next = time.monotonic() + _PAUSE
 
     def is_lost(self) -> bool:
-        """Looks twice a second."""
+        """Return whether the server is gone, checked twice a second."""
         if time.monotonic() < self._next:
             return False
         self._next = time.monotonic() + _PAUSE
@@ -97,7 +99,7 @@ class ServerPresence:
 
 
 def nothing() -> None:
-    """In place of the `wake` of a run, if there is none."""
+    """Do nothing, in place of the `wake` of a run."""
 
 
 LIMIT = 10.0
@@ -106,7 +108,7 @@ _GONE = 1.0  # seconds without a server, after which it counts as lost
 
 
 def service_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
-    """A generator leaf. A call cannot be taken back: when it is halted, nobody looks at the answer."""
+    """Return a generator leaf. A call can't be taken back: when it is halted, the answer is ignored."""
     cls, name = word.interface(), word.ros.name
     make = filler(word, cls.Request, word.ros.get("request"), clients.clock.message)
     judge = Judge(word, cls.Response)
@@ -124,7 +126,7 @@ def service_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
 def answered(
     clients: RosClients, client: Any, name: str, request: Any, limit: float, wake: Callable[[], object]
 ) -> Generator[None, None, Any]:
-    """Yields until a service has answered; returns the response. Raises ActionFailed where none comes."""
+    """Yield until a service has answered; return the response. Raises ActionFailed if none comes."""
     answers: list[Any] = []
 
     def got(future: Any) -> None:
@@ -160,7 +162,7 @@ _REFUSED = (CancelGoal.Response.ERROR_REJECTED, CancelGoal.Response.ERROR_NONE) 
 class ActionGoal:
     """One goal. Methods with an underscore are for the thread that spins, the others for the one that ticks.
 
-    `answer` is the response with the result, or the reason why there is none; None as long as it goes on.
+    `answer` is the response with the result, or the reason why there is none; None as long as the goal goes on.
     """
 
     def __init__(self, clients: RosClients, client: Any, name: str, message: Any, wake: Callable[[], object]) -> None:
@@ -180,11 +182,11 @@ class ActionGoal:
         self._not_ended = f"{name} hasn't ended the cancelled goal"
 
     def send(self) -> None:
-        """Asks the server to begin."""
+        """Send the goal to the server."""
         self._clients.post(self._send)
 
     def cancel(self) -> None:
-        """Asks the server to end, and again when it accepts the goal after that; nothing where it has ended."""
+        """Ask the server to cancel, and again if it accepts the goal later; nothing if the goal has ended."""
         if self.answer is None and not self._cancelled:
             self._cancelled = True
             self._waits_for = f"{self._name} hasn't answered the halted goal"
@@ -192,7 +194,7 @@ class ActionGoal:
             self._clients.post(self._cancel)
 
     def waits_for(self) -> str:
-        """What a halted goal waits for; "" when it has ended."""
+        """Return what a halted goal waits for; "" when it has ended."""
         return self._waits_for if self.answer is None else ""
 
     def _send(self) -> None:
@@ -246,7 +248,7 @@ class ActionGoal:
 
 
 def action_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
-    """A generator leaf that fills the goal as the table says. See goal_leaf."""
+    """Return a generator leaf that fills the goal as the table says. See goal_leaf."""
     cls = word.interface()
     return goal_leaf(word, clients, cls, filler(word, cls.Goal, word.ros.get("goal"), clients.clock.message))
 
@@ -254,10 +256,10 @@ def action_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
 def goal_leaf(
     word: RosWord, clients: RosClients, cls: Any, make: Callable[[Mapping[str, Any]], Any], silence: float = inf
 ) -> Callable[..., Any]:
-    """A generator leaf; `make` gives the goal for the values of the slots.
+    """Return a generator leaf; `make` returns the goal for the values of the slots.
 
-    FAILURE with a reason where there is no server, or where it rejects, aborts, is lost or does not answer, or gives no
-    word of an accepted goal for as long as `silence`.
+    FAILURE with a reason if there is no server, or if it rejects, aborts, is lost or doesn't answer, or sends no
+    feedback on an accepted goal for as long as `silence`.
     """
     name = word.ros.name
     judge = Judge(word, cls.Result)
@@ -301,7 +303,9 @@ def goal_leaf(
 
 
 def phrase_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
-    """A generator leaf. Values are sent in the units whose factor is 1; the server has defaults for what is missing."""
+    """Return a generator leaf. Values are sent in the units whose factor is 1; the server has defaults for missing
+    ones.
+    """
     cls = word.interface(RUN_PHRASE)
 
     def make(values: Mapping[str, Any]) -> Any:

@@ -28,7 +28,9 @@ _NUMBERS = (int, float)
 
 
 def topic_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
-    """A function that compares, or gives a number where the word is a quantity. FAILURE where the topic is silent."""
+    """Return a function that compares, or returns a number if the word is a quantity. FAILURE
+    if the topic is silent.
+    """
     cls, latched = word.interface(), word.ros.get("latched", False)
     read = reader(word, cls) if word.ros.get("field") else None
     latest = clients.latest(cls, word.ros.name, latched)
@@ -52,7 +54,9 @@ def _known(value: Any, shown: str) -> Any:
 
 
 def measuring(word: RosWord, value: Callable[[], Any], shown: str) -> Callable[..., Any]:
-    """A function that gives a value in the unit of the word's type. Raises ActionFailed where it isn't a number."""
+    """Return a function that returns a value in the unit of the word's type. Raises
+    ActionFailed if it isn't a number.
+    """
     scale = word.scale
 
     def measure(**values: Any) -> float:
@@ -65,7 +69,7 @@ def measuring(word: RosWord, value: Callable[[], Any], shown: str) -> Callable[.
 
 
 def comparing(word: RosWord, cls: Any, value: Callable[[], Any], shown: str) -> Callable[..., Any]:
-    """A function that holds where all comparisons of the table do; without any, where the value is not empty or 0."""
+    """Return a function that holds if all comparisons of the table do; without any, if the value isn't empty or 0."""
     limits = [
         (_HOLDS[key], key, _limit(word, cls, word.ros.get(key))) for key in LIMITS if word.ros.get(key) is not None
     ]
@@ -85,7 +89,7 @@ def comparing(word: RosWord, cls: Any, value: Callable[[], Any], shown: str) -> 
 
 
 def _limit(word: RosWord, cls: Any, given: Any) -> Callable[[Mapping[str, Any]], Any]:
-    """What is compared with: a slot in SI, the constant of a message by its name, or the value itself."""
+    """Return the value to compare with: a slot in SI, the constant of a message by its name, or the value itself."""
     slot = SLOT.fullmatch(given) if isinstance(given, str) else None
     if slot is None:
         constant = getattr(cls, given, given) if isinstance(given, str) and given.isupper() else given
@@ -110,7 +114,7 @@ RATE = 10.0
 
 
 def publish_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
-    """A generator leaf that publishes a message once there is a listener; FAILURE if there is none.
+    """Return a generator leaf that publishes a message once there is a listener; FAILURE if there is none.
 
     With `for` it goes on for a time, with `rate` alone until it is halted: at most one message a tick, and after the
     last one the message of `finally`, also when it is halted.

@@ -30,8 +30,10 @@ _SI = {"angle": math.pi / 180, "percent": 0.01}
 
 
 class RosWord:
-    """An entry, the types of its slots, and where its places are: `locate` gives x and y in metres and the direction
-    to face in radians, None for any, in the frame `map`; it raises KeyError for a place that it does not know.
+    """A keyword entry, the types of its slots, and its places.
+
+    `locate` returns x and y in metres and the direction to face in radians, None for any, in the frame `map`; it raises
+    KeyError for an unknown place.
     """
 
     def __init__(self, entry: Entry, vocabulary: Lexicon, locate: Locate) -> None:
@@ -44,11 +46,11 @@ class RosWord:
 
     @property
     def phrase(self) -> str:
-        """Its first phrase."""
+        """The first phrase of the entry."""
         return (*self.entry.phrases, *self.entry.quantity, self.entry.id)[0]
 
     def interface(self, name: str = "") -> Any:
-        """The class of a type, by default of that of the table. Raises MissionError (BT104)."""
+        """Return the class of a type, by default that of the table. Raises MissionError (BT104)."""
         name = name or self.ros.interface
         package, _, rest = name.partition("/")
         module, _, cls = rest.partition("/")
@@ -63,22 +65,22 @@ class RosWord:
         return getattr(found, cls)
 
     def no_field(self, cls: Any, field: str, path: str, known: Iterable[str]) -> MissionError:
-        """That a message has no such field (BT105)."""
+        """Return the error that a message has no such field (BT105)."""
         return self.problem("BT105", path, type=type_name(cls), field=field, advice=_suggestion(field, known))
 
     def misfit(self, cls: Any, near: str, reason: str) -> MissionError:
-        """That a value cannot be that of a field (BT106)."""
+        """Return the error that a value doesn't fit a field (BT106)."""
         return self.problem("BT106", near, type=type_name(cls), reason=reason)
 
     def problem(self, code: str, near: str, **texts: str) -> MissionError:
-        """At the text in the table, where there is one."""
+        """Return an error at the text in the table, if there is one."""
         span = self.entry.span or Span(Source("", self.entry.file), 0, 0)
         start = span.source.text.find(near, span.end)
         place = Span(span.source, start, start + len(near)) if near and start >= 0 else span
         return MissionError([diagnostic(code, place, (), None, phrase=self.phrase, **texts)])
 
     def factor(self, slot: str, unit: str = "") -> float:
-        """What the value of a slot is multiplied with to be SI, or to be in a unit. Raises LookupError."""
+        """Return the factor from the value of a slot to SI, or to a unit. Raises LookupError."""
         kind = self.types[slot]
         if not unit:
             return _SI.get(kind.name, 1.0)
@@ -89,12 +91,12 @@ class RosWord:
 
     @property
     def scale(self) -> float:
-        """What the value of a message is multiplied with to be that of a quantity."""
+        """The factor from the value in a message to the quantity."""
         given = self.ros.get("scale")
         return float(given) if given is not None else 1 / _SI.get(self.measured.name if self.measured else "", 1.0)
 
     def amount(self, key: str, default: float) -> Callable[[Mapping[str, Any]], float]:
-        """A function that gives an amount of the table in SI, of the values of the slots."""
+        """Return a function from the values of slots to an amount of the table, in SI."""
         given = self.ros.get(key, default)
         slot = SLOT.fullmatch(given) if isinstance(given, str) else None
         if slot is None:
@@ -107,7 +109,7 @@ class RosWord:
         return lambda values: float(values[name]) * factor if name in values else default
 
     def located(self, name: str) -> tuple[float, float, float | None]:
-        """Where a place is. Raises ActionFailed."""
+        """Return where a place is. Raises ActionFailed."""
         try:
             return self._locate(name)
         except KeyError:
