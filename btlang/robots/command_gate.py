@@ -10,10 +10,11 @@ if TYPE_CHECKING:
 
 
 class Latch:
-    """Open at first. `shut` and `stop` may be called from any thread and from handlers of signals: there is no lock.
+    """A latch that refuses commands after a stop; open at first.
 
-    `stop` refuses commands until the next `step`, so that a tick in flight cannot undo it; `shut` until `open`, which
-    nothing but the beginning of a run, or its going on after a pause, may call.
+    `shut` and `stop` may be called from any thread and from signal handlers: there is no lock. `stop` refuses commands
+    until the next `step`, so that a tick in flight can't undo it; `shut` until `open`, which only the start of a run,
+    or its continuation after a pause, may call.
     """
 
     __slots__ = ("_shut", "_stopping")
@@ -27,19 +28,19 @@ class Latch:
         return self._shut or self._stopping
 
     def stop(self) -> None:
-        """Refuses commands until the next step."""
+        """Refuse commands until the next step."""
         self._stopping = True
 
     def shut(self) -> None:
-        """Refuses commands until it is opened."""
+        """Refuse commands until `open`."""
         self._shut = True
 
     def step(self) -> None:
-        """A step begins."""
+        """Begin a step."""
         self._stopping = False
 
     def open(self) -> None:
-        """Lets commands through again."""
+        """Let commands through again."""
         self._shut = self._stopping = False
 
 
@@ -52,9 +53,9 @@ _UNDO: dict[str, Callable[..., object]] = {
 
 
 class RobotProxy:
-    """Hands over what it is asked for with `in_tick`, and so gets it, or its exception, from the thread that ticks.
+    """A robot for background leaves, whose methods run in the thread that ticks, by `in_tick`.
 
-    `stop` alone reaches the robot at once. See `btlang.engine.leaves.background.Work.in_tick`.
+    Only `stop` reaches the robot at once. See `btlang.engine.leaves.background.Work.in_tick`.
     """
 
     __slots__ = ("_in_tick", "_robot", "_undo")
@@ -64,7 +65,7 @@ class RobotProxy:
         self._undo: dict[str, Callable[[], object]] = {}
 
     def stop(self) -> None:
-        """Stops the robot, from any thread."""
+        """Stop the robot, from any thread."""
         self._robot.stop()
 
     def __getattr__(self, name: str) -> Any:
@@ -73,7 +74,7 @@ class RobotProxy:
         return lambda *args, **named: self._in_tick(lambda: self._do(name, args, named))
 
     def let_go(self) -> None:
-        """Ends what the leaf has set about; for the thread that ticks, once the leaf was halted or has failed."""
+        """End what the leaf has started; for the thread that ticks, once the leaf was halted or has failed."""
         undo, self._undo = self._undo, {}
         for end in undo.values():
             end()

@@ -22,7 +22,7 @@ _LISTENS = 5.0  # seconds for which it listens for what a condition has looked f
 
 
 class HeardText(Record):
-    """A text that somebody said at a second of the run; `who` is "" where that isn't known."""
+    """A text that somebody said at a second of the run; `who` is "" if that isn't known."""
 
     text: str
     who: str
@@ -30,7 +30,10 @@ class HeardText(Record):
 
 
 class Ears:
-    """The latest 100 texts. Who types an answer, and whoever speaks in the world, is heard by `hear`."""
+    """The latest 100 texts that the robot has heard, and what it listens for.
+
+    `hear` takes typed answers as well as what people in the world say.
+    """
 
     def __init__(self) -> None:
         self._heard: list[HeardText] = []
@@ -51,7 +54,7 @@ class Ears:
         """The answers that the mission asks about: "if the answer is tea"."""
 
     def begin(self) -> None:
-        """A run begins: nobody is asked anything, and nothing is listened for."""
+        """Begin a run, without a question and without anything to listen for."""
         self.asking = self.answer = ""
         self._awaited, self._looks = [], {}
 
@@ -61,18 +64,18 @@ class Ears:
         return self._count
 
     def since(self, count: int) -> list[HeardText]:
-        """What was heard after so many texts, oldest first."""
+        """Return what was heard after so many texts, oldest first."""
         new = self._count - count
         return self._heard[-new:] if new > 0 else []
 
     def hear(self, text: str, who: str = "", time: float = 0.0) -> None:
-        """Somebody said this, or typed it."""
+        """Take a text that somebody said or typed."""
         self._heard = [*self._heard[-_MOST + 1 :], HeardText(text, who, time)]
         self._count += 1
 
     @contextmanager
     def awaiting(self, expected: Expected) -> Iterator[None]:
-        """Listens for this meanwhile."""
+        """Listen for this in the meantime."""
         self._awaited = [*self._awaited, expected]
         try:
             yield
@@ -80,9 +83,9 @@ class Ears:
             self._awaited = [each for each in self._awaited if each is not expected]
 
     def news(self, text: str, now: float) -> list[HeardText]:
-        """What was heard since this text was last looked for, and may contain it; nothing at the first look.
+        """Return what was heard since the last search for this text, and may contain it; nothing at the first search.
 
-        The robot listens for the text until 5 seconds after the last look. All who look at one time see the same.
+        The robot listens for the text until 5 seconds after the last search. All who search at one time get the same.
         """
         looked, before, then = self._looks.get(text, (-inf, 0, 0))
         if now - looked > _LISTENS:
@@ -93,7 +96,7 @@ class Ears:
         return self.since(before)
 
     def expected(self, now: float) -> Expected:
-        """What the robot listens for."""
+        """Return what the robot listens for."""
         texts = (spoken(text) for text, (looked, _, _) in self._looks.items() if now - looked <= _LISTENS)
         found = Expected(tuple(filter(None, texts)))
         for each in self._awaited:
@@ -102,13 +105,13 @@ class Ears:
 
 
 class AnswersError(DataFileError):
-    """A file of answers that cannot be used."""
+    """The reason why a file of answers can't be used."""
 
     code = "BT073"
 
 
 def read_answers(file: str | Source) -> dict[str, list[str]]:
-    """The answers by words of the question, "*" by any: `"coffee" = "yes"`, or a list of them one after the other.
+    """Read answers by words of the question, "*" for any: `"coffee" = "yes"`, or a list of them in order.
 
     Raises MissionError (BT073).
     """

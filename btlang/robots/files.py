@@ -31,8 +31,9 @@ if TYPE_CHECKING:
 
 
 class DataFileError(Exception):
-    """A file that cannot be used: `message` says what to write instead; `line` counts from 1, None if unknown.
-    `source` is what was read, None if that was no text.
+    """The reason why a file can't be used: `message` includes what to write instead.
+
+    `line` counts from 1, None if unknown. `source` is what was read, None if that wasn't text.
     """
 
     code = ""
@@ -48,7 +49,7 @@ class DataFileError(Exception):
 
 
 def load_data(file: str | Source, what: str, make: Callable[[Table], T], error: type[DataFileError]) -> T:
-    """What `make` makes of a path or a text, which is "a world" or the like. Raises `error`."""
+    """Return what `make` makes of a path or a text, which is called "a world" or the like. Raises `error`."""
     path = file.name if isinstance(file, Source) else file
     try:
         source = file if isinstance(file, Source) else Source(_read(file), file)
@@ -67,7 +68,7 @@ def load_data(file: str | Source, what: str, make: Callable[[Table], T], error: 
 def make_from(
     values: dict[str, Any], path: str, what: str, make: Callable[[Table], T], error: type[DataFileError]
 ) -> T:
-    """As `load_data`, of tables that are no TOML: errors have no line."""
+    """Return the same as `load_data`, from tables that aren't TOML: errors have no line."""
     try:
         return make(Table(what, values))
     except Problem as problem:
@@ -75,7 +76,7 @@ def make_from(
 
 
 def all_of(errors: Iterable[DataFileError]) -> DataFileError:
-    """The first of them, with the others."""
+    """Return the first error, with all others attached."""
     first, *more = errors
     first.more = tuple(more)
     return first
@@ -84,7 +85,7 @@ def all_of(errors: Iterable[DataFileError]) -> DataFileError:
 def placed(
     problems: Iterable[Problem], source: Source, path: str, error: type[DataFileError]
 ) -> Iterator[DataFileError]:
-    """Problems as errors at their lines."""
+    """Return problems as errors at their lines."""
     from btlang.text.toml_positions import nearest, positions
 
     found = positions(source.text)
@@ -94,7 +95,7 @@ def placed(
 
 
 def as_mission_error(error: DataFileError) -> MissionError:
-    """The code of all errors of a file at their lines."""
+    """Return all errors of a file at their lines as a MissionError with their code."""
     from btlang.diagnostics.errors import MissionError
 
     return MissionError([_diagnostic(each) for each in (error, *error.more)])
@@ -120,8 +121,10 @@ def _read(path: str) -> str:
 
 
 def module_of(name: str, folder: str) -> ModuleType:
-    """A module. One in the folder is reread each time: it may have a newer version, or be that of another robot with
-    one of the same name. Raises what the module raises.
+    """Import a module. One in the folder is read again each time.
+
+    It may have a newer version, or belong to another robot with a module of the same name. Raises what the module
+    raises.
     """
     top = name.partition(".")[0]
     spec = PathFinder.find_spec(top, [folder]) if folder and top else None
@@ -142,9 +145,9 @@ def module_of(name: str, folder: str) -> ModuleType:
 
 
 def class_of(place: str, group: str, folder: str, noun: str, example: str) -> Any:
-    """A class by its `module:Class`, or by its name in a group of entry points.
+    """Return a class by its `module:Class`, or by its name in a group of entry points.
 
-    Raises ValueError with the reason. For its text: a `noun` such as "a recogniser", an `example` of a place.
+    Raises ValueError with the reason, whose text uses a `noun` such as "a recogniser" and an `example` of a place.
     """
     from importlib.metadata import entry_points
 
@@ -163,7 +166,7 @@ _LONGEST = 100
 
 
 def socket_folder() -> str:
-    """A folder of this user alone for sockets. Raises MissionError (BT195) if there can't be one."""
+    """Return a folder for sockets that only this user can access. Raises MissionError (BT195) if there can't be one."""
     runtime = os.environ.get("XDG_RUNTIME_DIR", "")
     folder = os.path.join(runtime, "btlang")
     if not os.path.isdir(runtime) or len(os.fsencode(folder)) > _LONGEST - len("/.sock") - 38:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class BasePart(Protocol):
-    """The wheels, and where they have brought the robot; see btlang.robots.simulation.base.Base."""
+    """The wheels, and the pose that they have led to; see SimulatedBase."""
 
     body: Body
     travelled: float
@@ -51,7 +51,7 @@ class BasePart(Protocol):
 
 
 class PowerPart(Protocol):
-    """The battery and the dock; see btlang.robots.simulation.parts.Power."""
+    """The battery and the dock; see SimulatedPower."""
 
     docked: bool
 
@@ -67,7 +67,7 @@ class PowerPart(Protocol):
 
 
 class JointsPart(Protocol):
-    """The joints; see btlang.robots.simulation.parts.Joints."""
+    """The joints; see SimulatedJoints."""
 
     @property
     def moving(self) -> bool: ...
@@ -80,7 +80,7 @@ class JointsPart(Protocol):
 
 @runtime_checkable
 class SmoothPart(Protocol):
-    """Joints with limits of acceleration, whose movements are planned; see btlang.robots.motion.smooth_joints."""
+    """Joints with limits of acceleration, whose movements are planned; see SmoothJoints."""
 
     def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[Operation, float]: ...
     def lead(self, wanted: Gesture | Sequence[Mapping[str, float]]) -> float: ...
@@ -88,7 +88,7 @@ class SmoothPart(Protocol):
 
 @runtime_checkable
 class IdlePart(Protocol):
-    """Planned joints that move where nothing else moves them; see btlang.robots.motion.smooth_joints."""
+    """Planned joints that move when nothing else moves them; see SmoothJoints."""
 
     @property
     def planned(self) -> SmoothJoints: ...
@@ -96,7 +96,7 @@ class IdlePart(Protocol):
 
 
 class HandsPart(Protocol):
-    """The hands; see SimulatedHands. What isn't done at once is an operation in place of a name."""
+    """The hands; see SimulatedHands. What takes time returns an operation in place of a name."""
 
     @property
     def held(self) -> Mapping[Hand, str]: ...
@@ -110,7 +110,7 @@ class HandsPart(Protocol):
 
 
 class VoicePart(Protocol):
-    """The voice and the screen; see btlang.robots.voice.Voice."""
+    """The voice and the screen; see TimedVoice."""
 
     said: Utterance | None
     position: float
@@ -128,9 +128,10 @@ class VoicePart(Protocol):
 
 
 class Parts(Record):
-    """All parts of a robot. `scan` gives the distances from a pose, see btlang.robots.robot.Sensors.
+    """All parts of a robot.
 
-    `sensors` gives the readings of a second of the run by which the guard lets the base drive.
+    `scan` returns the distances from a pose, as the protocol Sensors does. `sensors` returns the readings of a second
+    of the run for the guard.
     """
 
     base: BasePart

@@ -32,17 +32,17 @@ NODES = "btlang.ros.command:component_nodes"
 
 
 def connection_function(name: str) -> Callable[..., Connection]:
-    """What connects to a robot, by a name in ROBOTS."""
+    """Return the function that connects to a robot, by a name in ROBOTS."""
     return _imported(ROBOTS[name])
 
 
 def component_function() -> Callable[..., Connection]:
-    """That of COMPONENTS."""
+    """Return the function that adds components and devices to a connection."""
     return _imported(COMPONENTS)
 
 
 def node_function() -> Callable[..., Any]:
-    """That of NODES."""
+    """Return the function that leads components that are ROS 2 nodes."""
     return _imported(NODES)
 
 
@@ -53,7 +53,7 @@ def _imported(place: str) -> Callable[..., Any]:
 
 
 def add_simulate(parser: ArgumentParser) -> None:
-    """The option --simulate."""
+    """Add the option --simulate."""
     parser.add_argument(
         "--simulate", action="append", nargs="?", const=ALL, default=[], metavar="DEVICE",
         help="simulate all devices of the robot file, or only those of this name or kind",
@@ -61,7 +61,7 @@ def add_simulate(parser: ArgumentParser) -> None:
 
 
 def add_robot_words(parser: ArgumentParser) -> None:
-    """The option --robot of a verb that only reads missions."""
+    """Add the option --robot of a verb that only reads missions."""
     parser.add_argument(
         "--robot",
         default="",
@@ -71,5 +71,5 @@ def add_robot_words(parser: ArgumentParser) -> None:
 
 
 def add_world(parser: ArgumentParser) -> None:
-    """The option --world."""
+    """Add the option --world."""
     parser.add_argument("--world", metavar="FILE", help="world file (default: the world that ships)")

@@ -30,19 +30,19 @@ if TYPE_CHECKING:
 
 
 def needs_of(node: Node, vocabulary: Lexicon) -> tuple[str, ...]:
-    """What a leaf needs, by the keyword entry that does its work."""
+    """Return what a leaf needs, by the keyword entry that does its work."""
     entries = vocabulary.entries.get(node.id, ())
     chosen = next((entry for entry in reversed(entries) if entry.replaces), entries[0] if entries else None)
     return chosen.needs if chosen is not None else ()
 
 
 def needs_of_tree(tree: Tree, vocabulary: Lexicon) -> tuple[str, ...]:
-    """What its leaves need of a robot, each capability once, in the order of the alphabet."""
+    """Return the capabilities that the leaves of a tree need, each once, in alphabetical order."""
     return tuple(sorted({need for node in tree.walk() for need in needs_of(node, vocabulary)}))
 
 
 def lacking(body: Body, tree: Tree, vocabulary: Lexicon, but: Collection[str] = ()) -> dict[str, Node]:
-    """Each part that the body lacks, with the first leaf that needs it; but for leaves of some ids."""
+    """Return each part that the body lacks, with the first leaf that needs it; leaves with ids in `but` don't count."""
     found: dict[str, Node] = {}
     for node in tree.walk():
         missing = [] if node.id in but else [need for need in needs_of(node, vocabulary) if not body.has(need)]
@@ -53,7 +53,7 @@ def lacking(body: Body, tree: Tree, vocabulary: Lexicon, but: Collection[str] = 
 
 
 def check_body(body: Body, tree: Tree, vocabulary: Lexicon, but: Collection[str] = ()) -> None:
-    """Raises MissionError with all parts that the body lacks, each at the first leaf that needs it (BT072)."""
+    """Raise MissionError with all parts that the body lacks, each at the first leaf that needs it (BT072)."""
     by_leaf: dict[int, tuple[Node, list[str]]] = {}
     for part, node in lacking(body, tree, vocabulary, but).items():
         by_leaf.setdefault(id(node), (node, []))[1].append(part)
@@ -62,12 +62,12 @@ def check_body(body: Body, tree: Tree, vocabulary: Lexicon, but: Collection[str]
 
 
 def words_of(node: Node) -> str:
-    """How the mission says it; the id of a node that has no place in a text."""
+    """Return the words of a node in the mission; its id if it has no place in a text."""
     return node.span.text if node.span is not None else node.id
 
 
 def lack(body: Body, parts: Sequence[str], node: Node, span: Span | None = None, help: str = "") -> Diagnostic:
-    """BT072: the body lacks parts, such as "left arm", that a leaf needs; by default at the leaf."""
+    """Return the message (BT072) that the body lacks parts, such as "left arm"; by default at the leaf."""
     said = [part for part in parts if not any(other.endswith(f" {part}") for other in parts)]  # a right hand is a hand
     place, listed = span or node.span or NOWHERE, " and no ".join(said)
     return diagnostic("BT072", place, words=words_of(node), parts=listed, robot=body.name, help=help)
@@ -78,9 +78,9 @@ _TYPE = "spoken_language"
 
 
 def check_languages(body: Body, tree: Tree, vocabulary: Lexicon) -> None:
-    """Raises MissionError with each language that the robot can't speak, at its first leaf (BT072).
+    """Raise MissionError with each language that the robot can't speak, at its first leaf (BT072).
 
-    Those that only the run knows fail when it comes to them.
+    Languages that only the run knows fail when they are reached.
     """
     leaves: dict[str, Node] = {}
     for node in tree.walk():
@@ -103,9 +103,9 @@ _OPENS = "OpenZone"
 
 
 def check_zones(world: World, tree: Tree, vocabulary: Lexicon) -> None:
-    """Raises MissionError for each journey into a zone to keep out of that the mission doesn't open (BT074).
+    """Raise MissionError for each journey into a zone to keep out of that the mission doesn't open (BT074).
 
-    Only what the mission says is looked at: not goals that it computes, nor zones that it closes itself.
+    Only goals written in the mission are checked: not those that it computes, nor zones that it closes itself.
     """
     closed = [zone for zone in world.zones if zone.is_closed]
     if not closed:
@@ -126,7 +126,7 @@ def check_zones(world: World, tree: Tree, vocabulary: Lexicon) -> None:
 
 
 def _goals(node: Node, places: dict[str, Point], vocabulary: Lexicon) -> Iterator[Point]:
-    """The places and the point that are the goals of a leaf."""
+    """Return the places and the point that are the goals of a leaf."""
     slots = {slot.name: slot.type for entry in vocabulary.entries.get(node.id, ()) for slot in entry.slots}
     for name, value in node.ports:
         if slots.get(name) == "place" and value.lower() in places:
@@ -141,14 +141,14 @@ _LITERAL = re.compile(r"'([^']*)'")
 
 
 class SaidGesture(Record):
-    """The name of a gesture or posture of a body, and what it is aimed at: a name, "" for nothing."""
+    """The name of a gesture or posture of a body, and the name of its target, "" for none."""
 
     name: str
     target: str = ""
 
 
 def said_gesture(body: Body, words: str) -> SaidGesture | None:
-    """What a mark stands for, by its name or by a phrase; None where the body has no such gesture."""
+    """Return what a mark stands for, by its name or by a phrase; None if the body has no such gesture."""
     said = [word for word in words.split() if word.lower() not in ARTICLES]
     lower = [word.lower() for word in said]
     found = (
@@ -161,7 +161,7 @@ def said_gesture(body: Body, words: str) -> SaidGesture | None:
 
 
 def _phrases(body: Body) -> Iterator[tuple[str, list[str], bool]]:
-    """Names of gestures, the words that each begins with, and whether what it is aimed at may follow."""
+    """Return the names of gestures, the words that each begins with, and whether a target may follow."""
     for name, gesture in body.gestures.items():
         yield name, name.lower().split(), bool(gesture.aim)
         for form in phrase_forms(gesture):
@@ -172,10 +172,10 @@ def _phrases(body: Body) -> Iterator[tuple[str, list[str], bool]]:
 
 
 def check_marks(world: World, body: Body, tree: Tree, vocabulary: Lexicon) -> None:
-    """Raises MissionError for each gesture in what a mission says that the body lacks (BT072), and for each target that
-    isn't in the world (BT013).
+    """Raise MissionError for each gesture in spoken texts that the body lacks (BT072), or whose target is unknown
+    (BT013).
 
-    Texts that only the run knows are looked at when they are said.
+    Texts that only the run knows are checked when they are said.
     """
     names = world.names
     known = {name.lower() for kind in (names.places, names.objects, names.people) for name in kind}
@@ -211,7 +211,7 @@ def _place(node: Node, words: str) -> Span:
 
 
 def _said(tree: Tree, vocabulary: Lexicon) -> Iterator[tuple[Node, str]]:
-    """The texts that leaves with a voice say, also those that reach them as values; each with its node."""
+    """Return the texts that leaves with a voice say, including those that reach them as values; each with its node."""
     nodes = [*tree.walk()]
     keys: dict[str, Node] = {}  # and a leaf that says each
     for node in nodes:
@@ -236,10 +236,11 @@ def _said(tree: Tree, vocabulary: Lexicon) -> Iterator[tuple[Node, str]]:
 
 
 def check_mission(world: World, body: Body | None, tree: Tree, vocabulary: Lexicon, but: Collection[str] = ()) -> None:
-    """Raises MissionError where the body, if it is known, lacks what a leaf needs, a language or a gesture in what it
-    says (BT072), where the target of one isn't in the world (BT013), and where a goal is in a closed zone (BT074).
+    """Raise MissionError for everything that keeps a tree from running on a robot.
 
-    Leaves with an id in `but` need no parts of the body.
+    That is: the body, if it is known, lacks what a leaf needs, a language or a gesture (BT072), the target of a gesture
+    isn't in the world (BT013), or a goal is in a closed zone (BT074). Leaves with an id in `but` need no parts of the
+    body.
     """
     if body is not None:
         check_body(body, tree, vocabulary, but)

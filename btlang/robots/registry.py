@@ -30,10 +30,9 @@ ENTRY_POINTS = "btlang.robots"
 
 
 def body_of(robot: str | Source) -> Body:
-    """The body of a robot: of a name in ROBOTS that which ships, else of the robot file, of its text, or of the package
-    that is installed by this name.
+    """Return the body of a robot: a name in ROBOTS, a robot file, its text, or the name of an installed package.
 
-    Raises MissionError (BT071), and ValueError for what is no robot.
+    Raises MissionError (BT071), and ValueError if it isn't a robot.
     """
     if isinstance(robot, Source):
         return read_body(robot)
@@ -54,7 +53,7 @@ def body_of(robot: str | Source) -> Body:
 
 
 def installed_robot(name: str) -> str | None:
-    """The robot file of an installed package, by the name of its entry point; None if there is none."""
+    """Return the robot file of an installed package, by the name of its entry point; None if there is none."""
     from importlib.metadata import entry_points
 
     for entry_point in entry_points(group=ENTRY_POINTS, name=name):
@@ -66,7 +65,7 @@ def installed_robot(name: str) -> str | None:
 
 
 def runs_on(robot: str | Source, over: str | None = None) -> tuple[Body, str]:
-    """The body, and the name in ROBOTS of what it runs on: that of `over`, else what the robot says.
+    """Return the body, and the name in ROBOTS of what it runs on: `over`, or else what the robot file says.
 
     Raises as `body_of`, and ValueError for another `over`.
     """
@@ -77,8 +76,9 @@ def runs_on(robot: str | Source, over: str | None = None) -> tuple[Body, str]:
 
 
 def runs_in_real_time(body: Body, over: str, simulate: Sequence[str] = ()) -> bool:
-    """Whether it takes no other speed: it is elsewhere, or has devices that are real, since `simulate` doesn't name
-    them (see btlang.components.device_robot).
+    """Return whether it takes no other speed: it is remote, or has real devices, which `simulate` doesn't name.
+
+    See btlang.components.device_robot.
     """
     if over != "devices":
         return over != "simulated"
@@ -87,14 +87,14 @@ def runs_in_real_time(body: Body, over: str, simulate: Sequence[str] = ()) -> bo
 
 
 class Connector(Record):
-    """Connects a robot of a body, in a world, to what it runs on: `over`, a name in ROBOTS."""
+    """Connects a robot in a world to what it runs on: `over`, a name in ROBOTS."""
 
     body: Body
     over: str
     options: Mapping[str, Any] = {}
 
     def __call__(self, world: World) -> Connection:
-        """Raises MissionError where the robot cannot be reached."""
+        """Connect. Raises MissionError if the robot can't be reached."""
         connect = partial(connection_function(self.over), world, body=self.body, **self.options)
         if not (self.body.components or self.body.devices):
             return connect()
@@ -102,6 +102,6 @@ class Connector(Record):
 
 
 def connector(robot: str | Source, over: str | None = None, **options: Any) -> Connector:
-    """What connects to a robot. The options are for one that does not run simulated. Raises as `runs_on`."""
+    """Return the connector of a robot. The options are for one that isn't simulated. Raises as `runs_on`."""
     body, name = runs_on(robot, over)
     return Connector(body, name, {} if name == "simulated" else options)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Station(Record):
-    """A dock by its name. A robot that is connected stands at its `spot`, and drives straight in from `staging`."""
+    """A dock by its name. A connected robot stands at its `spot`, and drives straight in from `staging`."""
 
     name: str
     spot: Pose
@@ -39,14 +39,14 @@ class Operation(Protocol):
 
     @property
     def done(self) -> bool:
-        """True when it has ended: accomplished, failed or cancelled."""
+        """Whether it has ended: accomplished, failed or cancelled."""
 
     @property
     def failure(self) -> str | None:
         """Why it failed; None while it is active and after a success."""
 
     def cancel(self) -> None:
-        """Gives up: navigation brakes, and nobody waits for a hand any more. Does nothing when done."""
+        """Cancel: navigation brakes, and nobody waits for a hand any more. Does nothing when done."""
 
 
 class CompletedOperation:
@@ -56,15 +56,15 @@ class CompletedOperation:
     failure = None
 
     def cancel(self) -> None:
-        """Does nothing."""
+        """Do nothing."""
 
 
 class Machine(Protocol):
     """What every robot is. Only `stop` and `disable` may be called from other threads.
 
     `on_event(kind, data)` is called for each event. Kinds: say, print, choose, navigate, arrive, bump, stuck, stop,
-    grasp, release, drop, joint, dock, undock, battery, fault, hear, ask, see, come, leave, call, door, switch,
-    give, picture, gesture.
+    grasp, release, drop, joint, dock, undock, battery, fault, hear, ask, see, come, leave, call, door, switch, give,
+    picture, gesture.
     """
 
     on_event: OnEvent | None
@@ -73,7 +73,7 @@ class Machine(Protocol):
 
     @property
     def body(self) -> Body:
-        """What its file says of it."""
+        """The body, from the robot file."""
 
     @property
     def moves_by_itself(self) -> bool:
@@ -81,7 +81,7 @@ class Machine(Protocol):
 
     @property
     def time(self) -> float:
-        """Total seconds of all steps."""
+        """The total seconds of all steps."""
 
     @property
     def time_of_day(self) -> float:
@@ -92,24 +92,24 @@ class Machine(Protocol):
         """The number of the weekday where the robot is: 0 is Monday."""
 
     def step(self, dt: float) -> None:
-        """Lets `dt` seconds pass. On a real robot time passes by itself and this only reads the sensors."""
+        """Let `dt` seconds pass. On a real robot time passes by itself and this only reads the sensors."""
 
     def stop(self) -> None:
-        """Brakes hard, cancels navigation, freezes joints, ends speech; from any thread.
+        """Brake hard, cancel navigation, freeze joints, end speech; from any thread.
 
         Commands before the next `step` are ignored, so that the current tick can't undo it. `stops` counts it, so that
         a running action knows afterwards.
         """
 
     def disable(self) -> None:
-        """Emergency stop, from any thread: `stop`, and ignores all commands until `enable`."""
+        """Stop in an emergency, from any thread: `stop`, and ignore all commands until `enable`."""
 
     def enable(self) -> None:
-        """Accepts commands again. For a run that starts or continues: nothing else may undo an emergency stop."""
+        """Accept commands again. For a run that starts or continues: nothing else may undo an emergency stop."""
 
     @property
     def refuses(self) -> bool:
-        """Whether it takes no command: it was stopped or disabled."""
+        """Whether it takes no commands, because it was stopped or disabled."""
 
     @property
     def stops(self) -> int:
@@ -117,7 +117,7 @@ class Machine(Protocol):
 
     @property
     def moving(self) -> bool:
-        """True while the base still rolls or a joint moves."""
+        """Whether the base still rolls or a joint moves."""
 
     @property
     def standstill(self) -> Standstill:
@@ -132,7 +132,7 @@ class Base(Machine, Protocol):
 
     @property
     def radius(self) -> float:
-        """Of the round footprint."""
+        """The radius of the round footprint, in metres."""
 
     @property
     def normal_speed(self) -> float:
@@ -140,7 +140,7 @@ class Base(Machine, Protocol):
 
     @property
     def max_speed(self) -> float:
-        """`drive` goes no faster."""
+        """The limit of `drive`, in metres per second."""
 
     @property
     def normal_turn(self) -> float:
@@ -148,52 +148,52 @@ class Base(Machine, Protocol):
 
     @property
     def pose(self) -> Pose:
-        """Where it is."""
+        """The pose on the map."""
 
     @property
     def velocity(self) -> tuple[float, float]:
         """Measured metres and degrees per second of the base."""
 
     def drive(self, linear: float, angular: float) -> None:
-        """Sets the target metres and degrees per second until the next call; ends active navigation."""
+        """Set the target metres and degrees per second until the next call; end active navigation."""
 
     @property
     def stuck(self) -> bool:
-        """True when it should have been moving for a second but isn't."""
+        """Whether it should have been moving for a second but isn't."""
 
     @property
     def limited_by(self) -> str:
-        """Why it drives slower than commanded, or stands, such as what a sensor sees ahead; "" where it doesn't."""
+        """Why it drives slower than commanded, or stands, such as what a sensor sees ahead; "" if it doesn't."""
 
     @property
     def held_back(self) -> str:
-        """Why it has stood for so long that a drive has failed; "" where it hasn't."""
+        """Why it has stood for so long that a drive has failed; "" if it hasn't."""
 
     def touch(self) -> None:
-        """It may touch what is ahead, slowly. Counts for a moment, as a velocity does."""
+        """Allow the base to touch what is ahead, slowly. Counts for a moment, as a velocity does."""
 
     def locate(self, name: str) -> Point:
-        """Where a place, object or person is. Raises RobotError for an unknown name."""
+        """Return where a place, object or person is. Raises RobotError for an unknown name."""
 
     def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
-        """The "nearest" or a "random" name of the type "place", "object" (not carried) or "person".
+        """Return the "nearest" or a "random" name of the type "place", "object" (not carried) or "person".
 
         "seen" is the nearest in view, else the nearest known; there are "furthest", "leftmost", "rightmost" and numbers
-        ("2" is the second one, "-1" the last), and for objects "largest" and "smallest".
-        `parts` are what it is like, by "color", "kind" and so on. Raises RobotError if there is none.
+        ("2" is the second one, "-1" the last), and for objects "largest" and "smallest". `parts` describe it, by
+        "color", "kind" and so on. Raises RobotError if there is none.
         """
 
     def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
-        """The names of the objects or people with these parts that the robot knows, nearest first."""
+        """Return the names of the known objects or people with these parts, nearest first."""
 
     def reset_localization(self) -> None:
-        """Forgets its place on the map, where something can find it again from what the sensors see."""
+        """Forget the pose on the map, if the sensors can find it again."""
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
-        """A run begins. Its random choices follow from the seed; so many have been made before, in another run."""
+        """Begin a run, whose random choices follow from the seed; `made` of them were made before, in another run."""
 
     def nearby_people(self, within: float) -> list[str]:
-        """Names of the people within that many metres, nearest first."""
+        """Return the names of the people within that many metres, nearest first."""
 
 
 class Navigation(Base, Protocol):
@@ -201,25 +201,25 @@ class Navigation(Base, Protocol):
 
     @property
     def set_out_from(self) -> Pose:
-        """Where it was when the run began."""
+        """The pose at the start of the run."""
 
     def place_names(self) -> list[str]:
-        """The names of all places, those of the mission among them."""
+        """Return the names of all places, including those of the mission."""
 
     @property
     def zones(self) -> Zones:
-        """Where it may not go, or only slowly."""
+        """The zones of the world and the mission."""
 
     def navigate_to(self, name: str) -> Operation:
-        """Starts to a place, an object (within arm's reach) or a person (within talking distance), and faces it.
+        """Go to a place, an object (within arm's reach) or a person (within talking distance), and face it.
 
         Raises RobotError for an unknown name. Any other problem is the operation's `failure`.
         """
 
     def navigate_to_pose(self, pose: Pose, name: str = "") -> Operation:
-        """Starts to a point of the map, and faces as the pose does. Problems are the operation's `failure`.
+        """Go to a pose of the map. Problems are the operation's `failure`.
 
-        Events and reasons call it by the name of what it is for, if one is given.
+        Events and reasons use the name of the target, if one is given.
         """
 
 
@@ -227,9 +227,9 @@ class Sensors(Machine, Protocol):
     """The scanner and the bumper."""
 
     def scan(self) -> npt.NDArray[np.float64]:
-        """360 distances from the centre, index = degrees left of the heading, inf if nothing is in range.
+        """Return 360 distances from the centre, index = degrees left of the heading, inf if nothing is in range.
 
-        Raises SensorSilent when the scanner is silent.
+        Raises SensorSilent if the scanner is silent.
         """
 
     @property
@@ -238,70 +238,73 @@ class Sensors(Machine, Protocol):
 
     @property
     def bumped(self) -> bool:
-        """True after running into something until it has moved away."""
+        """Whether it ran into something and hasn't moved away yet."""
 
 
 class Joints(Machine, Protocol):
     """The joints of the body, by their names in its file."""
 
     def joint(self, name: str) -> float:
-        """The joint's angle. Raises RobotError for an unknown name."""
+        """Return the joint's angle. Raises RobotError for an unknown name."""
 
     def move_joints(self, targets: Mapping[str, float]) -> None:
-        """Starts moving joints to angles, clipped to the limits of the joint."""
+        """Start moving joints to angles, clipped to the limits of the joint."""
 
     def joints_at_target(self, *names: str) -> bool:
-        """True when these joints rest at their targets."""
+        """Return whether these joints rest at their targets."""
 
     def freeze_joints(self, *names: str) -> None:
-        """These joints stay where they are now."""
+        """Hold these joints where they are."""
 
 
 class Gesturing(Joints, Base, Protocol):
-    """Gestures, played beside the ticks of the mission."""
+    """Gestures, played concurrently with the ticks of the mission."""
 
     def gesture(self, name: str, *, aim: Point | None = None, stroke_at: float | None = None) -> Operation:
-        """Starts one from wherever the body is. `aim` is a point of the map that it points at or is turned to.
+        """Start a gesture from the current positions.
 
-        With `stroke_at`, a second of `time`, its stroke is then, or as soon after as the limits of the body let it.
-        Cancelled, its joints come to rest within their limits. Raises RobotError for an unknown gesture, for an aim out
-        of reach, and where the body would touch itself.
+        `aim` is a point of the map that it points at or is turned to. With `stroke_at`, a second of `time`, its stroke
+        is then, or as soon after that as the limits of the body allow. When it is cancelled, its joints come to rest
+        within their limits. Raises RobotError for an unknown gesture, for an aim out of reach, and if the body would
+        touch itself.
         """
 
     def lead(self, name: str, aim: Point | None = None) -> float:
-        """Seconds that the gesture needs at least from now to its stroke. Raises RobotError as `gesture` does."""
+        """Return the least seconds from now to the stroke of a gesture. Raises RobotError as `gesture` does."""
 
 
 class Hands(Machine, Protocol):
     """The hands, which take objects and put them down."""
 
     def grasp(self, hand: Hand, name: str | None = None) -> Operation:
-        """Closes a hand on the named object, by default on the nearest one within reach.
+        """Close a hand on the named object, by default on the nearest one within reach.
 
         Raises RobotError, or fails, when nothing (or not that object) is within reach or the hand is full.
         """
 
     def release(self, hand: Hand) -> Operation:
-        """Opens a hand and puts down the object in it."""
+        """Open a hand and put down the object in it."""
 
     def hand_over(self, hand: Hand, person: str) -> Operation:
-        """Gives the object in a hand to a person. Raises RobotError, or fails, where that person is far or refuses."""
+        """Give the object in a hand to a person. Raises RobotError, or fails, if the person is
+        too far away or refuses.
+        """
 
     def holding(self, hand: Hand) -> str | None:
-        """The name of the object in the hand."""
+        """Return the name of the object in the hand."""
 
 
 class Perception(Base, Protocol):
     """Sensors that recognise people and objects."""
 
     def sees(self, name: str) -> bool:
-        """Whether an object or a person is in view now. Raises RobotError for an unknown name."""
+        """Return whether an object or a person is in view now. Raises RobotError for an unknown name."""
 
     def seen(self, kind: str) -> list[str]:
-        """The names of the "object"s or "person"s in view, nearest first."""
+        """Return the names of the objects ("object") or people ("person") in view, nearest first."""
 
     def take_picture(self) -> Operation:
-        """Takes a picture of what is in view."""
+        """Take a picture of what is in view."""
 
 
 class Listening(Machine, Protocol):
@@ -309,98 +312,98 @@ class Listening(Machine, Protocol):
 
     @property
     def ears(self) -> Ears:
-        """What was heard. Raises RobotError where the robot has no ears."""
+        """What was heard. Raises RobotError if the robot has no ears."""
 
     def hear(self, text: str, who: str = "") -> None:
-        """Somebody says it, or types it; "" where nobody knows who."""
+        """Take a text that somebody says or types; "" if nobody knows who."""
 
     def ask(self, question: str, person: str = "") -> None:
-        """The robot has asked a person, or anybody: the question is open until `ears.asking` is cleared.
+        """Ask a person, or anybody: the question is open until `ears.asking` is cleared.
 
         "" asks nothing, but waits for an answer to what was said last.
         """
 
 
 class Leading(Perception, Navigation, Protocol):
-    """People follow it."""
+    """A robot that people can follow."""
 
     def guide(self, person: str, follow: bool) -> None:
-        """Somebody follows the robot from now on, or no longer. Raises RobotError for who isn't in view."""
+        """Let somebody follow the robot from now on, or no longer. Raises RobotError if they aren't in view."""
 
 
 class Handling(Base, Protocol):
-    """Doors, and what can be switched, within reach."""
+    """Doors and switches within reach."""
 
     def beside_door(self, name: str) -> list[Pose]:
-        """Where it can stand to move a door: before it and behind it, the nearer one first."""
+        """Return where it can stand to move a door: before it and behind it, the nearer one first."""
 
     def move_door(self, name: str, is_open: bool) -> Operation:
-        """Opens or closes a door. Raises RobotError, or fails, where it is out of reach or something is in it."""
+        """Open or close a door. Raises RobotError, or fails, if it is out of reach or something is in it."""
 
     def is_open(self, door: str) -> bool:
-        """Whether a door is open."""
+        """Return whether a door is open."""
 
     def switch(self, name: str, on: bool | None) -> Operation:
-        """Switches an object on or off, with None to the other of both. Raises RobotError, or fails."""
+        """Switch an object on or off; None toggles it. Raises RobotError, or fails."""
 
     def is_on(self, name: str) -> bool:
-        """Whether an object is switched on."""
+        """Return whether an object is switched on."""
 
 
 class Cautious(Navigation, Protocol):
-    """Others in the way, and what was seen."""
+    """People in the way, and what was seen."""
 
     @property
     def held_up(self) -> str:
-        """Who is in its way; "" where nobody makes it wait."""
+        """The person in its way; "" if nobody makes it wait."""
 
     def wait_for_way(self, seconds: float) -> None:
-        """So long it waits for who is in its way, before it looks for another way."""
+        """Set the seconds to wait for somebody in its way before it looks for another way."""
 
     def forget_map(self) -> None:
-        """Forgets what it has seen on the way: obstacles, and where objects and people were."""
+        """Forget what it has seen on the way: obstacles, and where objects and people were."""
 
 
 class Messenger(Machine, Protocol):
-    """It can call people who aren't there."""
+    """A way to call people who aren't there."""
 
     def call(self, text: str) -> None:
-        """An event, which whoever watches the robot gets."""
+        """Report an event to whoever watches the robot."""
 
 
 class Voice(Machine, Protocol):
     """Speech, and the screen."""
 
     def say(self, text: str, after: float = 0.0) -> None:
-        """Starts to speak after so many seconds; `speaking` is False when it has finished. Raises RobotError."""
+        """Start to speak after so many seconds; `speaking` is False when it has finished. Raises RobotError."""
 
     @property
     def language(self) -> str:
-        """In which it speaks, such as "en"; "" where it has no voice."""
+        """The language in which it speaks, such as "en"; "" without a voice."""
 
     def speak_in(self, language: str) -> None:
-        """What is said from now on is in this language, to the end of the run. Raises RobotError where it can't."""
+        """Speak in a language until the end of the run. Raises RobotError if it can't."""
 
     def utterance(self, text: str) -> Utterance:
-        """What it would say, with the times of the words. Raises RobotError."""
+        """Return the sound and the times of a text. Raises RobotError."""
 
     @property
     def said(self) -> Utterance | None:
-        """What it says, or said last, with the times of its words; None where it hasn't said anything."""
+        """The current or the last utterance; None if it hasn't said anything."""
 
     @property
     def said_at(self) -> float:
-        """The second of `time` at which that begins, as far as it's known yet."""
+        """The second of `time` at which that utterance begins, as far as it's known."""
 
     @property
     def speaking(self) -> bool:
-        """True while it speaks."""
+        """Whether it speaks."""
 
     def silence(self) -> None:
-        """Ends speech at once."""
+        """End speech at once."""
 
     def print(self, text: str) -> None:
-        """Shows text at once."""
+        """Show a text at once."""
 
 
 class Power(Machine, Protocol):
@@ -408,15 +411,15 @@ class Power(Machine, Protocol):
 
     @property
     def battery(self) -> float:
-        """Percent left."""
+        """The percentage that is left."""
 
     @property
     def battery_empty(self) -> bool:
-        """True when the wheels get no power any more; False also if the robot doesn't report it."""
+        """Whether the wheels have no power any more; False also if the robot doesn't report it."""
 
     @property
     def charging(self) -> bool:
-        """True while docked and not full."""
+        """Whether it is docked and not full."""
 
 
 class Docking(Machine, Protocol):
@@ -424,23 +427,24 @@ class Docking(Machine, Protocol):
 
     @property
     def docked(self) -> bool:
-        """True while connected to the dock."""
+        """Whether it is connected to the dock."""
 
     @property
     def stations(self) -> Sequence[Station] | None:
-        """The docks that it may drive into, the best one first; None where `dock` and `undock` drive by themselves.
-        Raises RobotError where there is no dock.
+        """The docks that it may drive into, the best one first; None if `dock` and `undock` drive by themselves.
+
+        Raises RobotError without a dock.
         """
 
     def dock(self) -> Operation:
-        """Connects to the charger. Raises RobotError, or fails, if the robot isn't at the dock."""
+        """Connect to the charger. Raises RobotError, or fails, if the robot isn't at the dock."""
 
     def undock(self) -> Operation:
-        """Disconnects, without moving unless `stations` is None."""
+        """Disconnect, without moving unless `stations` is None."""
 
 
 class Conversing(Listening, Voice, Base, Protocol):
-    """It can ask, and hear the answer."""
+    """A robot that can ask, and hear the answer."""
 
 
 class Robot(Leading, Cautious, Handling, Messenger, Sensors, Joints, Hands, Conversing, Power, Docking, Protocol):
@@ -451,15 +455,15 @@ __all__ = ["CompletedOperation", "Hand", "OnEvent", "Operation", "Robot", "Robot
 
 
 class RobotError(ActionFailed):
-    """Why the robot can't do a command, in plain English: a leaf that lets it pass FAILS with it."""
+    """The reason why the robot can't do a command, in plain English: a leaf that doesn't catch it fails with it."""
 
 
 class SensorSilent(RobotError, Unknown):
-    """What was asked for is not known: a sensor says nothing, or nothing that can be true."""
+    """The error that something isn't known: a sensor reports nothing, or nothing that can be true."""
 
 
 def joint_of(body: Body, name: str) -> Joint:
-    """The joint of a name. Raises RobotError where the body has none of it."""
+    """Return the joint of a name. Raises RobotError if the body has no such joint."""
     joint = body.joint(name)
     if joint is None:
         raise RobotError(f'the robot has no joint "{name}"')
@@ -467,7 +471,7 @@ def joint_of(body: Body, name: str) -> Joint:
 
 
 def clipped(body: Body, targets: Mapping[str, float]) -> dict[str, float]:
-    """The targets within the limits of their joints. Raises RobotError for an unknown joint, and for no number."""
+    """Return the targets within the limits of their joints. Raises RobotError for an unknown joint, and for NaN."""
     for name, target in targets.items():
         if isnan(target):
             raise RobotError(f'the joint "{name}" can\'t move to what is not a number')

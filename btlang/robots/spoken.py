@@ -32,7 +32,7 @@ _SLOT = re.compile(r"\{(\w+)\}")
 
 
 def choices(tree: Tree, vocabulary: Lexicon) -> tuple[str, ...]:
-    """The texts that answers are compared with, each once; but for those that are only known during the run."""
+    """Return the texts that answers are compared with, each once; not those that are only known during the run."""
     found: dict[str, None] = {}
     for node in tree.walk():
         if any(entry.call == _ASKS for entry in vocabulary.entries.get(node.id, ())):
@@ -41,16 +41,16 @@ def choices(tree: Tree, vocabulary: Lexicon) -> tuple[str, ...]:
 
 
 class SpokenCommands:
-    """The commands of a mission's words that may be spoken: those that ship, drive, and need at most names.
+    """The commands of a mission's words that may be spoken.
 
-    None of them opens a zone or a door, or uses an arm.
+    These are the shipped ones that drive and need at most names. None of them opens a zone or a door, or uses an arm.
     """
 
     def __init__(self, vocabulary: Lexicon, body: Body) -> None:
         self._vocabulary, self._body = vocabulary, body
 
     def expected(self, robot: Any) -> Expected:
-        """All that may be said, with the names that the robot knows now."""
+        """Return all that may be said, with the names that the robot knows now."""
         people, things = (tuple(robot.described(kind, {})) for kind in ("person", "object"))
         names = {"place": tuple(robot.place_names()), "object": things, "person": people}
         entries = (entry for each in self._vocabulary.entries.values() for entry in each if self._allows(entry))
@@ -58,7 +58,7 @@ class SpokenCommands:
         return Expected(tuple(phrases), names)
 
     def read(self, text: str) -> Callable[..., Any]:
-        """What does the command, called with a robot. Raises RobotError for a text that isn't one command."""
+        """Return a function of a robot that does the command. Raises RobotError for a text that isn't one command."""
         source = Source(text, "what was said")
         try:
             read = read_text(source, vocabulary=self._vocabulary, parser="shunting-yard", errors_of=errors_of)
@@ -87,7 +87,7 @@ class SpokenCommands:
 
 
 def _phrases(entry: Entry) -> Iterator[str]:
-    """Without the options that have values, and with articles, which the language leaves out."""
+    """Return phrases without the options that have values, and with articles, which the language leaves out."""
     types = {slot.name: slot.type for slot in entry.slots}
     for phrase in entry.phrases:
         plain = _OPTION.sub(lambda match: "" if "{" in match[0] else match[0], phrase)

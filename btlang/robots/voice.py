@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Synthesizer:
-    """The engine of a body's voice, in one language at a time. Raises MissionError (BT071) where it can't be used."""
+    """The engine of a body's voice, in one language at a time. Raises MissionError (BT071) if it can't be used."""
 
     def __init__(self, body: Body) -> None:
         self._body = body
@@ -39,7 +39,7 @@ class Synthesizer:
             raise unusable_robot(problem) from None
 
     def speak_in(self, language: str = "") -> None:
-        """Speaks in a language such as "es" from now on, by default in its own. Raises RobotError where it can't."""
+        """Speak in a language such as "es" from now on, by default in its own. Raises RobotError if it can't."""
         wanted = language or self._own
         if wanted == self.language:
             return
@@ -50,7 +50,7 @@ class Synthesizer:
         self.language, self._last = wanted, None
 
     def speak(self, text: str) -> Utterance:
-        """The text as sound and times; the latest one is kept. Raises RobotError where the engine can't."""
+        """Return a text as sound and times, and keep it as the latest one. Raises RobotError if the engine can't."""
         last = self._last
         if last is None or last[0] != text:
             try:
@@ -61,7 +61,9 @@ class Synthesizer:
 
 
 class TimedVoice:
-    """Speaks one text at a time, for as long as the engine of its body says. `move_joints` moves its mouth."""
+    """A voice that speaks one text at a time, for as long as the engine of its body says. `move_joints` moves its
+    mouth.
+    """
 
     def __init__(self, body: Body, move_joints: Callable[[Mapping[str, float]], object] = lambda angles: None) -> None:
         self._synthesizer = Synthesizer(body) if body.voice is not None else None
@@ -77,39 +79,38 @@ class TimedVoice:
 
     @property
     def speaking(self) -> bool:
-        """True while it speaks, and before it begins."""
+        """Whether it speaks, or waits to begin."""
         return not self._ended
 
     @property
     def language(self) -> str:
-        """In which it speaks, such as "en"; "" where it doesn't."""
+        """The language in which it speaks, such as "en"; "" without a voice."""
         return "" if self._synthesizer is None else self._synthesizer.language
 
     def speak_in(self, language: str = "") -> None:
-        """See Synthesizer."""
         if self._synthesizer is not None:
             self._synthesizer.speak_in(language)
 
     def utterance(self, text: str) -> Utterance:
-        """The text as it would be said. Raises RobotError where the engine can't."""
+        """Return the sound and the times of a text. Raises RobotError if the engine can't speak it."""
         return Utterance(text, 0.0) if self._synthesizer is None else self._synthesizer.speak(text)
 
     def say(self, text: str, after: float = 0.0) -> None:
-        """Speaks after so many seconds, in place of what it is saying. Raises RobotError."""
+        """Speak after so many seconds, in place of what it is saying. Raises RobotError."""
         self.silence()
         self.said = self.utterance(text)
         self.position, self._ended = -after, False
         self._step(0.0)
 
     def silence(self) -> None:
-        """Ends speech at once; from any thread. The mouth closes at the next step."""
+        """End speech at once; from any thread. The mouth closes at the next step."""
         self._ended = True
 
     def print(self, text: str) -> None:
-        """The screen shows it at once."""
+        """Show a text at once."""
 
     def step(self, dt: float) -> None:
-        """Moves on by `dt` seconds."""
+        """Move on by `dt` seconds."""
         if not self._ended:
             self._step(dt)
             return
@@ -118,7 +119,7 @@ class TimedVoice:
             self._show("rest")
 
     def show(self, shape: str) -> None:
-        """The mouth has another shape, a name in SHAPES."""
+        """Give the mouth another shape, a name in SHAPES."""
 
     def _step(self, dt: float) -> None:
         assert self.said is not None
@@ -145,9 +146,9 @@ _PIECE = 1 << 16
 
 @contextmanager
 def voice_track(path: str | None, body: Body) -> Iterator[list[Sink]]:
-    """The sink that writes all that is said in a run to a WAV file, at its time; none without a path.
+    """Return the sink that writes everything that is said in a run to a WAV file; none without a path.
 
-    Raises MissionError where the robot has no sound (BT071), or the file can't be written (BT009).
+    Raises MissionError if the robot has no sound (BT071), or the file can't be written (BT009).
     """
     if path is None:
         yield []
@@ -167,7 +168,9 @@ def voice_track(path: str | None, body: Body) -> Iterator[list[Sink]]:
 
 
 class VoiceTrack:
-    """A sink. Reads after each period what the robot says; what is cut short ends with the period. At most a day."""
+    """A sink that reads after each period what the robot says, for at most a day. A text that is cut short ends with
+    the period.
+    """
 
     policy = INLINE
 
@@ -193,11 +196,11 @@ class VoiceTrack:
             self._write(event.t)
 
     def end(self) -> None:
-        """The run is over."""
+        """End the run."""
         self._write(self._now)
 
     def _write(self, until: float) -> None:
-        """What is said, up to a second of the mission, behind silence up to its beginning."""
+        """Write what is said up to a second of the mission, after silence up to its beginning."""
         if self._over or self._said is None or not self._said.samples:
             return
         self._over = True

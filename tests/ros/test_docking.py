@@ -127,7 +127,7 @@ class OldSimulator(Command):
 
     program = (
         "-c",
-        "import sys; sys.modules['btlang.ros.simulator.navigation'] = None\n"
+        "import sys; sys.modules['btlang.ros.simulator.docking'] = None\n"
         "from btlang.__main__ import main; sys.exit(main())",
     )
 

@@ -18,9 +18,8 @@ from btlang.run.bus import INLINE
 def test_the_last_snapshot_has_the_last_statuses(pause: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also where a snapshot has just been taken when the run ends; `pause` are seconds between two looks."""
     looks = itertools.count()
-    for module in ("progress", "tree_topic"):
-        clock = SimpleNamespace(monotonic=lambda: next(looks) * pause)
-        monkeypatch.setattr(f"btlang.ros.mission.{module}.time", clock)
+    clock = SimpleNamespace(monotonic=lambda: next(looks) * pause)
+    monkeypatch.setattr("btlang.ros.mission.topics.time", clock)
     snapshots: list[str] = []
     changes: list[str] = []
     with btlang.Session() as session:

@@ -24,9 +24,9 @@ Vector = tuple[float, float, float]
 
 
 class SpeedLimits(Record):
-    """How fast it drives, in metres and seconds, or turns, in degrees and seconds.
+    """How fast the base drives, in metres and seconds, or turns, in degrees and seconds.
 
-    `speed` is that where a mission says no other, `slowing` how it brakes for a goal, `hard_brake` for a stop.
+    `speed` is the default for missions, `slowing` the deceleration before a goal, `hard_brake` that of a stop.
     """
 
     speed: float = 0.0
@@ -38,7 +38,7 @@ class SpeedLimits(Record):
 
 
 class BaseSpec(Record):
-    """Two wheels, `wheel_gap` metres apart. It touches things on purpose at most at `contact_speed` m/s."""
+    """A base with two wheels, `wheel_gap` metres apart. It touches things on purpose at `contact_speed` m/s at most."""
 
     driving: SpeedLimits
     turning: SpeedLimits
@@ -51,7 +51,7 @@ TOLERANCE = 0.5
 
 
 class NavigationSpec(Record):
-    """How near it goes to objects (within reach of its hands) and to people, in metres from centre to centre.
+    """How near the robot goes to objects (within reach of its hands) and to people, in metres between centres.
 
     A navigation server that reports success is believed within `tolerance` metres of the goal.
     """
@@ -62,11 +62,12 @@ class NavigationSpec(Record):
 
 
 class Joint(Record):
-    """Degrees, and degrees a second; metres where it `slides`. `part` is what it belongs to: "head", "lift".
+    """A joint in degrees and degrees a second, or in metres if it `slides`.
 
-    `acceleration` and `jerk` are in units a second squared and cubed; 0: it has its speed at once. It moves its `link`
-    around an `axis` through a point `at` of the `parent` link, both in its frame: metres ahead, left and up. "" is the
-    base, whose origin is on the floor below its centre.
+    `part` is what it belongs to: "head", "lift". `acceleration` and `jerk` are in units a second squared and cubed;
+    with 0 it has its speed at once. It moves its `link` around an `axis` through a point `at` of the `parent` link,
+    both in the frame of that link: metres ahead, left and up. "" is the base, whose origin is on the floor below its
+    centre.
     """
 
     name: str
@@ -85,22 +86,22 @@ class Joint(Record):
 
     @property
     def si(self) -> float:
-        """What one of its units is in radians or metres."""
+        """One of its units in radians or metres."""
         return 1.0 if self.slides else pi / 180
 
     @property
     def close_enough(self) -> float:
-        """A centimetre or a degree from where it should be."""
+        """The accepted error: a centimetre or a degree."""
         return 0.01 if self.slides else 1.0
 
     def unhurried(self, way: float) -> float:
-        """Seconds in which it can go so far from rest to rest, on a polynomial of degree five within its limits."""
+        """Return the seconds for a distance from rest to rest, on a polynomial of degree five within the limits."""
         by_speed, by_force = 2.4 * way / self.speed, sqrt(6.4 * way / self.acceleration)
         return max(by_speed, by_force, cbrt(66 * way / self.jerk))
 
 
 class Capsule(Record):
-    """What is nearer than `radius` metres to a line between two points of a link, in its frame."""
+    """All points within `radius` metres of a line between two points of a link, in the frame of the link."""
 
     link: str
     start: Vector
@@ -109,8 +110,10 @@ class Capsule(Record):
 
 
 class HandPart(Record):
-    """`name` is "left" or "right". It takes what is within `reach` of a point, so many metres `ahead` of the robot's
-    centre and to the `left`, and puts things down with their rim `puts_at` metres ahead.
+    """A hand, whose `name` is "left" or "right".
+
+    It grasps objects within `reach` of a point, `ahead` metres before the robot's centre and `left` metres beside it,
+    and puts things down with their rim `puts_at` metres ahead.
     """
 
     name: str
@@ -121,11 +124,11 @@ class HandPart(Record):
 
 
 class Sensor(Record):
-    """`kind` is "scanner", "bumper" or "camera"; `frame` is its frame in ROS 2, `ahead` and `left` metres from the
-    robot's centre.
+    """A sensor, whose `kind` is "scanner", "bumper" or "camera"; `frame` is its frame in ROS 2.
 
-    It sees as far as its `range`, `view` degrees wide, in the direction `angle` degrees left of ahead and of where its
-    `joint` has turned. It recognises people and objects up to `recognizes` metres away.
+    It is `ahead` and `left` metres from the robot's centre, and sees as far as its `range`, `view` degrees wide, in the
+    direction `angle` degrees left of ahead plus the angle of its `joint`. It recognises people and objects up to
+    `recognizes` metres away.
     """
 
     kind: str
@@ -140,12 +143,12 @@ class Sensor(Record):
 
     @property
     def pose(self) -> Pose:
-        """Where it is, as seen from the centre of the robot, which faces along x."""
+        """The pose in the frame of the robot's centre, which faces along x."""
         return Pose(self.ahead, self.left, self.angle)
 
 
 class Battery(Record):
-    """Percent that it loses a second and a metre, and gains a second at the dock."""
+    """The percentages that a battery loses a second and a metre, and gains a second at the dock."""
 
     idle: float
     driving: float
@@ -153,9 +156,10 @@ class Battery(Record):
 
 
 class Dock(Record):
-    """Metres from the dock: it connects `within`, has left it `beyond`, and `backs_off` so far when it undocks.
+    """How the robot docks. Distances are in metres from the dock.
 
-    It drives straight in from `staging` metres in front of it, at `speed` m/s, and tries again `retries` times.
+    It connects `within`, has left the dock `beyond`, and `backs_off` so far when it undocks. It drives straight in from
+    `staging` metres in front of the dock, at `speed` m/s, and tries again `retries` times.
     """
 
     within: float
@@ -167,8 +171,9 @@ class Dock(Record):
 
 
 class VoiceSpec(Record):
-    """How it speaks, and by which engine: "espeak", the name of an installed one, `module:Class`; "" is one without
-    sound.
+    """How the robot speaks, and with which engine: "espeak", the name of an installed one, or `module:Class`.
+
+    "" is an engine without sound.
     """
 
     settings: Settings
@@ -183,7 +188,7 @@ class Mouth(Record):
 
 
 class Breathing(Record):
-    """A `joint` goes so many degrees to both sides, once in so many seconds."""
+    """A motion of a `joint` by so many degrees to both sides, once in so many seconds."""
 
     joint: str
     by: float
@@ -191,14 +196,14 @@ class Breathing(Record):
 
 
 class Idle(Record):
-    """What it does with joints that nothing else moves: see btlang.robots.motion.gesturing."""
+    """What the robot does with joints that nothing else moves; see btlang.robots.motion.gesturing."""
 
     breathing: Breathing | None = None
     look_at_speaker: bool = False
 
 
 class EarsSpec(Record):
-    """It understands what is said up to `within` metres away, through microphones by a recogniser; "" without one.
+    """What the robot understands: speech up to `within` metres away, by a recogniser for microphones, "" for none.
 
     Without a `wake` word and `settings.push` it listens all the time.
     """
@@ -210,10 +215,10 @@ class EarsSpec(Record):
 
 
 class Device(Record):
-    """A device of a robot: `kind` and `driver` are names of btlang.devices, `options` are those of its driver.
+    """A device: `kind` and `driver` are names of btlang.devices, `options` are those of its driver.
 
-    `scale` and `offset` correct what its driver reads: value * scale + offset; for a command the other way round.
-    It looks `angle` degrees left of ahead.
+    `scale` and `offset` correct what its driver reads: value * scale + offset; for a command the other way round. It
+    looks `angle` degrees left of ahead.
     """
 
     name: str
@@ -227,8 +232,10 @@ class Device(Record):
 
 
 class RosNode(Record):
-    """A ROS 2 lifecycle node, by its full name. Somebody else has started it, unless there is a `command` that does, or
-    a `container`, the full name of a node into which the `plugin` of a `package` is loaded.
+    """A ROS 2 lifecycle node, by its full name.
+
+    Somebody else starts it, unless there is a `command`, or a `container`: the full name of a node that loads the
+    `plugin` of a `package`.
     """
 
     name: str
@@ -239,13 +246,12 @@ class RosNode(Record):
 
 
 class ComponentPart(Record):
-    """A component of a robot: `place` is its class, `module:Class` or the name of an installed one; of one that is a
-    ROS 2 `node` it is the name of that.
+    """A component. `place` is its class, `module:Class` or the name of an installed one; of a ROS 2 `node`, its name.
 
-    `runs` is "process" or "here", in the robot's own process. Robots of one user whose components have the same name
-    in `shared` have one process for them. `needs` are those beside the ones that its class names.
-    `restarts` says how often in a minute it is started again after it has failed. It is given up where a transition
-    takes longer than `limit` seconds, or it is silent for longer than `silence` seconds.
+    `runs` is "process" or "here", in the robot's own process. Robots of one user whose components have the same name in
+    `shared` have one process for them. `needs` are further ones than those that its class names. `restarts` is how
+    often in a minute it is started again after a failure. It is given up if a transition takes longer than `limit`
+    seconds, or if it is silent for longer than `silence` seconds.
     """
 
     name: str
@@ -261,13 +267,13 @@ class ComponentPart(Record):
 
 
 class Body(Record):
-    """All that is known of a robot. What it lacks is None, or is not in the tuples.
+    """All that is known of a robot. What it lacks is None, or isn't in the tuples.
 
-    `over` is what it runs on where nothing else is said: a name of btlang.robots.registry.ROBOTS. Joints that a posture
-    does not name stay where they are; its steps follow each other. `file` is where this comes from, `world` the path of
-    the world file of the place where it works; "" without one. `rules`, `missions` and `schedules` are the paths of
-    what it does where it is up: see btlang.task.house. `forbidden` are pairs of links that may not touch.
-    What moves has to get on within the seconds of its `patience`.
+    `over` is what it runs on by default: a name of btlang.robots.registry.ROBOTS. Joints that a posture doesn't name
+    stay where they are; its steps follow each other. `file` is the path of the robot file, `world` that of the world
+    where it works; "" without one. `rules`, `missions` and `schedules` are the paths of what it does by itself: see
+    btlang.task.house. `forbidden` has pairs of links that may not touch. What moves has to make progress within the
+    seconds of its `patience`.
     """
 
     name: str
@@ -300,44 +306,44 @@ class Body(Record):
 
     @property
     def folder(self) -> str:
-        """Where its file is, beside which are the classes of its components; "" where it has none."""
+        """The folder of its file, which also has the classes of its components; "" without a file."""
         return os.path.dirname(self.file)
 
     @property
     def driving(self) -> SpeedLimits:
-        """Of a robot without wheels all zero."""
+        """The speed limits for driving; all zero without a base."""
         return self.base.driving if self.base is not None else SpeedLimits()
 
     @property
     def turning(self) -> SpeedLimits:
-        """As `driving`."""
+        """The speed limits for turning; all zero without a base."""
         return self.base.turning if self.base is not None else SpeedLimits()
 
     @property
     def contact_speed(self) -> float:
-        """Metres a second at which it touches things on purpose."""
+        """The metres a second at which it touches things on purpose."""
         return self.base.contact_speed if self.base is not None else 0.0
 
     def sensor(self, kind: str) -> Sensor | None:
-        """The first of a kind."""
+        """Return the first sensor of a kind."""
         return next((sensor for sensor in self.sensors if sensor.kind == kind), None)
 
     @property
     def range(self) -> float:
-        """Metres that the scanner sees, 0 without one."""
+        """The metres that the scanner sees, 0 without one."""
         scanner = self.sensor("scanner")
         return scanner.range if scanner is not None else 0.0
 
     def hand(self, name: str) -> HandPart | None:
-        """The hand of a name."""
+        """Return the hand of a name."""
         return next((hand for hand in self.hands if hand.name == name), None)
 
     def joint(self, name: str) -> Joint | None:
-        """The joint of a name."""
+        """Return the joint of a name."""
         return next((joint for joint in self.joints if joint.name == name), None)
 
     def bearing_joint(self, posture: str) -> Joint | None:
-        """The joint that turns towards something in a posture."""
+        """Return the joint that turns towards something in a posture."""
         steps = self.postures.get(posture, ())
         return next((self.joint(name) for step in steps for name, at in step.items() if at in BEARINGS), None)
 
@@ -347,7 +353,7 @@ class Body(Record):
         return any(joint.acceleration for joint in self.joints)
 
     def falls_short(self, posture: str, bearing: float) -> Joint | None:
-        """The joint that can't turn to what is `bearing` degrees to the left in a posture; None where all can."""
+        """Return the joint that can't turn to a target `bearing` degrees to the left in a posture; None if all can."""
         for step in self.postures.get(posture, ()):
             for name, at in step.items():
                 joint = self.joint(name)
@@ -356,14 +362,14 @@ class Body(Record):
         return None
 
     def has(self, need: str) -> bool:
-        """Whether it has what a word needs: see btlang.vocabulary.capabilities."""
+        """Return whether it has what a word needs; see btlang.vocabulary.capabilities."""
         if need.startswith(POSTURE):
             return need.removeprefix(POSTURE) in self.postures
         return need in self._parts
 
     @property
     def _parts(self) -> set[str]:
-        """What it has of the needs that words have."""
+        """The needs of words that it meets."""
         return {
             *(("base", "pose") if self.base else ()),
             *(("navigation",) if self.base and self.navigation else ()),

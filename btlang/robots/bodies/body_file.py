@@ -52,15 +52,15 @@ _FOREIGN = 'components, and drivers but for "simulated", may only be in a robot 
 
 
 class BodyError(DataFileError):
-    """A robot file that cannot be used."""
+    """The reason why a robot file can't be used."""
 
     code = "BT071"
 
 
 def load_body(file: str | Source, overs: Collection[str] = tuple(ROBOTS)) -> Body:
-    """The robot in a file or a text, which may run on one of `overs`. Raises BodyError, or GestureError.
+    """Return the robot in a file or a text, which may run on one of `overs`. Raises BodyError, or GestureError.
 
-    A text that isn't that of a file which the user named has no components and no devices but simulated ones.
+    A text that isn't from a file that the user named has no components, and only simulated devices.
     """
     named = file if isinstance(file, str) else file.name if file.may_load else ""
     real = os.path.abspath(named) if os.path.isfile(named) else ""
@@ -68,7 +68,7 @@ def load_body(file: str | Source, overs: Collection[str] = tuple(ROBOTS)) -> Bod
 
 
 def read_body(file: str | Source, overs: Collection[str] = tuple(ROBOTS)) -> Body:
-    """As `load_body`. Raises MissionError (BT071, BT076)."""
+    """Return the robot as `load_body` does. Raises MissionError (BT071, BT076)."""
     try:
         return load_body(file, overs)
     except DataFileError as error:
@@ -76,7 +76,9 @@ def read_body(file: str | Source, overs: Collection[str] = tuple(ROBOTS)) -> Bod
 
 
 def unusable_robot(problem: Exception) -> MissionError:
-    """BT071 for what no line of the file shows: something isn't installed, or isn't there."""
+    """Return the error (BT071) for a problem that no line of the file shows: something isn't
+    installed, or is missing.
+    """
     from btlang.diagnostics.diagnostic import diagnostic
     from btlang.diagnostics.errors import MissionError
     from btlang.text.source import NOWHERE
@@ -86,12 +88,12 @@ def unusable_robot(problem: Exception) -> MissionError:
 
 @cache
 def standard_body() -> Body:
-    """The robot that a mission runs on where none is named."""
+    """Return the robot that a mission runs on by default."""
     return load_body(STANDARD_BODY)
 
 
 def shipped_bodies() -> list[str]:
-    """The names of the robots that ship."""
+    """Return the names of the robots that ship."""
     return sorted(name.removesuffix(".toml") for name in os.listdir(BODIES) if name.endswith(".toml"))
 
 
@@ -148,7 +150,7 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
 
 
 def _beside(top: Table, key: str, file: str, exists: Callable[[str], bool] = os.path.isfile) -> str:
-    """The path of a file, or a folder, in the folder of the robot file; "" where there is no such key."""
+    """Return the path of a file or folder in the folder of the robot file; "" if there is no such key."""
     if not top.has(key):
         return ""
     folder = os.path.dirname(file)
@@ -162,7 +164,7 @@ def _beside(top: Table, key: str, file: str, exists: Callable[[str], bool] = os.
 def _listed(
     top: Table, section: str, make: Callable[[Table], T], problems: Problems, key: str = "name"
 ) -> tuple[T, ...]:
-    """What is made of the tables of a list, but of those that are wrong; each has another name."""
+    """Return what is made of the tables of a list, without the wrong ones; names are unique."""
     found: list[T] = []
     tables: list[Table] = problems.part(lambda: top.tables(section), [])
     for index, table in enumerate(tables):

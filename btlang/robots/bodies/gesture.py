@@ -17,18 +17,20 @@ Step = Mapping[str, float | str]
 
 
 def angle_of(value: float | str, bearing: float) -> float:
-    """The angle of a joint in a step, where what the robot turns to is `bearing` degrees to the left."""
+    """Return the angle of a joint in a step, for a target `bearing` degrees to the left."""
     return -bearing if value == OPPOSITE else bearing if value == BEARING else float(value)
 
 
 def joints_of(wanted: Gesture | Sequence[Step]) -> tuple[str, ...]:
-    """The names of the joints in a gesture, or in the steps of a posture."""
+    """Return the names of the joints in a gesture, or in the steps of a posture."""
     steps = [frame.joints for frame in wanted.frames] if isinstance(wanted, Gesture) else wanted
     return tuple(dict.fromkeys(name for step in steps for name in step))
 
 
 class KeyFrame(Record):
-    """Where some joints are `at` so many seconds of the gesture, for `hold` seconds. The others stay where they are."""
+    """The positions of some joints at a second of the gesture, kept for `hold` seconds. The
+    others stay where they are.
+    """
 
     at: float
     joints: Step
@@ -36,12 +38,13 @@ class KeyFrame(Record):
 
 
 class Gesture(Record):
-    """`stroke` is the second of the gesture that its meaning is in, such as the lowest point of a bow.
+    """A gesture: key frames in time, and the words for it.
 
-    The way to the stroke may take `least` to `most` times as long as its key frames say, so that the stroke meets a
-    word. `aim` is the part of the body, such as "right arm", that points at what the phrase names: its joints are found
-    by geometry at the stroke. `phrases` are those of the word, `help` says what it is. `other` is what is done instead
-    where the target is on the other side of the robot than the part that points at it. `file` is where it comes from.
+    `stroke` is the second of the gesture that carries its meaning, such as the lowest point of a bow. The motion to the
+    stroke may take `least` to `most` times as long as in the key frames, so that the stroke meets a word. `aim` is the
+    part of the body, such as "right arm", that points at what the phrase names: its joints are found by geometry at the
+    stroke. `phrases` are those of the word, `help` describes it. `other` is the gesture to do instead if the target is
+    on the other side than the part that points at it. `file` is where it comes from.
     """
 
     name: str
@@ -56,18 +59,18 @@ class Gesture(Record):
     file: str = ""
 
     def towards(self, bearing: float) -> Gesture:
-        """That of the side that is nearer to what is `bearing` degrees to the left."""
+        """Return the gesture of the side that is nearer to a target `bearing` degrees to the left."""
         is_left = self.aim.startswith("left")
         return self if self.other is None or bearing == 0.0 or is_left == (bearing > 0.0) else self.other
 
     @property
     def seconds(self) -> float:
-        """How long it takes where no limit of the body slows it down."""
+        """The seconds that it takes if no limit of the body slows it down."""
         return self.frames[-1].at + self.frames[-1].hold
 
     @property
     def stroke_frame(self) -> int:
-        """The number of the key frame that the stroke is in, or that is nearest to it."""
+        """The number of the key frame of the stroke, or of the nearest one."""
         stroke = self.stroke
         apart = [max(frame.at - stroke, stroke - frame.at - frame.hold, 0.0) for frame in self.frames]
         return apart.index(min(apart))

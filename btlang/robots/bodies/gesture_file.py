@@ -19,12 +19,12 @@ _SIDES = {"left": "right", "right": "left"}
 
 
 def swapped(words: str) -> str:
-    """A text with "right" for "left", and the other way round."""
+    """Return a text with "right" and "left" swapped."""
     return re.sub(r"\b(left|right)\b", lambda match: _SIDES[match[1]], words)
 
 
 def mirrored(gesture: Gesture, joints: Sequence[Joint]) -> Gesture:
-    """As a mirror shows it. Raises ValueError for a joint without another side."""
+    """Return the mirror image of a gesture. Raises ValueError for a joint without another side."""
     known = {joint.name: joint for joint in joints}
     frames = tuple(frame.replace(joints=_step(frame.joints, known)) for frame in gesture.frames)
     made: Gesture = gesture.replace(
@@ -51,7 +51,7 @@ def _step(step: Step, known: Mapping[str, Joint]) -> Step:
 
 
 def _sense(joint: Joint, known: Mapping[str, Joint]) -> float:
-    """1 where the mirror image of a movement has the same sign, else -1."""
+    """Return 1 if the mirror image of a movement has the same sign, else -1."""
     other = known.get(swapped(joint.name))
     if other is None:
         raise ValueError(f'there is no joint "{swapped(joint.name)}" to mirror "{joint.name}"')
@@ -76,15 +76,16 @@ _FRAME_KEYS = ("at", "hold")
 
 
 class GestureError(DataFileError):
-    """A gesture file that cannot be used."""
+    """The reason why a gesture file can't be used."""
 
     code = "BT076"
 
 
 def load_gestures(file: str | Source, joints: Sequence[Joint]) -> tuple[Gesture, ...]:
-    """The gesture of a file or a text for a body with these joints, and its mirror image where the file asks for it.
+    """Return the gesture of a file or a text for a body with these joints, and its mirror image if the file asks for
+    it.
 
-    Its name is that of the file, with blanks for `_`, unless it says another. Raises GestureError.
+    Its name is that of the file, with blanks for `_`, unless the file gives another. Raises GestureError.
     """
     path = file if isinstance(file, str) else file.name
     stem = os.path.splitext(os.path.basename(path))[0].replace("_", " ").strip() or "gesture"
@@ -93,9 +94,9 @@ def load_gestures(file: str | Source, joints: Sequence[Joint]) -> tuple[Gesture,
 
 
 def read_gestures(top: Table, joints: Sequence[Joint], file: str) -> dict[str, Gesture]:
-    """Those that a robot file names, by their names; `file` is its path, "" for a text from outside.
+    """Return the gestures that a robot file names, by their names; `file` is its path, "" for a text from outside.
 
-    Raises Problem for the key, and GestureError for all that is wrong in the files.
+    Raises Problem for the key, and GestureError for everything that is wrong in the files.
     """
     found: dict[str, Gesture] = {}
     said: dict[Form, str] = {}
@@ -115,7 +116,7 @@ def read_gestures(top: Table, joints: Sequence[Joint], file: str) -> dict[str, G
 
 
 def phrase_forms(gesture: Gesture) -> Iterator[Form]:
-    """All ways to say it, without articles."""
+    """Return all ways to say it, without articles."""
     for phrase in gesture.phrases:
         yield from forms(phrase, ARTICLES)
 
@@ -209,7 +210,7 @@ def _check_times(frames: Sequence[KeyFrame], problems: Problems) -> None:
 
 
 def _repeat(top: Table, frames: Sequence[KeyFrame]) -> tuple[float, float, int] | None:
-    """The part of the gesture to repeat: from a time to a time, and how often."""
+    """Return the part of the gesture to repeat: from a time to a time, and how often."""
     if not top.has("repeat"):
         return None
     table = top.table("repeat")

@@ -39,7 +39,7 @@ _POINT = {"x": "length", "y": "length"}
 
 
 def gesture_words(body: Body) -> str | None:
-    """The path of the keyword file, None for a body without gestures.
+    """Return the path of the keyword file, None for a body without gestures.
 
     Raises MissionError (BT076) for a phrase that means something else already.
     """
@@ -62,7 +62,7 @@ def gesture_words(body: Body) -> str | None:
 
 
 def _problem(path: str, text: str) -> MissionError | None:
-    """Why a text can't be the keyword file there."""
+    """Return why a text can't be the keyword file there."""
     from btlang.backends.files import write_file  # only a file that is new is written
 
     write_file(path, text)
@@ -74,7 +74,7 @@ def _problem(path: str, text: str) -> MissionError | None:
 
 
 def keyword_text(body: Body) -> str:
-    """The text of the file. Raises as `gesture_words`."""
+    """Return the text of the file. Raises as `gesture_words` does."""
     english = load_vocabulary()
     entries, taken = [], list[str]()
     try:
@@ -89,7 +89,7 @@ def keyword_text(body: Body) -> str:
 
 
 def _clash(body: Body, path: str, error: MissionError) -> DataFileError:
-    """The first phrase that can't be distinguished from another word, at its place in its gesture."""
+    """Return the first phrase that can't be distinguished from another word, at its place in its gesture."""
     values = dict(error.diagnostics[0].arguments)
     one, other = values.get("first", ""), values.get("second", "")
     if values.get("first_file") != shown_name(path):
@@ -104,7 +104,7 @@ def _clash(body: Body, path: str, error: MissionError) -> DataFileError:
 
 
 def _refused(gesture: Gesture, index: int, says: str) -> DataFileError:
-    """For one of its phrases."""
+    """Return the error for one of the phrases of a gesture."""
     problem = Problem(f"{says}; choose another phrase", "phrase", index)
     source = read_source(gesture.file) if gesture.file else Source("", gesture.name)
     return next(placed([problem], source, source.name, GestureError))
@@ -123,7 +123,7 @@ def _entry(body: Body, gesture: Gesture, node_id: str, phrases: list[str]) -> st
 
 
 def _parts(body: Body, gesture: Gesture) -> list[str]:
-    """What it moves."""
+    """Return the parts that a gesture moves."""
     both = [gesture, *([gesture.other] if gesture.other is not None else [])]
     names = {name for each in both for name in joints_of(each)}
     moved = (joint.part for joint in body.joints if joint.name in names)
@@ -131,7 +131,7 @@ def _parts(body: Body, gesture: Gesture) -> list[str]:
 
 
 def _by_id(gesture: Gesture, english: Lexicon) -> Mapping[str, list[str]]:
-    """The phrases of a gesture by the ids of the words that they are: those of known gestures, else one that is new."""
+    """Return the phrases of a gesture by the ids of their words: ids of known gestures, or a new one."""
     found: dict[str, list[str]] = {}
     for index, phrase in enumerate(gesture.phrases):
         for aimed in _aimed(phrase):
@@ -142,13 +142,13 @@ def _by_id(gesture: Gesture, english: Lexicon) -> Mapping[str, list[str]]:
 
 
 def _aimed(phrase: str) -> Iterator[str]:
-    """With each type of what it may be aimed at."""
+    """Return the forms of a phrase with each type of target."""
     slot = f"{{{TARGET}}}"
     return (phrase.replace(slot, f"{{{kind}}}") for kind in (_TARGETS if slot in phrase else _TARGETS[:1]))
 
 
 def _known(english: Lexicon, form: Form, gesture: Gesture, index: int) -> str:
-    """The id of the word that has a form of a phrase; "" for none. Raises GestureError for one that isn't a gesture."""
+    """Return the id of the word that has a form of a phrase; "" for none. Raises GestureError if it isn't a gesture."""
     node: Any = english.trie
     for part in form:
         if isinstance(part, str):
@@ -173,7 +173,7 @@ def _new_id(name: str, english: Lexicon) -> str:
 
 @cache
 def _folder() -> str:
-    """One that only the user writes to; for this process alone if there is none."""
+    """Return a folder that only the user writes to; for this process alone if there is none."""
     try:
         folder = os.path.join(own_folder(), "words")
         os.makedirs(folder, 0o700, exist_ok=True)

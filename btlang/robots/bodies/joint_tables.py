@@ -22,7 +22,7 @@ _FRAME = ("link", "parent", "at", "axis")
 
 
 def joint(table: Table) -> Joint:
-    """One of the joints. Raises Problem."""
+    """Read a joint. Raises Problem."""
     name, part = table.text("name"), table.text("part")
     if part in CAPABILITIES:
         raise table.problem("part", f'"{part}" has another meaning; call the part "{name}", or similar')
@@ -53,14 +53,14 @@ def joint(table: Table) -> Joint:
 
 
 def capsule(table: Table) -> Capsule:
-    """One of the capsules. Raises Problem."""
+    """Read a capsule. Raises Problem."""
     link = table.text("link")
     start, end, radius = _vector(table, "start"), _vector(table, "end"), table.number("radius", low=_LEAST)
     return table.finish(Capsule("" if link == BASE else link, start, end, radius))
 
 
 def forbidden_pairs(top: Table) -> tuple[tuple[str, str], ...]:
-    """Pairs of links. Raises Problem."""
+    """Read the pairs of links that may not touch. Raises Problem."""
     pairs: list[tuple[str, str]] = []
     for index, item in enumerate(top.items("forbidden")):
         if not (isinstance(item, list) and len(item) == 2 and all(isinstance(name, str) for name in item)):
@@ -76,7 +76,7 @@ def forbidden_pairs(top: Table) -> tuple[tuple[str, str], ...]:
 def link_problems(
     joints: Sequence[Joint], capsules: Sequence[Capsule], forbidden: Sequence[tuple[str, str]]
 ) -> Iterator[Problem]:
-    """What doesn't fit together."""
+    """Return what doesn't fit together between joints and capsules."""
     parents: dict[str, str] = {"": ""}
     for index, each in enumerate(joints):
         if each.link in parents and each.link:
@@ -106,7 +106,7 @@ def link_problems(
 
 
 def postures(top: Table, joints: Sequence[Joint]) -> dict[str, tuple[Step, ...]]:
-    """Their steps by name. Raises Problem."""
+    """Read the steps of postures by name. Raises Problem."""
     found: dict[str, tuple[Step, ...]] = {}
     if not top.has("postures"):
         return found
@@ -119,7 +119,7 @@ def postures(top: Table, joints: Sequence[Joint]) -> dict[str, tuple[Step, ...]]
 
 
 def step(table: Table, known: Mapping[str, Joint], others: Collection[str] = ()) -> Step:
-    """Where some joints are; `others` are keys of the table that are no joints. Raises Problem."""
+    """Read the positions of some joints; `others` are keys of the table that aren't joints. Raises Problem."""
     found: dict[str, float | str] = {}
     for name in table.keys():  # noqa: SIM118
         if name in others:
@@ -156,7 +156,7 @@ _EVERY = (1.0, 60.0)  # seconds
 
 
 def read_idle(top: Table, body: Body) -> Idle:
-    """What a robot does when it is idle. Raises Problem where its joints can't do that."""
+    """Read what a robot does when it is idle. Raises Problem if its joints can't do that."""
     if not top.has("idle"):
         return Idle()
     if not body.is_smooth:

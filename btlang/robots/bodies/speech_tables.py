@@ -20,7 +20,7 @@ _FOREIGN = 'only "{}" may be the engine of a robot file that isn\'t on this comp
 
 
 def read_voice(top: Table, may_load: bool) -> VoiceSpec | None:
-    """The voice of a robot, None where it has none. With `may_load` any engine will do. Raises Problem."""
+    """Read the voice of a robot, None if it has none. With `may_load` any engine is allowed. Raises Problem."""
     if not top.has("voice"):
         return None
     table = top.table("voice")
@@ -38,7 +38,7 @@ def read_voice(top: Table, may_load: bool) -> VoiceSpec | None:
 
 
 def read_mouth(top: Table, body: Body) -> Mouth | None:
-    """The mouth of a robot, None where it has none. Raises Problem where it has no such joint or display."""
+    """Read the mouth of a robot, None if it has none. Raises Problem for an unknown joint or display."""
     if not top.has("mouth"):
         return None
     table = top.table("mouth")
@@ -52,7 +52,7 @@ def read_mouth(top: Table, body: Body) -> Mouth | None:
 
 
 def engine_of(body: Body, language: str = "") -> SpeechEngine:
-    """The engine that a body's voice names, one without sound where it names none; by default in its own language.
+    """Return the engine that a body's voice names, or one without sound; by default in its own language.
 
     Raises SpeechError.
     """
@@ -78,7 +78,7 @@ POCKETSPHINX = "pocketsphinx"
 
 
 def read_ears(top: Table, may_load: bool) -> EarsSpec | None:
-    """The ears of a robot, None where it has none. With `may_load` any engine will do. Raises Problem."""
+    """Read the ears of a robot, None if it has none. With `may_load` any engine is allowed. Raises Problem."""
     if not top.has("ears"):
         return None
     table = top.table("ears")
@@ -95,7 +95,7 @@ def read_ears(top: Table, may_load: bool) -> EarsSpec | None:
 
 
 def recogniser_of(body: Body) -> Recogniser:
-    """The recogniser that the ears of a body name. Raises RecogniserError."""
+    """Return the recogniser that the ears of a body name. Raises RecogniserError."""
     assert body.ears is not None
     if body.ears.engine == POCKETSPHINX:
         from btlang.speech.pocketsphinx import PocketSphinx

@@ -22,7 +22,7 @@ _THIN = 1e-9  # metres
 
 
 def urdf(body: Body) -> str:
-    """The text of a file. Blanks in names become underscores."""
+    """Return a body as the text of a URDF file. Blanks in names become underscores."""
     lines = [f"<robot name={quoteattr(_plain(body.name))}>"]
     links = ["", *(joint.link for joint in body.joints if joint.link)]
     for link in links:
@@ -109,7 +109,7 @@ class _UrdfElement:
 
 
 class Skeleton(Record):
-    """What a URDF file says of a body."""
+    """The joints and capsules of a URDF file."""
 
     name: str
     joints: tuple[Joint, ...]
@@ -117,7 +117,7 @@ class Skeleton(Record):
 
     @property
     def toml(self) -> str:
-        """As a robot file, to be completed."""
+        """A robot file, to be completed by hand."""
         radii = [capsule.radius for capsule in self.capsules if not capsule.link]
         yields = [f"name = {_quoted(self.name)}", f"radius = {max(radii, default=_WIDTH):g}", ""]
         yields += ["# Give joints of one part of the body, such as an arm, the same `part`, and all an `acceleration`"]
@@ -135,7 +135,7 @@ class Skeleton(Record):
 
 
 def read_urdf(source: Source) -> Skeleton:
-    """Its joints that move, with the links between them in one piece. Shapes become capsules around them.
+    """Return the moving joints, with the links between them in one piece. Shapes become capsules around them.
 
     Raises BodyError.
     """
@@ -254,7 +254,7 @@ class _UrdfReader:
                 yield capsule
 
     def _extent(self, shape: _UrdfElement) -> tuple[Array, float]:
-        """Half of its length, and the radius around it; 0 for a mesh, which needs capsules by hand."""
+        """Return half the length of a shape, and the radius around it; 0 for a mesh, which needs capsules by hand."""
         if shape.tag == "sphere":
             return np.zeros(3), self._size(shape, "radius")
         if shape.tag in ("cylinder", "capsule"):

@@ -23,23 +23,23 @@ _EXACT = 1e-9
 
 
 class MotionState(Record):
-    """Positions, velocities and accelerations, in the units of the joints; arrays whose last axis has the joints."""
+    """The positions, velocities and accelerations of some joints: of one moment, or a row for each sample."""
 
     position: Array
     velocity: Array
     acceleration: Array
 
     def of(self, joints: Sequence[int]) -> MotionState:
-        """That of some of the joints."""
+        """Return the state of some of the joints."""
         return MotionState(self.position[..., joints], self.velocity[..., joints], self.acceleration[..., joints])
 
     def rows(self, which: int | slice | Sequence[int] | npt.NDArray[Any]) -> MotionState:
-        """Some samples of many, in their order; of a number the one without that axis."""
+        """Return some samples of many, in their order; for a number, one sample without that axis."""
         return MotionState(self.position[which], self.velocity[which], self.acceleration[which])
 
 
 class JointLimits(Record):
-    """What some joints can do."""
+    """The limits of some joints."""
 
     low: Array
     high: Array
@@ -50,23 +50,23 @@ class JointLimits(Record):
 
     @classmethod
     def of(cls, joints: Sequence[Joint]) -> JointLimits:
-        """Those of the joints, in their order."""
+        """Return the limits of joints, in their order."""
         return cls(*(np.array([getattr(joint, name) for joint in joints]) for name in cls.fields))
 
     def some(self, joints: Sequence[int]) -> JointLimits:
-        """Those of some of them."""
+        """Return the limits of some of them."""
         return JointLimits(*(getattr(self, name)[list(joints)] for name in self.fields))
 
 
 class CourseSegment(Record):
-    """What lasts `seconds`; `at` gives the states at an array of times from its beginning."""
+    """A movement that lasts `seconds`; `at` returns the states at an array of times from its beginning."""
 
     seconds: float
     at: Callable[[Array], MotionState]
 
 
 def samples(pieces: Sequence[CourseSegment]) -> MotionState:
-    """The states of one piece after the other, each PERIOD; the last one is where it ends."""
+    """Return the states of segments one after the other, every PERIOD; the last one is the end."""
     begins = np.cumsum([0.0, *(piece.seconds for piece in pieces)])
     times = PERIOD * np.arange(max(1, ceil(begins[-1] / PERIOD - _EXACT)) + 1)
     times = np.minimum(times, begins[-1])
@@ -76,17 +76,19 @@ def samples(pieces: Sequence[CourseSegment]) -> MotionState:
 
 
 def between(before: MotionState, after: MotionState, share: float) -> MotionState:
-    """The state `share` (0 to 1) of a PERIOD after one sample: the quintic that meets it and the next one."""
+    """Return the state at a `share` (0 to 1) of a PERIOD after a sample: on the quintic to the next sample."""
     return quintic(before, after, PERIOD).at(np.array([share * PERIOD])).rows(0)
 
 
 def quintic(start: MotionState, end: MotionState, seconds: float) -> CourseSegment:
-    """The polynomial of degree five from one state to another."""
+    """Return the polynomial of degree five from one state to another."""
     return CourseSegment(seconds, lambda times: on_quintic(start, end, seconds, times))
 
 
 def on_quintic(start: MotionState, end: MotionState, seconds: float | Array, times: Array) -> MotionState:
-    """States on `quintic` at times from its beginning; with rows of states and a column of seconds, on one for each."""
+    """Return states on `quintic` at times from its beginning; with rows of states and a column of seconds, one for
+    each.
+    """
     h = seconds
     p, v, a = start.position, start.velocity * h, start.acceleration * h * h / 2
     way = end.position - p - v - a
@@ -99,7 +101,7 @@ def on_quintic(start: MotionState, end: MotionState, seconds: float | Array, tim
 
 
 def to_state(start: MotionState, end: MotionState, limits: JointLimits, least: float = 0.0) -> CourseSegment | None:
-    """The quickest way from one state to another, in at least so many seconds; None if there is none."""
+    """Return the quickest movement between two states, in at least so many seconds; None if there is none."""
     import ruckig  # only bodies whose joints have an acceleration need it
 
     count = len(start.position)
@@ -130,8 +132,9 @@ _TINY = 1e-9
 
 
 class Brake(Record):
-    """From a state: three stretches of constant jerk, which take `first`, `second` and `third` seconds. The jerk of the
-    first is `jerk`, and that of the third its opposite.
+    """Three stretches of constant jerk from a state to rest, which take `first`, `second` and `third` seconds.
+
+    The jerk of the first is `jerk`, and that of the third its opposite.
     """
 
     start: MotionState
@@ -142,16 +145,16 @@ class Brake(Record):
 
     @property
     def seconds(self) -> float:
-        """Until all of them rest."""
+        """The seconds until all of them rest."""
         return float(np.max(self.first + self.second + self.third, initial=0.0))
 
     @property
     def end(self) -> MotionState:
-        """At rest."""
+        """The positions at rest."""
         return self.at(self.seconds)
 
     def at(self, seconds: float | Array) -> MotionState:
-        """So many seconds later."""
+        """Return the states so many seconds later."""
         p, v, a = self.start.position, self.start.velocity, self.start.acceleration
         left = np.asarray(seconds, dtype=np.float64)
         for lasts, jerk in ((self.first, self.jerk), (self.second, 0.0), (self.third, -self.jerk)):
@@ -165,7 +168,7 @@ class Brake(Record):
 
 
 def brake(state: MotionState, limits: JointLimits) -> Brake:
-    """To rest from a state, or from each of many."""
+    """Plan the fastest stop from a state, or from each of many."""
     velocity, acceleration, jerk = state.velocity, state.acceleration, limits.jerk
     without = velocity + acceleration * np.abs(acceleration) / (2 * jerk)  # where it would be without more force
     sign = np.where(without < 0.0, -1.0, 1.0)
@@ -179,6 +182,6 @@ def brake(state: MotionState, limits: JointLimits) -> Brake:
 
 
 def braking(state: MotionState, limits: JointLimits) -> CourseSegment:
-    """As `brake`, of one state."""
+    """Plan the fastest stop from one state, as a segment."""
     found = brake(state, limits)
     return CourseSegment(found.seconds, lambda times: found.at(times[:, None]))

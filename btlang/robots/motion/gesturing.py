@@ -27,9 +27,9 @@ def turned(
     aim: Point | None,
     angle: Callable[[str], float],
 ) -> Gesture | Sequence[Angles]:
-    """A gesture, or the steps of a posture, for a point of the map: `pose` says where the robot is, `angle` its joints.
+    """Return a gesture, or the steps of a posture, turned to a point of the map.
 
-    Raises RobotError where that is out of reach.
+    `pose` is where the robot is, `angle` returns the angle of a joint. Raises RobotError if the point is out of reach.
     """
     here = pose() if aim is not None else Pose(0.0, 0.0)
     bearing = here.bearing_to(aim) if aim is not None else 0.0
@@ -73,7 +73,7 @@ def _out_of_reach(part: str, bearing: float) -> RobotError:
 
 
 class Turnable(Protocol):
-    """Joints of any robot; see btlang.robots.simulation.parts.Joints."""
+    """Joints of any robot; see SimulatedJoints."""
 
     def angle(self, name: str) -> float: ...
     def move(self, targets: Angles) -> None: ...
@@ -82,7 +82,7 @@ class Turnable(Protocol):
 
 
 class Stepped:
-    """See Operation: steps of joints whose movements aren't planned, the first after so many seconds."""
+    """Steps of joints without planned movements, as an Operation; the first begins after so many seconds."""
 
     def __init__(self, joints: Turnable, steps: Sequence[tuple[float, Angles]], after: float) -> None:
         self._joints, self._steps = joints, list(steps)
@@ -93,18 +93,18 @@ class Stepped:
         self.step(0.0)
 
     def cancel(self) -> None:
-        """Its joints stay where they are."""
+        """Hold its joints where they are."""
         if not self.done:
             self.end(None)
             self._joints.freeze(self._names)
 
     def end(self, failure: str | None) -> None:
-        """It is over, if it wasn't before."""
+        """End the steps, unless they have ended."""
         if not self.done:
             self.done, self.failure = True, failure
 
     def step(self, dt: float) -> None:
-        """Goes on to the next step once one is done and its second has come."""
+        """Go on to the next step once one is done and the second of the next has come."""
         self._passed += dt
         try:
             if self.done or self._passed < 0.0 or not self._joints.at_target(self._going):
@@ -120,7 +120,7 @@ class Stepped:
 
 
 class Gestures:
-    """Those of a robot."""
+    """The gestures of one robot."""
 
     def __init__(self, body: Body, joints: Turnable) -> None:
         self._body, self._joints = body, joints
@@ -129,10 +129,9 @@ class Gestures:
     def start(
         self, name: str, pose: Callable[[], Pose], aim: Point | None, room: float | None
     ) -> tuple[Operation, float]:
-        """See btlang.robots.robot.Gesturing.gesture; `room` is the time to the stroke in seconds, `pose` says
-        where the robot is.
+        """Start a gesture, as Gesturing does; `room` is the seconds to the stroke, `pose` returns where the robot is.
 
-        Gives how many times as long it takes as it should, too: limits of the joints may slow it.
+        Also returns how many times as long it takes as it should: limits of the joints may slow it.
         """
         wanted = self._turned(name, pose, aim)
         if isinstance(self._joints, SmoothPart):
@@ -142,17 +141,16 @@ class Gestures:
         return made, 1.0
 
     def lead(self, name: str, pose: Callable[[], Pose], aim: Point | None) -> float:
-        """See btlang.robots.robot.Gesturing."""
         wanted = self._turned(name, pose, aim)
         return self._joints.lead(wanted) if isinstance(self._joints, SmoothPart) else self._lead(wanted)
 
     def stop(self) -> None:
-        """No further step is taken; whoever calls it freezes the joints. For any thread."""
+        """Take no further step; the caller holds the joints. For any thread."""
         for stepped in tuple(self._stepped):
             stepped.end("the robot was stopped")
 
     def step(self, dt: float) -> None:
-        """So many seconds have passed, in which the joints have moved."""
+        """Go on after so many seconds, in which the joints have moved."""
         for stepped in self._stepped:
             stepped.step(dt)
         self._stepped = [stepped for stepped in self._stepped if not stepped.done]
@@ -171,7 +169,7 @@ class Gestures:
 
 
 def _steps(wanted: Gesture | Sequence[Angles]) -> list[tuple[float, Angles]]:
-    """With the second from which each may be taken."""
+    """Return the steps, each with the second from which it may begin."""
     if not isinstance(wanted, Gesture):
         return [(0.0, step) for step in wanted]
     begins = [0.0, *(frame.at + frame.hold for frame in wanted.frames)]
@@ -188,7 +186,10 @@ _COARSE = 1.0  # seconds between two steps from which on nobody watches
 
 
 class Idling:
-    """Of a robot; `place` says where somebody is, `pose` where the robot is. Nothing is begun before it is `on`."""
+    """The idle motion of a robot; `place` returns where somebody is, `pose` where the robot is.
+
+    Nothing begins before it is `on`.
+    """
 
     def __init__(
         self, body: Body, joints: IdlePart, place: Callable[[str], Point | None], pose: Callable[[], Pose]
@@ -202,16 +203,16 @@ class Idling:
         self._turned: Mapping[str, float] = {}
 
     def halt(self) -> None:
-        """Begins nothing until it is `on` again; whoever calls it halts the joints. For any thread."""
+        """Begin nothing until it is `on` again; the caller halts the joints. For any thread."""
         self.on, self._who, self._turned = False, "", {}
 
     def attend(self, who: str) -> None:
-        """Somebody speaks with the robot; "" where that isn't known."""
+        """Look at somebody who speaks with the robot; "" if nobody knows who."""
         if who and self._body.idle.look_at_speaker:
             self._who, self._left = who, _LOOKS
 
     def step(self, dt: float) -> None:
-        """So many seconds have passed."""
+        """Go on after so many seconds."""
         self._left -= dt
         self._tries_in -= dt
         if not self.on or dt >= _COARSE or self._tries_in > 0.0:
@@ -233,7 +234,7 @@ class Idling:
             self._side = -self._side
 
     def _look(self) -> None:
-        """At who speaks, then back to where the head was, unless something else has moved it since."""
+        """Look at who speaks, then back to where the head was, unless something else has moved it since."""
         names = list(self._body.postures[LOOK_AT][0])
         planned = self._joints.planned
         if not planned.rests(names):
@@ -253,7 +254,7 @@ class Idling:
             self._home = self._turned = {}
 
     def _aimed(self) -> Mapping[str, float]:
-        """Where the head looks at who speaks; empty where it can't, or nobody knows where that is."""
+        """Return the joint angles to look at who speaks; empty if the head can't, or nobody knows where they are."""
         try:
             place = self._place(self._who)
             steps = turned(self._body, self._body.postures[LOOK_AT], self._pose, place, self._joints.planned.angle)

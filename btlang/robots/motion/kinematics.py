@@ -15,21 +15,22 @@ Array = npt.NDArray[np.float64]
 
 
 class LinkFrames(Record):
-    """Of one link in n configurations, in the frame of the base: `turned[:, :, k]` are rotation matrices, and
-    `origin[:, k]` its origins.
+    """One link in n configurations, in the frame of the base.
+
+    `turned[:, :, k]` are rotation matrices, and `origin[:, k]` its origins.
     """
 
     turned: Array
     origin: Array
 
     def place(self, point: Vector) -> Array:
-        """A point of the link, three rows of n."""
+        """Return a point of the link, three rows of n."""
         placed: Array = np.matmul(np.array(point, dtype=np.float64), self.turned) + self.origin
         return placed
 
 
 class Kinematics:
-    """Of a body; a configuration has the positions of its joints in their order, in their units."""
+    """The kinematics of a body. A configuration has the positions of its joints in their order and units."""
 
     def __init__(self, body: Body) -> None:
         self._joints: list[tuple[int, Joint, Array, Array]] = []
@@ -40,7 +41,7 @@ class Kinematics:
             self._joints.append((index, joint, cross.T, (cross @ cross).T))
 
     def frames(self, configurations: Array) -> Mapping[str, LinkFrames]:
-        """The links by name, the base as "", for an array of n times all joints."""
+        """Return the links by name, the base as "", for an array of n configurations."""
         n = len(configurations)
         found = {"": LinkFrames(np.repeat(np.eye(3)[:, :, None], n, axis=2), np.zeros((3, n)))}
         for index, joint, cross, squared in self._joints:
@@ -70,7 +71,7 @@ _TINY = 1e-12
 
 
 class Collisions:
-    """Between the forbidden pairs of a body."""
+    """The distances between the forbidden pairs of a body."""
 
     def __init__(self, body: Body, kinematics: Kinematics) -> None:
         self._kinematics, self._capsules = kinematics, body.capsules
@@ -92,9 +93,9 @@ class Collisions:
         self._reach = [sum(sizes[one]) + sum(sizes[other]) for _, one, other in pairs]
 
     def distances(self, configurations: Array, within: float = np.inf) -> Array:
-        """Metres between two capsules, a row for each of `pairs`, a column for each configuration; below 0 inside.
+        """Return the metres between two capsules, a row for each of `pairs`, a column for each configuration.
 
-        What is further than `within` may be inf.
+        Below 0 they overlap. A distance beyond `within` may be inf.
         """
         found = np.full((len(self.pairs), len(configurations)), np.inf)
         if not self.pairs:
@@ -113,7 +114,10 @@ class Collisions:
 
 
 def segment_distances(start: Array, along: Array, other_start: Array, other: Array) -> Array:
-    """Metres between two line segments from a start along a way, for arrays of points whose first axis is x, y, z."""
+    """Return the metres between two line segments from a start along a direction, for arrays of points.
+
+    The first axis of the arrays is x, y, z.
+    """
     between = start - other_start
     a, e = _dot(along, along), _dot(other, other)
     b, c, f = _dot(along, other), _dot(along, between), _dot(other, between)
@@ -140,15 +144,17 @@ _STRAIGHT = 0.02  # sine of the angle between where it points and where it shoul
 
 
 class AimSolver:
-    """Of a body. A part that carries the camera looks ahead; any other points from its first joint to its end, and only
-    the joints at the shoulder change for that.
+    """Joint angles that point parts of a body at something.
+
+    The part with the camera looks ahead; any other points from its first joint to its end, and only the joints at the
+    shoulder move for that.
     """
 
     def __init__(self, body: Body, kinematics: Kinematics) -> None:
         self._body, self._kinematics = body, kinematics
 
     def joints(self, part: str) -> list[int]:
-        """The numbers of those of a part that aim it."""
+        """Return the numbers of the joints of a part that aim it."""
         found = [index for index, joint in enumerate(self._body.joints) if joint.part == part and joint.link]
         if not found or self._looks(part):
             return found
@@ -163,9 +169,9 @@ class AimSolver:
         return seeing is not None and seeing.part == part
 
     def angles(self, part: str, at: Array, aim: Vector) -> dict[str, float] | None:
-        """By joint, those with which it points at a point of the frame of the base, from where the joints are `at`.
+        """Return the angles by joint that point a part at a point in the frame of the base; None if it can't.
 
-        None where it can't.
+        The search starts where the joints are `at`.
         """
         joints = self.joints(part)
         if not joints:
@@ -190,7 +196,7 @@ class AimSolver:
         return None
 
     def _wrong(self, part: str, configurations: Array, aim: Vector) -> Array:
-        """Where it points, less where it should: directions of length 1."""
+        """Return the difference between the current and the wanted direction, both of length 1."""
         frames = self._kinematics.frames(configurations)
         moving = [joint for joint in self._body.joints if joint.part == part and joint.link]
         first, last = moving[0], moving[-1]

@@ -21,13 +21,13 @@ _SHORTEST = 0.01  # seconds between two key frames
 
 
 class FrameTimes(Record):
-    """Where some joints are at which second; the first of them is reached after `times[0]` seconds."""
+    """Positions of some joints by time; the first is reached after `times[0]` seconds."""
 
     times: Array
     positions: Array
 
     def scaled(self, share: float) -> FrameTimes:
-        """In that share of the time."""
+        """Return the same in a share of the time."""
         return FrameTimes(self.times * share, self.positions)
 
 
@@ -38,18 +38,18 @@ class Curve(Record):
     velocities: Array
 
     def state(self, index: int) -> MotionState:
-        """At a key frame."""
+        """Return the state at a key frame."""
         return MotionState(self.frames.positions[index], self.velocities[index], np.zeros_like(self.velocities[index]))
 
     @property
     def pieces(self) -> Sequence[CourseSegment]:
-        """From the first key frame to the last one."""
+        """The segments from the first key frame to the last one."""
         times = self.frames.times
         return [quintic(self.state(k), self.state(k + 1), times[k + 1] - times[k]) for k in range(len(times) - 1)]
 
 
 def curve(frames: FrameTimes, start: Array, limits: JointLimits, rests: bool) -> Curve:
-    """Through the frames from positions at the start; where it `rests` there, the first is reached without speed."""
+    """Return a curve through the frames; if it `rests` at the start, the first frame is reached without speed."""
     steps = np.maximum(np.diff(frames.times), _SHORTEST)
     first = max(float(frames.times[0]), _SHORTEST)
     for turn in range(_ROUNDS + 1):
@@ -63,7 +63,7 @@ def curve(frames: FrameTimes, start: Array, limits: JointLimits, rests: bool) ->
 
 
 def _velocities(positions: Array, steps: Array, start: Array, first: float, rests: bool) -> Array:
-    """By the slopes on both sides; zero where it holds, turns or ends."""
+    """Return velocities from the slopes on both sides; zero where the curve holds, turns or ends."""
     slopes = np.diff(positions, axis=0, prepend=start[None]) / np.concatenate([[first], steps])[:, None]
     before, after = slopes[:-1], slopes[1:]
     along = before * after > 0.0
@@ -75,7 +75,7 @@ def _velocities(positions: Array, steps: Array, start: Array, first: float, rest
 
 
 def _times_too_fast(made: Curve, limits: JointLimits) -> Array:
-    """Of each piece, in how many times its time it keeps to the limits; all in one go, as speech asks for many."""
+    """Return for each segment by how much it exceeds the limits; all at once, since speech asks for many."""
     times, positions, velocities = made.frames.times, made.frames.positions, made.velocities
     steps = (times[1:] - times[:-1])[:, None]
     ends = np.concatenate([(positions[1:] - positions[:-1]) / steps, velocities[:-1], velocities[1:]])
@@ -96,9 +96,9 @@ def _times_too_fast(made: Curve, limits: JointLimits) -> Array:
 
 
 def _by_ends() -> MotionState:
-    """A quintic of a second at its looks: of a way of 1, of a velocity of 1 as it begins, and of one as it ends.
+    """Return three quintics of a second, sampled: a distance of 1, a start velocity of 1, and an end velocity of 1.
 
-    Any other one is a sum of these.
+    Any other quintic is a sum of these.
     """
     way, begin, end = np.eye(3)
     still = np.zeros(3)
@@ -114,8 +114,9 @@ _SAME = 1e-9
 
 
 class Tail(Record):
-    """From a `first` state, which is reached in `approach` seconds or more: the `pieces` that follow, and when the
-    stroke is, in seconds after the first state. `slower` is how many times as long they take as they should.
+    """The `pieces` that follow a `first` state, which is reached in `approach` seconds or more.
+
+    The stroke is in seconds after the first state. `slower` is how many times as long they take as they should.
     """
 
     first: MotionState
@@ -126,8 +127,9 @@ class Tail(Record):
 
 
 class Movement(Protocol):
-    """Of the `joints` with these numbers. It may be done in a share of its time, down to `least`. One that `flows` may
-    pass its first position with speed.
+    """A movement of the `joints` with these numbers.
+
+    It may be done in a share of its time, down to `least`. One that `flows` may pass its first position with speed.
     """
 
     joints: Sequence[int]
@@ -135,7 +137,9 @@ class Movement(Protocol):
     flows: bool
 
     def tail(self, start: MotionState, share: float, rests: bool) -> Tail:
-        """From a state of these joints; where it `rests`, its first position is reached without speed."""
+        """Return the movement from a state of these joints; if it `rests`, the first position is
+        reached without speed.
+        """
 
 
 class Steps:
@@ -148,14 +152,13 @@ class Steps:
         self.joints, self._steps, self._limits = joints, steps, limits
 
     def tail(self, start: MotionState, share: float, rests: bool) -> Tail:
-        """See Movement."""
         states = [resting(step) for step in self._steps]
         pieces = [to_state(one, other, self._limits) for one, other in pairwise(states)]
         return Tail(states[0], [piece for piece in pieces if piece is not None], 0.0)
 
 
 class KeyFrames:
-    """A gesture of key frames."""
+    """A movement of the key frames of a gesture."""
 
     flows = True
 
@@ -164,7 +167,6 @@ class KeyFrames:
         self._frames, self._stroke, self._limits = frames, gesture.stroke, limits
 
     def tail(self, start: MotionState, share: float, rests: bool) -> Tail:
-        """See Movement."""
         wanted = self._frames.scaled(share)
         made = curve(wanted, start.position, self._limits, rests)
         given, times = self._frames.times, made.frames.times
@@ -178,17 +180,17 @@ class KeyFrames:
 
 
 def resting(position: Array) -> MotionState:
-    """At rest there."""
+    """Return the state at rest in a position."""
     return MotionState(position, np.zeros_like(position), np.zeros_like(position))
 
 
 def staying(position: Array) -> Callable[[Array], MotionState]:
-    """At rest there at each of some times."""
+    """Return the states at rest in a position at some times."""
     return lambda times: resting(np.repeat(position[None], len(times), axis=0))
 
 
 def frames_of(gesture: Gesture, names: Sequence[str], settled: Array) -> FrameTimes:
-    """The key frames as positions of the joints of these `names`, which would come to rest `settled`."""
+    """Return the key frames as positions of the joints of these `names`, which would come to rest `settled`."""
     times: list[float] = []
     rows: list[Array] = []
     row = settled

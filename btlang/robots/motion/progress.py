@@ -14,7 +14,10 @@ _LOOK = 1.0  # seconds that one look counts at most: a look that comes late says
 
 
 class DriveProgress:
-    """Metres, or degrees where it `turns`. `close` is how near is near enough, `now` gives seconds, `why` a reason."""
+    """The progress of a drive in metres, or of a turn in degrees if it `turns`.
+
+    `close` is how near is near enough, `now` returns seconds, `why` a reason.
+    """
 
     def __init__(
         self,
@@ -31,7 +34,7 @@ class DriveProgress:
         self._looked, self._waited = now(), 0.0
 
     def check(self, left: float, gone: float) -> None:
-        """Raises ActionFailed with the reason. `gone` is how far it is from the start, in whatever direction."""
+        """Raise ActionFailed without progress. `gone` is the distance from the start, in any direction."""
         now = self._now()
         self._waited += min(now - self._looked, _LOOK)
         self._looked = now
@@ -50,9 +53,11 @@ class DriveProgress:
 
 
 class Approach:
-    """How fast to go on, in metres or degrees a second, at least `slowest`: `gain` of what is left in each second.
+    """The speed to approach a goal, in metres or degrees a second, at least `slowest`: `gain` of the rest in each
+    second.
 
-    Each overshoot halves the pace: where commands or poses arrive late, the robot would swing round the goal for ever.
+    Each overshoot halves the pace: where commands or poses arrive late, the robot would oscillate around the goal
+    forever.
     """
 
     def __init__(self, fastest: float, gain: float, slowing: float = inf, slowest: float = 0.0) -> None:
@@ -60,7 +65,7 @@ class Approach:
         self._before = 0.0
 
     def velocity(self, left: float) -> float:
-        """With the sign of what is left."""
+        """Return the velocity, with the sign of what is left."""
         if left * self._before < 0:
             self._fastest, self._gain = self._fastest / 2, self._gain / 2
         self._before, way = left, abs(left)

@@ -32,7 +32,7 @@ _SLOWED = 1.02  # times as long: less is not worth a word
 
 
 class Course(Record):
-    """What some joints do from so many ticks on; the stroke is `stroke` seconds after the first tick of all."""
+    """What some joints do from a tick on; the stroke is `stroke` seconds after the first tick of all."""
 
     joints: Sequence[int]
     begins: int
@@ -42,7 +42,7 @@ class Course(Record):
 
 
 class MotionPlanner:
-    """Of all joints of a body."""
+    """Plans movements for all joints of a body."""
 
     def __init__(self, limits: JointLimits) -> None:
         self._limits = limits
@@ -50,9 +50,9 @@ class MotionPlanner:
     def courses(
         self, movement: Movement, state: Callable[[int], MotionState], room: float | None = None
     ) -> Iterator[Course]:
-        """Ways to do it from now on, where all joints are in the `state` so many ticks from now as things are.
+        """Yield courses for a movement, the best first, from the `state` of all joints so many ticks from now.
 
-        With `room`, the stroke is so many seconds from now, or as soon after as is possible.
+        With `room`, the stroke is so many seconds from now, or as soon after that as possible.
         """
         joints = movement.joints
         limits, start = self._limits.some(joints), state(0).of(joints)
@@ -73,11 +73,11 @@ class MotionPlanner:
                     yield course.replace(begins=0, pieces=pieces, stroke=course.stroke + before.seconds)
 
     def stop(self, joints: Sequence[int], state: MotionState) -> Course:
-        """To rest, as fast as they can."""
+        """Plan the fastest stop for all joints."""
         return Course(joints, 0, [braking(state.of(joints), self._limits.some(joints))], 0.0)
 
     def soonest(self, movement: Movement, state: MotionState) -> float:
-        """Seconds until its stroke at least."""
+        """Return the least seconds until the stroke."""
         course = next(self.courses(movement, lambda ticks: state, -inf), None)
         return course.stroke if course is not None else 0.0
 
@@ -125,7 +125,7 @@ _MOST = 100  # idle movements that are known to be safe
 
 
 class PlannedMotion:
-    """See btlang.robots.robot.Operation: a course on its way. `stroke` is a second of its timeline."""
+    """A course under way, as an Operation. `stroke` is a second of its timeline."""
 
     def __init__(self, timeline: JointTimeline, joints: Iterable[int], stroke: float, slower: float) -> None:
         self._timeline, self.joints, self.stroke, self.slower = timeline, set(joints), stroke, slower
@@ -133,21 +133,21 @@ class PlannedMotion:
         self.failure: str | None = None
 
     def cancel(self) -> None:
-        """Its joints come to rest."""
+        """Brake its joints to rest."""
         if not self.done:
             self._timeline.freeze(self.joints)
             self.end(None)
 
     def end(self, failure: str | None) -> None:
-        """It is over."""
+        """End the motion."""
         self.done, self.failure = True, failure
 
 
 class JointTimeline:
-    """Of a body, at rest at first. It begins what is new at the next of its ticks, which are PERIOD apart.
+    """The plan of all joints of a body, at rest at first. All methods are for any thread; `halt` takes no lock.
 
-    Its state can always be braked without a collision and within all limits. All is for any thread; `halt` takes no
-    lock.
+    New movements begin at the next tick; ticks are PERIOD apart. Its state can always be braked without a collision and
+    within all limits.
     """
 
     def __init__(self, body: Body, kinematics: Kinematics) -> None:
@@ -165,17 +165,19 @@ class JointTimeline:
 
     @property
     def state(self) -> MotionState:
-        """Of all joints, now."""
+        """The state of all joints now."""
         return self.at(self.seconds)
 
     @property
     def plan(self) -> tuple[float, MotionState]:
-        """What all joints do until they rest: samples from a second on, PERIOD apart. New whenever that changes."""
+        """What all joints do until they rest: samples from a second on, PERIOD apart. A new array whenever that
+        changes.
+        """
         with self._lock:
             return self._first * PERIOD, self._way
 
     def at(self, seconds: float) -> MotionState:
-        """Of all joints at a second that is to come, as things are."""
+        """Return the planned state of all joints at a future second."""
         with self._lock:
             ticks = seconds / PERIOD
             whole = floor(ticks + _EXACT)
@@ -185,19 +187,19 @@ class JointTimeline:
             )
 
     def rests(self, joints: Sequence[int] | None = None) -> bool:
-        """Whether these joints, or all of them, are where they will stay."""
+        """Return whether these joints, or all of them, are where they will stay."""
         ends = self._ends if joints is None else self._ends[list(joints)]
         return not len(ends) or self.seconds / PERIOD >= int(ends.max()) - _EXACT
 
     def is_free(self, joints: Sequence[int] | None = None) -> bool:
-        """As `rests`, but for what is idle."""
+        """Return whether these joints rest, apart from idle motion."""
         if self.rests(joints):
             return True
         idle = self._idle
         return bool(idle) and self.rests([k for k in joints or range(len(self._ends)) if k not in idle])
 
     def put(self, positions: Array) -> None:
-        """Those joints that rest are there, of positions of all."""
+        """Put the joints that rest at their positions among those of all."""
         with self._lock:
             still = self.seconds / PERIOD >= self._ends - _EXACT
             way = self._between(self._tick - 1, int(self._ends.max()))
@@ -205,7 +207,7 @@ class JointTimeline:
             self._way, self._first = way, self._tick - 1
 
     def step(self, dt: float) -> None:
-        """So many seconds pass."""
+        """Let so many seconds pass."""
         with self._lock:
             self._begin_halt()
             self.seconds += dt
@@ -217,7 +219,8 @@ class JointTimeline:
     def play(
         self, courses: Callable[[MotionPlanner, Callable[[int], MotionState], float], Iterator[Course]]
     ) -> PlannedMotion:
-        """Sets off on the first course that may be gone; it gets the states after ticks, and seconds until the first.
+        """Start the first course that passes the check; `find` gets the states after ticks, and the seconds until the
+        first.
 
         Raises RobotError if there is none.
         """
@@ -238,9 +241,9 @@ class JointTimeline:
             raise RobotError(problem or "the body can't move like that")
 
     def idle(self, joints: Sequence[int], goal: Array, seconds: float) -> bool:
-        """Sets off to a goal, and says whether it did: not where the joints move, or the body would touch itself.
+        """Move to a goal; return whether it does: not if the joints move, or the body would touch itself.
 
-        Anything else takes over what is idle.
+        Anything else replaces idle motion.
         """
         with self._lock:
             self._begin_halt()
@@ -257,7 +260,9 @@ class JointTimeline:
             return True
 
     def _may_idle(self, way: MotionState, joints: Sequence[int], what: object) -> bool:
-        """From a body at rest the same movement is asked for again and again."""
+        """Return whether an idle movement passes the check, cached: from rest the same one is asked for again and
+        again.
+        """
         if not self.rests():
             return not self._guard.problem(way, list(joints))
         key = what, (way.position[0].round(_SAME) + 0.0).tobytes()  # and not -0.0
@@ -268,14 +273,14 @@ class JointTimeline:
         return self._may[key]
 
     def soonest(self, find: Callable[[MotionPlanner, MotionState], float]) -> float:
-        """What `find` makes of the state in which something new would begin, and the seconds until then."""
+        """Return what `find` makes of the state in which something new would begin, and the seconds until then."""
         with self._lock:
             return self._tick * PERIOD - self.seconds + find(self._planner, self._sample(self._tick))
 
     def follow(self, joints: Sequence[int], at: Callable[[Array], MotionState], begins: float, ends: float) -> None:
-        """From one second to another, these go a way that comes from elsewhere and isn't checked; then they rest.
+        """Let joints follow an external movement, which isn't checked, from one second to another; then they rest.
 
-        `at` gives their states at an array of seconds. Where everything was to halt, it halts like that.
+        `at` returns their states at an array of seconds. If everything was to halt, it halts like that.
         """
         with self._lock:
             self._end_plays()
@@ -286,7 +291,7 @@ class JointTimeline:
             self._take(*self._with(Course(joints, wait, [piece], 0.0), tick), tick, joints)
 
     def freeze(self, joints: Iterable[int]) -> None:
-        """These come to rest; all of them, where the others would run into them."""
+        """Brake these joints to rest; all of them, if the others would run into them."""
         with self._lock:
             self._begin_halt()
             wanted = sorted(joints)
@@ -300,12 +305,12 @@ class JointTimeline:
                     self._take(way, ends, self._tick, wanted)
 
     def halt(self, reason: str = "the robot was stopped") -> None:
-        """All joints come to rest, from the next step on."""
+        """Brake all joints to rest, from the next step on."""
         self._halts = True
         self._halted = reason
 
     def _end_plays(self) -> bool:
-        """Ends all of them where they were to halt, and says whether they were."""
+        """End all motions if they were to halt; return whether they were."""
         halts, self._halts = self._halts, False
         for play in self._plays if halts else ():
             play.end(self._halted)
@@ -319,7 +324,7 @@ class JointTimeline:
 
     @property
     def _tick(self) -> int:
-        """The next one, which something new begins at."""
+        """The next tick, at which something new begins."""
         return ceil(self.seconds / PERIOD - _EXACT)
 
     def _sample(self, tick: int) -> MotionState:
@@ -327,12 +332,12 @@ class JointTimeline:
         return self._way.rows(at)
 
     def _between(self, tick: int, end: int) -> MotionState:
-        """What all joints do from one tick to another, or at the first. A copy."""
+        """Return a copy of what all joints do from one tick to another, or at the first."""
         rows = np.clip(np.arange(tick, max(tick, end) + 1) - self._first, 0, len(self._way.position) - 1)
         return self._way.rows(rows)
 
     def _with(self, course: Course, tick: int) -> tuple[MotionState, Array]:
-        """What all joints do from a tick on where some take a course, and when each of them rests."""
+        """Return what all joints do from a tick on if some take a course, and when each of them rests."""
         new, joints = samples(course.pieces), list(course.joints)
         ends = self._ends.copy()
         ends[joints] = tick + course.begins + len(new.position) - 1

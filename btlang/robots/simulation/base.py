@@ -17,7 +17,10 @@ _ROOM = 0.2  # metres: with more there is no need to look how much exactly
 
 
 class SimulatedBase:
-    """Metres, degrees and seconds. `bumped_into` names what a contact was with, `bumps` counts contacts."""
+    """The base in a simulated world, in metres, degrees and seconds.
+
+    `bumped_into` names what a contact was with, `bumps` counts contacts.
+    """
 
     silent = None
     """It is always known where it is."""
@@ -49,46 +52,46 @@ class SimulatedBase:
 
     @property
     def wheels(self) -> tuple[float, float]:
-        """Metres that the left and the right wheel have rolled."""
+        """The metres that the left and the right wheel have rolled."""
         side = radians(self._turned) * self._wheel_gap / 2
         return self._rolled - side, self._rolled + side
 
     @property
     def bumped(self) -> bool:
-        """True from a contact until the robot has moved away from there."""
+        """Whether it ran into something and hasn't moved away yet."""
         return self._contact is not None
 
     @property
     def stuck(self) -> bool:
-        """True when it was commanded to move for a second and does not."""
+        """Whether it has been commanded to move for a second and doesn't."""
         return self._idle >= _STUCK_AFTER
 
     @property
     def rolling(self) -> bool:
-        """True until it is at rest."""
+        """Whether it isn't at rest yet."""
         return self._speeds != (0.0, 0.0)
 
     def drive(self, linear: float, angular: float) -> None:
-        """Sets the wanted velocity, within the limits."""
+        """Set the wanted velocity, within the limits."""
         self.wanted = (clipped_speed(linear, self._driving.top_speed), clipped_speed(angular, self._turning.top_speed))
         self._hard = False
         if self.wanted == (0.0, 0.0):
             self._forget_trouble()
 
     def brake(self) -> None:
-        """Comes to rest as fast as the wheels can."""
+        """Come to rest as fast as the wheels can."""
         self.wanted = (0.0, 0.0)
         self._hard = True
         self._forget_trouble()
 
     def put(self, pose: Pose) -> None:
-        """Stands there at once, at rest."""
+        """Put the base at a pose at once, at rest."""
         self.pose, self.wanted, self._speeds = pose, (0.0, 0.0), (0.0, 0.0)
         self._contact, self._layout = None, -1
         self._forget_trouble()
 
     def step(self, dt: float) -> None:
-        """Moves on by `dt` in equal pieces of at most 0.02 s."""
+        """Move on by `dt` in equal pieces of at most 0.02 s."""
         if self.wanted == (0.0, 0.0) and not self.rolling:
             self.velocity = (0.0, 0.0)
             return
@@ -98,7 +101,7 @@ class SimulatedBase:
 
     @property
     def room(self) -> float:
-        """Metres that are free around it at least, as far as it knows without looking."""
+        """The metres that are free around it at least, without another look at the obstacles."""
         obstacles, pose = self._obstacles, self.pose
         if self._layout != obstacles.layout or self._free < _ROOM:
             self._free = obstacles.nearest_standing(pose.x, pose.y)[0] - self._radius
@@ -108,13 +111,13 @@ class SimulatedBase:
         return min(self._free, obstacles.nearest_walking(pose.x, pose.y)[0] - self._radius)
 
     def free_way(self, direction: float) -> float:
-        """Metres that are free in a direction (degrees left of ahead), inf beyond the range of the scanner."""
+        """Return the metres that are free in a direction (degrees left of ahead), inf beyond the scanner's range."""
         pose = self.pose
         free = self._obstacles.free_way(pose.x, pose.y, pose.heading + direction, self._radius - _BESIDE)
         return free if free <= self.body.range - self._radius else inf
 
     def _forget_trouble(self) -> None:
-        """A new attempt to move gets its own second until it is stuck, and counts as its own bump."""
+        """Give a new attempt to move its own second until it is stuck, and its own bump."""
         self._idle, self._pressed = 0.0, False
 
     def _substep(self, h: float) -> None:
@@ -153,7 +156,7 @@ class SimulatedBase:
         self._idle = self._idle + h if real < 0.05 * wanted else 0.0
 
     def _on_floor(self, linear: float, angular: float) -> tuple[float, float]:
-        """What is left of the wheels' motion where one slips."""
+        """Return the part of the wheels' motion that reaches the floor if one slips."""
         if self.grips == (1.0, 1.0):
             return linear, angular
         side = radians(angular) * self._wheel_gap / 2
@@ -161,7 +164,9 @@ class SimulatedBase:
         return (left + right) / 2, degrees((right - left) / self._wheel_gap)
 
     def _hits(self, pose: Pose, moved: float) -> bool:
-        """`_free` is a lower bound of the room left to what stands still, so that most steps need not look at it."""
+        """Return whether it touches something. `_free` is a lower bound of the room, so that
+        most steps needn't check.
+        """
         if moved == 0.0:
             return False
         obstacles = self._obstacles
@@ -185,7 +190,7 @@ class SimulatedBase:
         return inf if distance == inf else distance - self._radius
 
     def _last_free(self, old: Pose, new: Pose) -> Pose:
-        """Halves the way until the touching point is known to a few micrometres."""
+        """Halve the way until the touching point is known to a few micrometres."""
         low, high = 0.0, 1.0
         for _ in range(12):
             middle = (low + high) / 2
@@ -201,19 +206,19 @@ class SimulatedBase:
 
 
 def clipped_speed(value: float, limit: float) -> float:
-    """The same direction, at most so fast. Raises RobotError for what is not a number: no limit would hold it."""
+    """Return the velocity, limited to `most`. Raises RobotError for NaN: no limit would hold it."""
     if isnan(value):
         raise RobotError("the robot can't drive at a speed that is not a number")
     return copysign(min(abs(value), limit), value)
 
 
 def at_most(value: float, most: float) -> float:
-    """The same direction, at most so fast."""
+    """Return a value with the same sign, limited to `most`."""
     return value if abs(value) <= most else copysign(most, value)
 
 
 def towards(value: float, target: float, more: float, less: float) -> float:
-    """Steps towards the target: by at most `less` while slowing down, `more` while speeding up."""
+    """Step towards the target: by at most `less` while slowing down, `more` while speeding up."""
     slowing = abs(target) < abs(value) or target * value < 0.0
     limit = less if slowing else more
     goal = 0.0 if target * value < 0.0 else target

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class Simulation:
-    """See btlang.run.connection.Connection. The world keeps its state from one run to the next."""
+    """A connection to a simulated robot. The world keeps its state from one run to the next."""
 
     def __init__(self, world: World, body: Body | None = None, make_parts: MakeParts | None = None) -> None:
         self.world = world
@@ -38,30 +38,30 @@ class Simulation:
         self.robot = SimulatedRobot(world, self._report, body, make_parts)
 
     def begin(self, bus: Bus) -> None:
-        """A new run: what the robot reports goes on this bus."""
+        """Begin a run: what the robot reports goes to this bus."""
         self.bus, self._begun = bus, True
         for kind, data in self._early:
             bus.emit_robot(kind, data)
         self._early.clear()
 
     def bind(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
-        """None: words are done by their `call`."""
+        """Return None: words are done by their `call`."""
         return None
 
     def check(self, tree: Tree, vocabulary: Lexicon) -> None:
-        """Raises MissionError where its body lacks what a leaf needs (BT072), or a goal is in a closed zone (BT074)."""
+        """Raise MissionError if its body lacks what a leaf needs (BT072), or a goal is in a closed zone (BT074)."""
         check_mission(self.robot.world, self.robot.body, tree, vocabulary)
         if "navigation" in needs_of_tree(tree, vocabulary):
             self.robot.prepare_journeys()
 
     def pace(self, speed: float, controls: Controls) -> Pace:
-        """Any speed will do: the world moves on as fast as it is asked to."""
+        """Return a pace of any speed: the world moves on as fast as it is asked to."""
         from btlang.run.pace import Pace
 
         return Pace(speed, controls)
 
     def close(self) -> None:
-        """Does nothing: the world stays as it is."""
+        """Do nothing: the world stays as it is."""
 
     def _report(self, kind: str, data: Mapping[str, Any]) -> None:
         if self._begun:

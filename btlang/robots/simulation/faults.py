@@ -8,7 +8,7 @@ from btlang.robots.worlds.world import NEVER, WorldFault, said
 
 
 def describe(fault: WorldFault) -> str:
-    """The fault in plain English."""
+    """Return the fault in plain English."""
     if fault.kind == "blocked":
         return f"the way to {said(fault.place)} is blocked"
     if fault.kind == "slip":
@@ -23,7 +23,7 @@ def describe(fault: WorldFault) -> str:
 
 
 class Faults:
-    """The faults that hold at the moment."""
+    """The faults that are active at the moment."""
 
     def __init__(self, faults: tuple[WorldFault, ...]) -> None:
         self._faults = faults
@@ -31,7 +31,7 @@ class Faults:
         self._failed: list[WorldFault] = []
 
     def advance(self, now: float) -> list[WorldFault]:
-        """Moves on to a second of the run; returns the faults that began with it."""
+        """Move on to a second of the run; return the faults that began with it."""
         if not self._faults:
             return []
         before = self._active
@@ -39,25 +39,25 @@ class Faults:
         return [fault for fault in self._active if fault not in before]
 
     def begin(self, fault: WorldFault) -> None:
-        """One more, from the next `advance` on, beside those of the world file."""
+        """Add a fault to those of the world file, from the next `advance` on."""
         self._faults = (*self._faults, fault)
 
     def end(self, kind: str, place: str = "") -> None:
-        """All of a kind are over, of blocked ways that to a place."""
+        """End all faults of a kind; of blocked ways, those to a place."""
         self._faults = tuple(fault for fault in self._faults if (fault.kind, fault.place) != (kind, place))
         self._active = tuple(fault for fault in self._active if fault in self._faults)
 
     def blocked(self, place: str) -> bool:
-        """Whether no way leads to the place."""
+        """Return whether no way leads to the place."""
         return any(fault.kind == "blocked" and fault.place == place for fault in self._active)
 
     @property
     def grips(self) -> tuple[float, float]:
-        """How much of its motion the left and the right wheel bring to the floor, 0 to 1."""
+        """The share of their motion that the left and the right wheel bring to the floor, 0 to 1."""
         return (self._grip("left"), self._grip("right")) if self._active else (1.0, 1.0)
 
     def fails_to_dock(self, name: str) -> bool:
-        """Whether connecting to a dock fails this time: each call counts as one of the `times` of a fault."""
+        """Return whether connecting to a dock fails this time: each call counts as one of the `times` of a fault."""
         failing = (
             each
             for each in self._active
@@ -72,7 +72,7 @@ class Faults:
         return any(fault.kind == "silent scanner" for fault in self._active)
 
     def holds_for(self, hand: str) -> float:
-        """Seconds until the hand drops what it grasped; inf for a sound one."""
+        """Return the seconds until the hand drops what it grasped; inf for a sound one."""
         weak = (fault for fault in self._active if fault.kind == "weak hand" and fault.hand == hand)
         return min((fault.seconds for fault in weak), default=inf)
 

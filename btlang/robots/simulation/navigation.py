@@ -35,9 +35,9 @@ _NEARLY_STANDS = 0.1  # metres a second
 
 
 class NavigationGoal:
-    """One way to one goal; see `btlang.robots.robot.Operation`.
+    """One way to one goal, as an Operation.
 
-    `name` is that of what it goes to, or shows the spot; with a `pose` it ends there, facing as the pose does.
+    `name` is that of the target, or shows the spot; with a `pose` it ends there, facing as the pose does.
     """
 
     def __init__(self, name: str, base: BasePart, pose: Pose | None = None) -> None:
@@ -58,17 +58,17 @@ class NavigationGoal:
         self._base = base
 
     def cancel(self) -> None:
-        """Gives up and brakes. Does nothing when done."""
+        """End the goal and brake. Does nothing when done."""
         self.end("navigation was cancelled")
 
     @property
     def left(self) -> float:
-        """Metres of the path that are left."""
+        """The metres of the path that are left."""
         rest = [(self._base.pose.x, self._base.pose.y), *self.path[self.at :]]
         return sum(dist(a, b) for a, b in pairwise(rest))
 
     def end(self, failure: str | None) -> None:
-        """Comes to rest, arrived or with the reason why not."""
+        """Come to rest, arrived or with the reason why not."""
         if not self.done:
             self.failure = failure
             self.done = True
@@ -76,8 +76,10 @@ class NavigationGoal:
 
 
 class Navigator:
-    """Drives the base along the goal under way. `patience` are the seconds it waits for who is in its way before it
-    looks for another way; without one it gives up after GIVES_UP more. `pace` is the share of the normal speed.
+    """Drives the base to the current goal.
+
+    `patience` is the seconds it waits for somebody in its way before it looks for another way; without one it gives up
+    after GIVES_UP more. `pace` is the share of the normal speed.
     """
 
     def __init__(
@@ -105,15 +107,15 @@ class Navigator:
 
     @property
     def way(self) -> list[Point]:
-        """The points of the way of the goal under way; none where there is no goal."""
+        """The points of the way to the current goal; none without a goal."""
         return [] if self.goal is None or self.goal.done else self.goal.path
 
     def name_places(self, places: Iterable[Place]) -> None:
-        """These are the named places from now on."""
+        """Set the named places from now on."""
         self._places = {place.name: place for place in places}
 
     def prepare(self) -> PathPlanner:
-        """Loads what plans ways, which takes longer than a tick has."""
+        """Load the planner, which takes longer than a tick has."""
         with interrupts_later():  # numpy, which takes longer to import than many missions
             from btlang.robots.worlds.planning import PathPlanner
 
@@ -121,26 +123,26 @@ class Navigator:
         return self._planner
 
     def start(self, name: str, pose: Pose | None = None) -> NavigationGoal:
-        """Sets out at once; a goal under way is given up. Without a pose the name is one of the world's."""
+        """Start a goal at once, and cancel the current one. Without a pose the name is one of the world's."""
         self.cancel(f"the robot set out for {said(name)} instead")
         self.goal = NavigationGoal(name, self._base, pose)
         self._check(self.goal)
         return self.goal
 
     def cancel(self, reason: str) -> None:
-        """Ends the goal under way, if there is one."""
+        """Cancel the current goal, if there is one."""
         if self.goal is not None:
             self.goal.end(reason)
 
     def protect(self) -> None:
-        """The base drives no faster than is safe, whoever drives it."""
+        """Limit the base to safe speeds, whoever drives it."""
         wanted = self._base.wanted
         verdict = self._guard.judge(*wanted, may_touch=self.goal is None)
         most = abs(verdict.linear) if verdict.linear != wanted[0] else inf
         self._base.limits = most, abs(verdict.angular) if verdict.angular != wanted[1] else inf
 
     def control(self, now: float) -> NavigationGoal | None:
-        """Commands the base for the next moment; returns the goal when it ends with this call."""
+        """Command the base for the next moment; return the goal when it ends with this call."""
         waited, self._now = now - self._now, now
         goal = self.goal
         if goal is None:
@@ -157,11 +159,11 @@ class Navigator:
 
     @property
     def held_up(self) -> str:
-        """Who is in the way, "" where nobody makes the robot wait."""
+        """The person in the way, "" if nobody makes the robot wait."""
         return self.goal.held_up if self.goal is not None and not self.goal.done else ""
 
     def _wait(self, goal: NavigationGoal, seconds: float) -> None:
-        """Counts how long somebody makes the robot wait, and does something about it."""
+        """Count how long somebody makes the robot wait, and react to it."""
         verdict = self._guard.verdict
         nearly_stands = self._base.wanted[0] and not goal.driven and abs(verdict.linear) < _NEARLY_STANDS
         goal.held_up = verdict.who if nearly_stands and verdict.cause is Cause.PERSON else ""
@@ -177,7 +179,7 @@ class Navigator:
                 goal.end(f"{said(goal.held_up)} is in the way to {said(goal.name)}")
 
     def _check(self, goal: NavigationGoal) -> None:
-        """Ends a goal that cannot go on; plans again when something has moved."""
+        """End a goal that can't go on; plan again if something has moved."""
         name = goal.name
         if (silent := self._base.silent) is not None:
             goal.end(silent)
@@ -197,11 +199,13 @@ class Navigator:
             self._plan(goal)
 
     def _has_moved(self, goal: NavigationGoal, target: Point) -> bool:
-        """Whether who it goes to is elsewhere by now; looked at twice a second."""
+        """Return whether the target is elsewhere by now; checked twice a second."""
         return dist(goal.target, target) > _MOVED and self._now - goal.planned_at >= _REPLAN
 
     def _plan(self, goal: NavigationGoal, around: bool = False) -> bool:
-        """Whether there is a way, `around` also those who walk nearby; without one the goal ends, but not then."""
+        """Return whether there is a way, `around` also those who walk nearby; without one the
+        goal ends, except then.
+        """
         target = self._target(goal)
         assert target is not None
         planner = self._planner or self.prepare()
@@ -217,7 +221,7 @@ class Navigator:
         return path is not None
 
     def _target(self, goal: NavigationGoal) -> Point | None:
-        """Where it goes, as far as the robot knows; sets how near it has to come."""
+        """Return where it goes, as far as the robot knows; set how near it has to come."""
         name = goal.name
         if goal.pose is not None:
             return goal.pose.x, goal.pose.y
@@ -262,13 +266,13 @@ class Navigator:
 
 
 def turn_rate(error: float, turning: SpeedLimits) -> float:
-    """Degrees a second that close an error of heading fast without overshooting."""
+    """Return the degrees a second that close an error of heading fast without overshooting."""
     rate = min(turning.speed, sqrt(2 * turning.slowing * abs(error)), 4.0 * abs(error))
     return rate if error > 0 else -rate
 
 
 def stand_off(body: Body, thing: Thing, is_person: bool) -> float:
-    """Metres from an object or a person at which a robot that goes there stops. Raises RobotError."""
+    """Return the metres from an object or a person at which a robot stops. Raises RobotError."""
     if body.navigation is None:
         raise RobotError("the robot can't navigate")
     near = body.navigation.people if is_person else body.navigation.objects

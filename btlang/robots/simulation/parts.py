@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class SimulatedJoints:
-    """Angles in degrees; every joint begins at rest and turns at most as fast as the body says."""
+    """Joints in degrees; each begins at rest and turns at most as fast as the body allows."""
 
     def __init__(self, body: Body) -> None:
         self._body = body
@@ -32,28 +32,28 @@ class SimulatedJoints:
 
     @property
     def moving(self) -> bool:
-        """True while any joint is on its way."""
+        """Whether any joint is on its way."""
         return bool(self._targets)
 
     def angle(self, name: str) -> float:
-        """Raises RobotError for an unknown joint."""
+        """Return the angle of a joint. Raises RobotError for an unknown one."""
         return self._angles[joint_of(self._body, name).name]
 
     def move(self, targets: Mapping[str, float]) -> None:
-        """Sets off towards the targets, clipped to the joints' limits. Raises RobotError for an unknown joint."""
+        """Move towards targets, clipped to the joints' limits. Raises RobotError for an unknown joint."""
         self._targets.update(clipped(self._body, targets))
 
     def at_target(self, names: tuple[str, ...]) -> bool:
-        """True when none of them is on its way."""
+        """Return whether none of these joints is on its way."""
         return not any(name in self._targets for name in names)
 
     def freeze(self, names: tuple[str, ...] | None = None) -> None:
-        """They stay where they are; None: all of them."""
+        """Hold these joints, or all for None, where they are."""
         for name in tuple(self._targets) if names is None else names:
             self._targets.pop(name, None)
 
     def step(self, dt: float) -> None:
-        """Moves on by `dt` seconds."""
+        """Move on by `dt` seconds."""
         for name, target in list(self._targets.items()):
             left, most = target - self._angles[name], self._rates[name] * dt
             if abs(left) <= most:
@@ -67,7 +67,7 @@ _DIRECTIONS = (0, 30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180)
 
 
 class SimulatedHands:
-    """What each hand holds. Reach is measured from a point that the body says."""
+    """The hands and what they hold. Reach counts from a point of the body."""
 
     def __init__(self, obstacles: Obstacles, objects: tuple[str, ...], body: Body) -> None:
         self._body = body
@@ -77,7 +77,7 @@ class SimulatedHands:
         self._since: dict[Hand, float] = {}
 
     def grasp(self, hand: Hand, name: str | None, pose: Pose, now: float) -> str:
-        """The name of what the hand now holds. Raises RobotError."""
+        """Grasp an object; return its name. Raises RobotError."""
         if hand in self.held:
             raise RobotError(f"the {hand} hand already holds {said(self.held[hand])}")
         found = self.within_reach(hand, name, pose)
@@ -87,7 +87,7 @@ class SimulatedHands:
         return found
 
     def within_reach(self, hand: Hand, name: str | None, pose: Pose) -> str:
-        """The named or the nearest object that a hand could grasp. Raises RobotError if there is none."""
+        """Return the named or the nearest object that a hand could grasp. Raises RobotError if there is none."""
         part = self._part(hand)
         x, y = pose.ahead(part.ahead, part.left)
         known = (self._obstacles.things[key] for key in self._objects if not self._obstacles.is_carried(key))
@@ -104,29 +104,29 @@ class SimulatedHands:
         return found
 
     def release(self, hand: Hand, pose: Pose) -> str | None:
-        """Puts down what the hand held in front of the robot, or where there is room; None for an empty hand."""
+        """Put down what the hand held in front of the robot, or where there is room; None for an empty hand."""
         name = self.held.pop(hand, None)
         if name is not None:
             self._obstacles.put_down(name, *self._spot(name, pose, self._part(hand)))
         return name
 
     def hand_over(self, hand: Hand) -> str | None:
-        """Somebody takes what the hand held: it stays off the floor. None for an empty hand."""
+        """Give away what the hand held: it stays off the floor. None for an empty hand."""
         return self.held.pop(hand, None)
 
     def drop(self, hand: Hand, pose: Pose) -> str | None:
-        """As `release`, by itself."""
+        """Drop what the hand held, like `release`."""
         return self.release(hand, pose)
 
     def held_for(self, hand: Hand, now: float) -> float:
-        """Seconds since the grasp; 0 for an empty hand."""
+        """Return the seconds since the grasp; 0 for an empty hand."""
         return now - self._since[hand] if hand in self.held else 0.0
 
     def stop(self) -> None:
-        """Does nothing: they are at rest."""
+        """Do nothing: the hands are at rest."""
 
     def step(self, dt: float) -> None:
-        """Does nothing: all that it does takes no time."""
+        """Do nothing: no motion of the hands takes time."""
 
     def _part(self, hand: Hand) -> HandPart:
         part = self._body.hand(hand)
@@ -154,7 +154,7 @@ _NOWHERE = "there is no dock in this world"
 
 
 class SimulatedPower:
-    """Percent left: drains with time and with metres, and gains when docked, as the body says."""
+    """The battery in percent: it drains with time and with metres, and charges at the dock."""
 
     def __init__(self, level: float, docks: tuple[Place, ...], body: Body) -> None:
         self._battery, self._docking = body.battery or _ENDLESS, body.dock or _NO_DOCK
@@ -164,20 +164,22 @@ class SimulatedPower:
 
     @property
     def empty(self) -> bool:
-        """True at 0 percent: the wheels get no power."""
+        """Whether the battery is at 0 percent: the wheels get no power."""
         return self.level <= 0.0
 
     @property
     def charging(self) -> bool:
-        """True while docked and not full."""
+        """Whether it is docked and not full."""
         return self.docked and self.level < 100.0
 
     def set_level(self, percent: float) -> None:
-        """The battery is that full from now on, 0 to 100."""
+        """Set the level, 0 to 100."""
         self.level = min(100.0, max(0.0, percent))
 
     def connect(self, pose: Pose, fails: Callable[[str], bool]) -> None:
-        """Raises RobotError where there is no dock at the pose, or the one of this name `fails` to connect."""
+        """Connect to the dock. Raises RobotError if there is none at the pose, or the one of this name `fails` to
+        connect.
+        """
         if not self._docks:
             raise RobotError(_NOWHERE)
         away, name = self._nearest(pose)
@@ -188,15 +190,15 @@ class SimulatedPower:
         self.docked = True
 
     def is_near_dock(self, pose: Pose) -> bool:
-        """Whether it can connect there."""
+        """Return whether it can connect at a pose."""
         return self._nearest(pose)[0] <= self._docking.within
 
     def _nearest(self, pose: Pose) -> tuple[float, str]:
-        """Metres to the nearest dock, and its name."""
+        """Return the metres to the nearest dock, and its name."""
         return min(((pose.distance_to((dock.x, dock.y)), dock.name) for dock in self._docks), default=(NEVER, ""))
 
     def step(self, dt: float, metres: float, pose: Pose) -> bool:
-        """Moves on by `dt` seconds; returns True when the robot has just driven off its dock."""
+        """Move on by `dt` seconds; return whether the robot has just driven off its dock."""
         if self.docked and self._nearest(pose)[0] > self._docking.beyond:
             self.docked = False
             self._drain(dt, metres)
@@ -212,14 +214,14 @@ class SimulatedPower:
 
 
 def stations(world: World, body: Body, pose: Pose) -> list[Station]:
-    """The docks of a world, the nearest first. Raises RobotError where it has none."""
+    """Return the docks of a world, nearest first. Raises RobotError if it has none."""
     if not world.all_docks:
         raise RobotError(_NOWHERE)
     return [_station(dock, world, body) for dock in world.docks_from(pose)]
 
 
 def _station(dock: Place, world: World, body: Body) -> Station:
-    """It is left from so far in front of it as the body says, or nearer where walls leave less room."""
+    """Return a dock with its staging pose: as far in front as the body says, or nearer if walls leave less room."""
     spot = Pose(dock.x, dock.y, dock.facing or 0.0)
     wanted = (body.dock or _NO_DOCK).staging
     stagings = (Pose(*spot.ahead(-share * wanted), spot.heading) for share in _SHARES)
@@ -233,7 +235,7 @@ def _is_free(spot: Pose, world: World, radius: float) -> bool:
 
 
 def simulated_parts(world: World, obstacles: Obstacles, body: Body) -> Parts:
-    """Those that act in a world."""
+    """Return the parts that act in a world."""
     scanners: list[Scanner] = []
 
     def scan(pose: Pose) -> Array:
@@ -259,7 +261,7 @@ def simulated_parts(world: World, obstacles: Obstacles, body: Body) -> Parts:
 
 
 def joints_part(body: Body) -> JointsPart:
-    """Joints as the body has them: smooth ones plan their movements."""
+    """Return the joints of a body: smooth ones plan their movements."""
     if not body.is_smooth:
         return SimulatedJoints(body)
     from btlang.robots.motion.smooth_joints import SmoothJoints  # brings numpy and ruckig

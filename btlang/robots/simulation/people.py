@@ -31,8 +31,10 @@ _DOORS = ("entrance", "door")
 
 
 class People:
-    """The people of a world. `report(kind, name, text)` gets who comes ("come"), begins to walk ("walk") and leaves
-    ("leave"), and what somebody says ("speak"). The same seed gives the same people.
+    """The people of a world. The same seed gives the same people.
+
+    `report(kind, name, text)` gets who comes ("come"), begins to walk ("walk") and leaves ("leave"), and what somebody
+    says ("speak").
     """
 
     def __init__(
@@ -59,13 +61,13 @@ class People:
             self._show()
 
     def begin(self, seed: int) -> None:
-        """A run begins: what happens by chance follows from its seed. Visits that are planned stay so."""
+        """Begin a run: random events follow from its seed. Planned visits stay as they are."""
         self._seed = seed
         self._random = Random(f"{seed} people")
         self._next = 0.0
 
     def step(self, now: float, dt: float, pose: Pose, velocity: float) -> None:
-        """Lets `dt` seconds pass until `now`, while the robot drives at `velocity` metres a second."""
+        """Let `dt` seconds pass until `now`, while the robot drives at `velocity` metres a second."""
         if self._speeches or self._answers:
             self._speak(now)
         self._robot = pose.x, pose.y
@@ -85,18 +87,18 @@ class People:
             self._show()
 
     def walks(self, name: str) -> bool:
-        """Whether somebody walks, or ever did."""
+        """Return whether somebody walks, or ever did."""
         return name in self._walkers
 
     def put(self, name: str, x: float, y: float) -> None:
-        """Puts somebody who walks somewhere else, as a test does; who isn't there comes. Raises KeyError."""
+        """Put somebody who walks somewhere else; somebody who isn't there comes. Raises KeyError."""
         walker = self._walkers[name]
         walker.put(x, y)
         self._enter(walker)
         self._show()
 
     def come(self, name: str) -> None:
-        """Somebody who isn't there comes now. Raises RobotError for who is there, or isn't of this world."""
+        """Let somebody come now. Raises RobotError if they are there, or aren't of this world."""
         walker = self._known(name)
         if walker.present:
             raise RobotError(f"{name} is there already")
@@ -104,26 +106,26 @@ class People:
         self._show()
 
     def leave(self, name: str) -> None:
-        """Somebody walks back to where he or she came from, and is gone. Raises RobotError."""
+        """Let somebody walk back to where they came from, and leave. Raises RobotError."""
         self._known(name).leave()
 
     def walk(self, name: str, goal: Point) -> None:
-        """Somebody walks to a point, and stays there. Raises RobotError."""
+        """Let somebody walk to a point, and stay there. Raises RobotError."""
         walker = self._known(name)
         self._enter(walker)
         walker.go(goal)
 
     def follow(self, name: str, follows: bool) -> None:
-        """Somebody follows the robot from now on, or stays where he or she is. Raises RobotError."""
+        """Let somebody follow the robot from now on, or stay where they are. Raises RobotError."""
         walker = self._known(name)
         walker.follows = follows
 
     def refused_by(self, name: str) -> tuple[str, ...]:
-        """What somebody doesn't take."""
+        """Return what somebody doesn't take."""
         return self._people[name].refuses if name in self._people else ()
 
     def invite(self) -> str:
-        """The next who is to come comes at once, else a guest whom the world doesn't name; returns the name."""
+        """Let the next expected person come at once, or else a guest whom the world doesn't name; return the name."""
         for name, walker in self._walkers.items():
             if not walker.present and not walker.gone:
                 self._enter(walker)
@@ -144,7 +146,7 @@ class People:
         return name
 
     def ask(self, question: str, person: str, point: Point, now: float) -> None:
-        """The robot at this point asks a person, or anybody for "", who answers later, or not at all."""
+        """Ask a person, or anybody for "", from the robot's point; they answer later, or not at all."""
         words = question.lower()
         if not words:
             return
@@ -158,12 +160,12 @@ class People:
                 return
 
     def answer(self, name: str, text: str) -> None:
-        """What somebody answers to the next question, in place of what the world says. Raises RobotError."""
+        """Set what somebody answers to the next question, in place of the world's answer. Raises RobotError."""
         self._known_person(name)
         self._said[name] = text
 
     def say(self, name: str, text: str) -> None:
-        """Somebody says it now. Raises RobotError."""
+        """Let somebody say something now. Raises RobotError."""
         self._known_person(name)
         self._report("speak", name, text)
 
@@ -172,7 +174,7 @@ class People:
         return inf if at is None else hypot(at[0] - point[0], at[1] - point[1])
 
     def _understands(self, name: str, point: Point) -> bool:
-        """Whether somebody understands what is said there: near enough, and in the same room."""
+        """Return whether somebody understands what is said there: near enough, and in the same room."""
         at = self._obstacles.point(name)
         return at is not None and self._distance(name, point) <= _HEARD and not self._obstacles.wall_between(point, at)
 
@@ -187,7 +189,7 @@ class People:
             self._report("speak", name, text)
 
     def _arrive(self, now: float, robot: Other) -> None:
-        """People come at their time, as soon as there is room, and those who have left are gone."""
+        """Let people come at their time, as soon as there is room, and remove those who have left."""
         for name, walker in self._walkers.items():
             if not walker.present and not walker.gone and self._comes(walker, now) <= now:
                 others = (robot, *(other.body for other in self._walkers.values() if other.present))
@@ -209,7 +211,7 @@ class People:
                 self._wonder(walker, robot)
 
     def _comes(self, walker: Walker, now: float) -> float:
-        """When somebody comes, in seconds of the run."""
+        """Return when somebody comes, in seconds of the run."""
         person = walker.person
         if person.visits is None:
             return person.comes
@@ -223,12 +225,14 @@ class People:
         return self._visits[person.name][0]
 
     def _leaves(self, walker: Walker) -> float:
-        """When somebody leaves, in seconds of the run; who was invited stays as long as the planned visit lasts."""
+        """Return when somebody leaves, in seconds of the run; an invited guest stays as long as the planned visit
+        lasts.
+        """
         visits = walker.person.visits
         return walker.person.leaves if visits is None else self._visits.get(walker.person.name, (0.0, NEVER))[1]
 
     def _wonder(self, walker: Walker, robot: Other) -> None:
-        """Now and then asks the robot something."""
+        """Ask the robot something now and then."""
         name = walker.person.name
         near = hypot(robot.x - walker.x, robot.y - walker.y) < _ASKS_WITHIN
         if near and self._random.random() < PERIOD / _ASKS_EVERY and self._understands(name, (robot.x, robot.y)):
@@ -260,7 +264,7 @@ class People:
         return self._people[name]
 
     def _known(self, name: str) -> Walker:
-        """The walker of a person: who has only stood so far can walk from now on. Raises RobotError."""
+        """Return the walker of a person: somebody who has only stood so far can walk from now on. Raises RobotError."""
         person = self._known_person(name)
         if name not in self._walkers:
             self._report("walk", name, "")

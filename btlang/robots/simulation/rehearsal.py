@@ -21,9 +21,10 @@ _LONGEST = 120.0
 
 
 class Rehearsal(Record):
-    """`angles` are those of all joints after each STEP, `slower` is how many times as long as asked it takes.
+    """A gesture as a body does it.
 
-    `problem` is why it can't be done, "" where it can.
+    `angles` are those of all joints after each STEP, `slower` is how many times as long as asked it takes. `problem` is
+    why it can't be done, "" if it can.
     """
 
     angles: Sequence[Mapping[str, float]]
@@ -32,12 +33,12 @@ class Rehearsal(Record):
 
     @property
     def seconds(self) -> float:
-        """How long it takes."""
+        """The seconds that it takes."""
         return STEP * (len(self.angles) - 1)
 
 
 def rehearse(body: Body, gesture: Gesture, aim: Point = AHEAD) -> Rehearsal:
-    """From rest, at full speed."""
+    """Do a gesture from rest, at full speed."""
     heard: dict[str, Any] = {}
     alone = body.replace(gestures={gesture.name: gesture})
     robot = SimulatedRobot(World(start=Pose(0, 0)), lambda kind, data: heard.setdefault(kind, data), alone)

@@ -41,10 +41,10 @@ _HANDS: tuple[Hand, Hand] = ("left", "right")
 
 
 class SimulatedRobot(Guarded):
-    """Implements `btlang.robots.robot.Robot`. The same commands and the same seed give the same run.
+    """A `btlang.robots.robot.Robot` in a world. The same commands and the same seed give the same run.
 
-    `make_parts` makes its parts, which by default act in the world, of this and what stands there: its `obstacles`.
-    Unless it `sees`, it drives as it is told, past its sensors: whoever commands it has the guard.
+    `make_parts` makes its parts, which by default act in the world, from the world and its `obstacles`. Unless it
+    `sees`, it drives as commanded, past its sensors: whoever commands it has the guard.
     """
 
     moves_by_itself = False
@@ -93,7 +93,7 @@ class SimulatedRobot(Guarded):
         self._begin_faults()
 
     def step(self, dt: float) -> None:
-        """Lets `dt` (> 0) seconds pass; the scan, the events and all sensors follow."""
+        """Let `dt` (> 0) seconds pass; the scan, the events and all sensors follow."""
         stopped = self._latch.refuses
         self._latch.step()
         pieces = max(1, ceil(dt / _CONTROL_PERIOD - 1e-9))
@@ -126,19 +126,19 @@ class SimulatedRobot(Guarded):
             self._emit("arrive", name=arrived.name)
 
     def stop(self) -> None:
-        """Brakes hard, cancels the journey, freezes joints and hands, and ends speech. Safe from any thread."""
+        """Brake hard, cancel navigation, freeze joints and hands, and end speech. For any thread."""
         self._latch.stop()
         self.stops += 1
         self._rest()
         self._emit("stop")
 
     def disable(self) -> None:
-        """Stops, and takes no command until it is enabled. Safe from any thread."""
+        """Stop, and take no command until `enable`. For any thread."""
         self._latch.shut()
         self.stop()
 
     def enable(self) -> None:
-        """Takes commands again."""
+        """Take commands again."""
         if self._latch.refuses:
             self._rest()  # again, as in `step`
         self._latch.open()
@@ -147,7 +147,7 @@ class SimulatedRobot(Guarded):
 
     @property
     def refuses(self) -> bool:
-        """Whether it takes no command: it was stopped."""
+        """Whether it takes no commands, because it was stopped."""
         return self._latch.refuses
 
     def _rest(self) -> None:
@@ -162,61 +162,61 @@ class SimulatedRobot(Guarded):
 
     @property
     def time_of_day(self) -> float:
-        """As the world says, when it began, and all steps since."""
+        """The world's time of day at the start, plus all steps since."""
         return (self.world.clock + self.time) % DAY
 
     @property
     def weekday(self) -> int:
-        """As the world says, when it began, and all days since."""
+        """The world's weekday at the start, plus all days since."""
         return weekday_after(self.world.weekday, self.world.clock + self.time)
 
     @property
     def moving(self) -> bool:
-        """True while the base still rolls or a joint moves."""
+        """Whether the base still rolls or a joint moves."""
         return self._base.rolling or self._joints.moving
 
     @property
     def standstill(self) -> Standstill:
-        """Nothing else moves it."""
+        """Whether it stands still: nothing else moves it."""
         return Standstill(None if self._base.silent is not None else self.moving)
 
     # Base
     @property
     def pose(self) -> Pose:
-        """Where it is. Raises SensorSilent where that isn't known."""
+        """The pose. Raises SensorSilent if it isn't known."""
         if (silent := self._base.silent) is not None:
             raise SensorSilent(silent)
         return self._base.pose
 
     @property
     def way(self) -> Sequence[Point]:
-        """The points of the way that it follows, in metres from where it was planned; none where it follows none."""
+        """The points of the way that it follows, in metres from where it was planned; none without a goal."""
         return self._navigator.way
 
     @property
     def base(self) -> BasePart:
-        """Its wheels, of which those in a world know what is really around them."""
+        """The wheels; those in a world know what is really around them."""
         return self._base
 
     @property
     def velocity(self) -> tuple[float, float]:
-        """Metres and degrees a second. Raises SensorSilent."""
+        """The metres and degrees a second. Raises SensorSilent."""
         if (silent := self._base.silent) is not None:
             raise SensorSilent(silent)
         return self._base.velocity
 
     @property
     def travelled(self) -> float:
-        """Metres that it has driven."""
+        """The metres that it has driven."""
         return self._base.travelled
 
     @property
     def wheels(self) -> tuple[float, float]:
-        """Metres that the left and the right wheel have rolled."""
+        """The metres that the left and the right wheel have rolled."""
         return self._base.wheels
 
     def drive(self, linear: float, angular: float) -> None:
-        """Sets the wanted metres and degrees a second; ends a journey under way. Raises RobotError for no numbers."""
+        """Set the wanted metres and degrees a second; end navigation. Raises RobotError for NaN."""
         if self._latch.refuses or self.power.empty:
             return
         self._navigator.cancel("another command took over the drive")
@@ -231,22 +231,22 @@ class SimulatedRobot(Guarded):
 
     @property
     def bumped(self) -> bool:
-        """True from running into something until it has moved away."""
+        """Whether it ran into something and hasn't moved away yet."""
         return self._base.bumped
 
     @property
     def stuck(self) -> bool:
-        """True when it has been commanded to move for a second and does not."""
+        """Whether it has been commanded to move for a second and doesn't."""
         return self._base.stuck or self._guard.stuck
 
     @property
     def set_out_from(self) -> Pose:
-        """Where it was when the run began."""
+        """The pose at the start of the run."""
         return self._began
 
     @property
     def pace(self) -> float:
-        """The share of the normal speed at which it goes its ways."""
+        """The share of the normal speed for journeys."""
         return self._navigator.pace
 
     @pace.setter
@@ -254,24 +254,24 @@ class SimulatedRobot(Guarded):
         self._navigator.pace = share
 
     def reset_localization(self) -> None:
-        """Does nothing: it always knows its place."""
+        """Do nothing: it always knows its pose."""
 
     def place_names(self) -> list[str]:
-        """The names of all places, those of the mission among them."""
+        """Return the names of all places, including those of the mission."""
         return list(self.world.names.places)
 
     def navigate_to(self, name: str) -> NavigationGoal:
-        """Sets out for a place, an object or a person. Raises RobotError for an unknown name."""
+        """Go to a place, an object or a person. Raises RobotError for an unknown name."""
         known = self._surroundings.known(name)
         self._surroundings.check_free(known)
         return self._set_out(known)
 
     def navigate_to_pose(self, pose: Pose, name: str = "") -> NavigationGoal:
-        """Sets out for a pose: to what it is for, by its name or its spot; see Surroundings.goal_at."""
+        """Go to a pose: to a target by its name or its spot; see Surroundings.goal_at."""
         return self._set_out(name, pose) if name else self._set_out(*self._surroundings.goal_at(pose))
 
     def prepare_journeys(self) -> None:
-        """Gets ready to set out, so that the first journey takes no longer than the others."""
+        """Load the planner, so that the first journey takes no longer than the others."""
         with suppress(RobotError):  # a world that is too large fails the journey, with its reason
             self._navigator.prepare()
 
@@ -286,93 +286,95 @@ class SimulatedRobot(Guarded):
         return goal
 
     def drop_goal(self, reason: str) -> None:
-        """A journey under way fails, as if the navigation had lost it."""
+        """Fail the current journey, as if navigation had lost it."""
         self._navigator.cancel(reason)
 
     def scan(self) -> Array:
-        """360 distances, computed when first read after a step. Raises RobotError when the scanner is silent."""
+        """Return 360 distances, computed when first read after a step. Raises RobotError if the scanner is silent."""
         self._need("scanner")
         if self.faults.scanner_silent:
             raise SensorSilent("the laser scanner is silent")
         return self._scan(self.pose)
 
     def locate(self, name: str) -> Point:
-        """Where a place, object or person is. Raises RobotError for an unknown name, and for what it hasn't seen."""
+        """Return where a place, object or person is. Raises RobotError for an unknown name, and
+        if it hasn't been seen.
+        """
         return self._surroundings.locate(name, self.pose)
 
     def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
-        """A name that is the "nearest", "random" and so on. Raises RobotError if there is none."""
+        """Return a name that is the "nearest", "random" and so on. Raises RobotError if there is none."""
         return self._surroundings.choose(
             kind, how, parts, lambda: self.pose, lambda: self.set_out_from, self._choices, self.on_event
         )
 
     def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
-        """The objects or people with these parts that the robot knows, nearest first."""
+        """Return the known objects or people with these parts, nearest first."""
         return self._surroundings.described(kind, parts, self.pose)
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
-        """A run begins. Its random choices follow from the seed; so many have been made."""
+        """Begin a run, whose random choices follow from the seed; `made` of them have been made already."""
         self._choices.begin(seed, made)
         self._surroundings.begin(seed)
         self._voice.speak_in()
         self._began, self.pace = self._base.pose, 1.0
 
     def nearby_people(self, within: float) -> list[str]:
-        """Names of the people within so many metres, nearest first."""
+        """Return the names of the people within so many metres, nearest first."""
         return self._surroundings.nearby_people(within, self.pose)
 
     def sees(self, name: str) -> bool:
-        """Whether an object or a person is in view. Raises RobotError for an unknown name."""
+        """Return whether an object or a person is in view. Raises RobotError for an unknown name."""
         return self._surroundings.sight.sees(self._surroundings.known(name), self.pose)
 
     def seen(self, kind: str) -> list[str]:
-        """The objects or people in view, nearest first."""
+        """Return the objects or people in view, nearest first."""
         return self._surroundings.sight.seen(kind, self.pose)
 
     def take_picture(self) -> Operation:
-        """Takes a picture; its event names what is in view. Raises RobotError where it has no camera."""
+        """Take a picture; its event names what is in view. Raises RobotError without a camera."""
         self._need("perception")
         self._emit("picture", name=", ".join((*self.seen("person"), *self.seen("object"))))
         return CompletedOperation()
 
     @property
     def things(self) -> tuple[Whereabouts, ...]:
-        """Where those are who walk, and what isn't known; for whoever watches."""
+        """Where walking people and unknown things are, for observers."""
         return self._surroundings.whereabouts()
 
     @property
     def surroundings(self) -> Surroundings:
-        """What is where around it, and who lives there."""
+        """The surroundings, and who lives there."""
         return self._surroundings
 
     @property
     def zones(self) -> Zones:
-        """Where it may not go, or only slowly."""
+        """The zones of the world and the mission."""
         return self._surroundings.zones
 
     @property
     def ears(self) -> Ears:
-        """What it has heard. Raises RobotError where it has none."""
+        """What it has heard. Raises RobotError if it has no ears."""
         self._need("ears")
         return self._surroundings.ears
 
     def hear(self, text: str, who: str = "") -> None:
-        """It hears what somebody says, or types."""
+        """Take a text that somebody says or types."""
         self._surroundings.hear(text, who)
 
     def invite(self) -> str:
-        """A visitor comes; returns the name."""
+        """Let a guest come; return the name."""
         return self._surroundings.people.invite()
 
     def ask(self, question: str, person: str = "") -> None:
-        """See `Listening.ask`: people of the world may answer."""
+        """Implement Listening. People of the world may answer."""
         question = question or self._last_said
         self.ears.asking = question or "..."
         self._emit("ask", text=question, who=person)
         self._surroundings.ask(question, person)
 
     def guide(self, person: str, follow: bool) -> None:
-        """Somebody follows the robot from now on, or no longer. Raises RobotError for who isn't in view."""
+        """Let somebody follow the robot from now on, or no longer. Raises RobotError if they aren't in view."""
         known = self._surroundings.known(person)
         if follow and not self._surroundings.sight.sees(known, self.pose):
             raise RobotError(f"I don't see {said(known)}")
@@ -381,60 +383,60 @@ class SimulatedRobot(Guarded):
             self._idling.attend(known)
 
     def beside_door(self, name: str) -> list[Pose]:
-        """Where it can stand to move a door, the nearer one first. Raises RobotError for an unknown door."""
+        """Return where it can stand to move a door, nearest first. Raises RobotError for an unknown door."""
         return self._surroundings.beside_door(name, self.pose)
 
     def move_door(self, name: str, is_open: bool) -> Operation:
-        """Opens or closes a door within reach. Raises RobotError."""
+        """Open or close a door within reach. Raises RobotError."""
         self._surroundings.move_door(name, is_open, self.pose)
         return CompletedOperation()
 
     def is_open(self, door: str) -> bool:
-        """Whether a door is open. Raises RobotError for an unknown one."""
+        """Return whether a door is open. Raises RobotError for an unknown one."""
         return self._surroundings.is_open(door)
 
     def is_on(self, name: str) -> bool:
-        """Whether an object is switched on. Raises RobotError for one that can't be switched."""
+        """Return whether an object is switched on. Raises RobotError for one that can't be switched."""
         return self._surroundings.is_on(name)
 
     def forget_map(self) -> None:
-        """Forgets where it saw objects and people."""
+        """Forget where it saw objects and people."""
         self._surroundings.sight.forget()
 
     def switch(self, name: str, on: bool | None) -> Operation:
-        """Switches an object within reach on or off, with None to the other. Raises RobotError."""
+        """Switch an object within reach on or off; None toggles it. Raises RobotError."""
         self._surroundings.switch(name, on, self.pose)
         return CompletedOperation()
 
     def call(self, text: str) -> None:
-        """Calls people for help, by an event."""
+        """Call people for help, by an event."""
         self._emit("call", text=text)
 
     @property
     def held_up(self) -> str:
-        """Who is in its way, "" where nobody makes it wait."""
+        """The person in its way, "" if nobody makes it wait."""
         return self._navigator.held_up
 
     def wait_for_way(self, seconds: float) -> None:
-        """So long it waits for who is in its way, before it looks for another way."""
+        """Set the seconds to wait for somebody in its way before it looks for another way."""
         self._navigator.patience = seconds
 
     def name_places(self, places: Iterable[Place]) -> None:
-        """The places of a mission beside those of the world, in place of those of the mission before."""
+        """Set the places of a mission, in addition to those of the world."""
         self._surroundings.name_places(places)
         self.world = self._surroundings.world
         self._navigator.name_places(self.world.places)
 
     def move_thing(self, name: str, x: float, y: float) -> None:
-        """Puts an object or a person somewhere else, as somebody in the world would. Raises RobotError."""
+        """Put an object or a person somewhere else, as somebody in the world would. Raises RobotError."""
         self._surroundings.move(name, x, y)
 
     def carry(self, pose: Pose) -> None:
-        """Moves the base alone, as somebody who pushes it would; everything else goes on."""
+        """Move only the base, as somebody who pushes it would; everything else goes on."""
         self._base.put(pose)
 
     def put(self, pose: Pose) -> None:
-        """Puts the robot somewhere else, at rest, as somebody who carries it would."""
+        """Put the robot somewhere else, at rest, as somebody who carries it would."""
         self._rest()
         self._base.put(pose)
         self._guard.forget()
@@ -442,39 +444,39 @@ class SimulatedRobot(Guarded):
     # Power
     @property
     def battery(self) -> float:
-        """Percent left."""
+        """The percentage that is left."""
         return self.power.level
 
     @property
     def battery_empty(self) -> bool:
-        """True when the wheels get no power any more."""
+        """Whether the wheels have no power any more."""
         return self.power.empty
 
     @property
     def docked(self) -> bool:
-        """True while connected to the dock."""
+        """Whether it is connected to the dock."""
         return self.power.docked
 
     @property
     def charging(self) -> bool:
-        """True while docked and not full."""
+        """Whether it is docked and not full."""
         return self.power.charging
 
     @property
     def stations(self) -> list[Station]:
-        """The docks, the nearest first. Raises RobotError if there is none."""
+        """The docks, nearest first. Raises RobotError if there are none."""
         self._need("docking")
         return stations(self.world, self.body, self.pose)
 
     def dock(self) -> CompletedOperation:
-        """Connects to the charger at once. Raises RobotError where the robot does not stand at the dock."""
+        """Connect to the charger at once. Raises RobotError if the robot isn't at the dock."""
         self._need("docking")
         self.power.connect(self.pose, self.faults.fails_to_dock)
         self._emit("dock")
         return CompletedOperation()
 
     def undock(self) -> CompletedOperation:
-        """Disconnects at once; moves nothing."""
+        """Disconnect at once, without moving."""
         if self.power.docked:
             self.power.docked = False
             self._emit("undock")
@@ -482,25 +484,25 @@ class SimulatedRobot(Guarded):
 
     # Arms, hands, head
     def joint(self, name: str) -> float:
-        """Degrees. Raises RobotError for an unknown name."""
+        """Return the degrees of a joint. Raises RobotError for an unknown name."""
         return self._joints.angle(name)
 
     def move_joints(self, targets: Mapping[str, float]) -> None:
-        """Sets off joints towards angles, clipped to their limits. Raises RobotError for an unknown name."""
+        """Move joints towards angles, clipped to their limits. Raises RobotError for an unknown name."""
         if not self._latch.refuses:
             self._joints.move(targets)
             self._emit("joint", targets=dict(targets))
 
     def joints_at_target(self, *names: str) -> bool:
-        """True when none of them is on its way."""
+        """Return whether none of these joints is on its way."""
         return self._joints.at_target(names)
 
     def freeze_joints(self, *names: str) -> None:
-        """These joints stay where they are now."""
+        """Hold these joints where they are."""
         self._joints.freeze(names)
 
     def gesture(self, name: str, *, aim: Point | None = None, stroke_at: float | None = None) -> Operation:
-        """See btlang.robots.robot.Gesturing. Raises RobotError."""
+        """Implement Gesturing. Raises RobotError."""
         if self._latch.refuses:
             raise RobotError("the robot was stopped")
         room = None if stroke_at is None else stroke_at - self.time
@@ -509,11 +511,11 @@ class SimulatedRobot(Guarded):
         return started
 
     def lead(self, name: str, aim: Point | None = None) -> float:
-        """See btlang.robots.robot.Gesturing. Raises RobotError."""
+        """Implement Gesturing. Raises RobotError."""
         return self._gestures.lead(name, lambda: self.pose, aim)
 
     def grasp(self, hand: Hand, name: str | None = None) -> Operation:
-        """Closes a hand on the named or the nearest object. Raises RobotError."""
+        """Close a hand on the named or the nearest object. Raises RobotError."""
         if self._latch.refuses:
             raise RobotError("the robot was stopped")
         if name is not None:
@@ -523,7 +525,7 @@ class SimulatedRobot(Guarded):
         return CompletedOperation() if isinstance(found, str) else found
 
     def release(self, hand: Hand) -> Operation:
-        """Opens a hand and puts down what it held."""
+        """Open a hand and put down what it held."""
         if self._latch.refuses:
             return CompletedOperation()
         found = self._hands.release(hand, self.pose)
@@ -531,7 +533,7 @@ class SimulatedRobot(Guarded):
         return CompletedOperation() if isinstance(found, str | None) else found
 
     def hand_over(self, hand: Hand, person: str) -> Operation:
-        """Gives what a hand holds to a person within reach. Raises RobotError."""
+        """Give what a hand holds to a person within reach. Raises RobotError."""
         name = self._hands.held.get(hand)
         if name is None:
             raise RobotError(f"the {hand} hand is empty")
@@ -544,11 +546,11 @@ class SimulatedRobot(Guarded):
         return CompletedOperation() if isinstance(found, str | None) else found
 
     def holding(self, hand: Hand) -> str | None:
-        """The name of what the hand holds."""
+        """Return the name of what the hand holds."""
         return self._hands.held.get(hand)
 
     def say(self, text: str, after: float = 0.0) -> None:
-        """Starts to speak after so many seconds, for as long as the voice of the body takes. Raises RobotError."""
+        """Start to speak after so many seconds, for as long as the voice of the body takes. Raises RobotError."""
         self._need("voice")
         if not self._latch.refuses:
             self._voice.say(text, after)
@@ -557,53 +559,53 @@ class SimulatedRobot(Guarded):
 
     @property
     def language(self) -> str:
-        """In which it speaks; "" where it has no voice."""
+        """The language in which it speaks; "" without a voice."""
         return self._voice.language
 
     def speak_in(self, language: str) -> None:
-        """What is said from now on is in this language, to the end of the run. Raises RobotError where it can't."""
+        """Speak in a language until the end of the run. Raises RobotError if it can't."""
         self._need("voice")
         if language != self._voice.language:
             self._voice.speak_in(language)
             self._emit("language", name=language)
 
     def utterance(self, text: str) -> Utterance:
-        """What it would say. Raises RobotError."""
+        """Return the sound and the times of a text. Raises RobotError."""
         self._need("voice")
         return self._voice.utterance(text)
 
     @property
     def said(self) -> Utterance | None:
-        """What it says, or said last."""
+        """The current or the last utterance."""
         return self._voice.said
 
     @property
     def said_at(self) -> float:
-        """The second of `time` at which that begins."""
+        """The second of `time` at which that utterance begins."""
         return self.time - self._voice.position
 
     @property
     def speaking(self) -> bool:
-        """True while it speaks."""
+        """Whether it speaks."""
         return self._voice.speaking
 
     def silence(self) -> None:
-        """Ends speech at once."""
+        """End speech at once."""
         self._voice.silence()
 
     def print(self, text: str) -> None:
-        """Shows text at once."""
+        """Show a text at once."""
         self._need("screen")
         self._voice.print(text)
         self._emit("print", text=text)
 
     def _need(self, need: str) -> None:
-        """Raises RobotError where the body lacks it."""
+        """Raise RobotError if the body lacks a part."""
         if not self._has(need):
             raise RobotError(f"the robot has no {part_of(need)}")
 
     def _readings(self) -> list[ObstacleReading]:
-        """Those of the sensors; a scanner that is silent says what it said last."""
+        """Return the readings of the sensors; a silent scanner repeats its last one."""
         readings = self._sensors(self.time)
         if not self.faults.scanner_silent:
             self._scanned = self.time

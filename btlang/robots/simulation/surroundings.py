@@ -23,9 +23,9 @@ _SAME_SPOT = 0.01  # metres
 
 
 class Surroundings(Knowledge):
-    """What is where in a simulated world. The robot knows the part that it has seen.
+    """The surroundings in a simulated world. The robot knows the part that it has seen.
 
-    `joint` says where a joint of the robot stands; `emit` hears the events "come", "leave", "hear" and "see".
+    `joint` returns the angle of a joint of the robot; `emit` gets the events "come", "leave", "hear" and "see".
     """
 
     def __init__(
@@ -51,20 +51,21 @@ class Surroundings(Knowledge):
         self.sight.look(0.0, world.start)
 
     def begin(self, seed: int) -> None:
-        """A run begins: zones are as the world says, and chance follows from the seed."""
+        """Begin a run: zones are as in the world, and random events follow from the seed."""
         self.zones.begin()
         self.people.begin(seed)
         self.ears.begin()
 
     def step(self, now: float, dt: float, pose: Pose, velocity: float) -> None:
-        """People live on for `dt` seconds until `now`, and the robot looks around."""
+        """Let people live on for `dt` seconds until `now`, and the robot look around."""
         self._now, self._pose = now, pose
         self.people.step(now, dt, pose, velocity)
         self.sight.look(now, pose)
 
     def goal_at(self, pose: Pose) -> tuple[str, Pose | None]:
-        """What a way to a pose is called, and where it ends: None on the spot of an object or a person, since it
-        then goes to that. On the spot of a place it is called by that name, and so knows that its way is blocked.
+        """Return the name of a way to a pose, and its end: None on the spot of an object or a person, as its target.
+
+        On the spot of a place the way has the name of the place, so that a blocked way is known.
         """
         for place in self.world.places:
             if pose.distance_to((place.x, place.y)) <= _SAME_SPOT:
@@ -76,7 +77,7 @@ class Surroundings(Knowledge):
         return f"({pose.x:.2f}, {pose.y:.2f})", pose
 
     def move(self, name: str, x: float, y: float) -> None:
-        """Puts an object or a person somewhere else."""
+        """Put an object or a person somewhere else."""
         known = self.known(name)
         if known not in self.obstacles.things or self.obstacles.is_carried(known):
             raise RobotError(f"{said(known)} can't be moved")
@@ -86,7 +87,7 @@ class Surroundings(Knowledge):
             self.obstacles.move(known, x, y)
 
     def check_taker(self, object: str, person: str, pose: Pose) -> None:
-        """Raises RobotError where a person is too far away to take an object, or doesn't want it."""
+        """Raise RobotError if a person is too far away to take an object, or doesn't want it."""
         known = self.known(person)
         point = self.obstacles.point(known)
         if not self.is_person(known) or point is None:
@@ -97,7 +98,7 @@ class Surroundings(Knowledge):
             raise RobotError(f"{said(known)} doesn't want {said(object)}")
 
     def move_door(self, name: str, is_open: bool, pose: Pose) -> None:
-        """Opens or closes a door. Raises RobotError where it is out of reach, or something is in it."""
+        """Open or close a door. Raises RobotError if it is out of reach, or something is in it."""
         door = self.door(name)
         if (distance := pose.distance_to(door.middle)) > _REACH:
             raise RobotError(f"{said(door.name)} is {distance:.1f} m away")
@@ -108,17 +109,17 @@ class Surroundings(Knowledge):
             self.swing(name, is_open)
 
     def swing(self, name: str, is_open: bool) -> None:
-        """A door is open or closed from now on. Raises RobotError for an unknown one."""
+        """Open or close a door in the world. Raises RobotError for an unknown one."""
         door = self.door(name)
         self.obstacles.swing(door.name, is_open)
         self._emit("door", name=door.name, open=is_open)
 
     def is_open(self, name: str) -> bool:
-        """Whether a door is open. Raises RobotError for an unknown one."""
+        """Return whether a door is open. Raises RobotError for an unknown one."""
         return self.door(name).open
 
     def switch(self, name: str, on: bool | None, pose: Pose) -> None:
-        """Switches an object on or off. Raises RobotError where it can't be, or is out of reach."""
+        """Switch an object on or off. Raises RobotError if it can't be switched, or is out of reach."""
         known = self.known(name)
         point = self.where(known)
         before = self.is_on(known)
@@ -128,7 +129,7 @@ class Surroundings(Knowledge):
         self._emit("switch", name=known, on=self._switched[known])
 
     def is_on(self, name: str) -> bool:
-        """Whether an object is switched on. Raises RobotError for one that can't be switched."""
+        """Return whether an object is switched on. Raises RobotError for one that can't be switched."""
         known = self.known(name)
         thing = self.obstacles.things.get(known)
         if not isinstance(thing, WorldObject) or not thing.switch:
@@ -136,20 +137,22 @@ class Surroundings(Knowledge):
         return self._switched.get(known, thing.switch == "on")
 
     def whereabouts(self) -> tuple[Whereabouts, ...]:
-        """Where those really are who walk and what isn't known, to the centimetre, and whether the robot sees them."""
+        """Return where walking people and unknown things really are, to the centimetre, and whether the robot sees
+        them.
+        """
         return self._watched(self.obstacles.point, self.sight.is_seen)
 
     def hear(self, text: str, who: str = "") -> None:
-        """The robot hears what somebody says, or types."""
+        """Let the robot hear what somebody says or types."""
         self.ears.hear(text, who, self._now)
         self._emit("hear", text=text, who=who)
 
     def ask(self, question: str, person: str = "") -> None:
-        """The robot has asked a person, or anybody; people of the world may answer."""
+        """Ask a person, or anybody; people of the world may answer."""
         self.people.ask(question, person, (self._pose.x, self._pose.y), self._now)
 
     def _listen(self, text: str, who: str) -> None:
-        """With a recogniser, the robot only understands what it listens for, as with a microphone."""
+        """Understand only what is listened for, as with a microphone, if the robot has a recogniser."""
         if self._attention is None:
             self.hear(text, who)
             return

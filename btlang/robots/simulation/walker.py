@@ -55,7 +55,7 @@ class Other(Record):
 
 
 class Walker:
-    """Where somebody is and what he or she does now. `follows` is whom: the robot leads."""
+    """Where somebody is and what they do now. `follows` is whether they follow the robot."""
 
     def __init__(self, person: Person, places: Sequence[Point]) -> None:
         self.person = person
@@ -80,46 +80,46 @@ class Walker:
 
     @property
     def point(self) -> Point:
-        """Where he or she is."""
+        """Where they are, in metres."""
         return self.x, self.y
 
     @property
     def velocity(self) -> float:
-        """Metres a second."""
+        """The metres a second."""
         return hypot(self.vx, self.vy)
 
     @property
     def body(self) -> Other:
-        """What others have to keep clear of."""
+        """The body that others have to keep clear of."""
         return Other(self.x, self.y, self.vx, self.vy, self.radius)
 
     @property
     def near_someone(self) -> bool:
-        """Whether somebody may be so near that it takes a look before each step."""
+        """Whether somebody may be so near that they look before each step."""
         return self._free <= (self.velocity + _FASTEST) * PERIOD
 
     @property
     def has_left(self) -> bool:
-        """Whether he or she has come back to where it all began, and wanted to."""
+        """Whether they have come back to where they began, and wanted to."""
         return self.leaving and self._goal is None
 
     def leave(self) -> None:
-        """Walks back to where he or she began."""
+        """Walk back to where they began."""
         self.go((self.person.x, self.person.y))
         self.leaving = True
 
     def go(self, goal: Point) -> None:
-        """Walks there, and stays."""
+        """Walk there, and stay."""
         self._route, self._wanders, self.follows, self.leaving = (), False, False, False
         self._set_goal(goal, 0.0)
 
     def put(self, x: float, y: float) -> None:
-        """Stands there at once."""
+        """Put them somewhere at once."""
         self.x, self.y, self.vx, self.vy = x, y, 0.0, 0.0
         self._path, self._trail, self._aside = [], [], None
 
     def move(self, dt: float, others: Iterable[Other]) -> None:
-        """Walks on for some seconds, but not into anybody."""
+        """Walk on for some seconds, but not into anybody."""
         if self.vx == self.vy == 0.0:
             return
         self._free -= (self.velocity + _FASTEST) * dt
@@ -137,7 +137,7 @@ class Walker:
         return after < before and after < self.radius + other.radius + _ROOM / 4
 
     def look(self, now: float, ways: Ways, robot: Other, others: Sequence[Other], random: Random) -> None:
-        """Decides how to walk on until the next look. `others` are those nearby, without the robot."""
+        """Decide how to walk on until the next look. `others` are those nearby, without the robot."""
         target = self._target(now, ways, robot, random)
         bodies = [body for body in (*others, robot) if abs(body.x - self.x) < _LOOK and abs(body.y - self.y) < _LOOK]
         self._free = min((hypot(b.x - self.x, b.y - self.y) - b.radius for b in bodies), default=_LOOK) - self.radius
@@ -165,7 +165,7 @@ class Walker:
             self._give_way(ways, bodies, random)
 
     def _passes(self, vx: float, vy: float, body: Other) -> bool:
-        """Whether it comes to no contact within the horizon, if both go on so."""
+        """Return whether there is no contact within the horizon, if both go on like this."""
         px, py = body.x - self.x, body.y - self.y
         wx, wy = body.vx - vx, body.vy - vy
         approach = px * wx + py * wy
@@ -179,7 +179,7 @@ class Walker:
         return nearest2 >= room * room
 
     def _give_way(self, ways: Ways, bodies: Sequence[Other], random: Random) -> None:
-        """Steps aside, or back to where he or she came from, so that somebody else can go on."""
+        """Step aside, or back to the start, so that somebody else can go on."""
         self._waited, self._patience = 0.0, random.uniform(*_PATIENCE)
 
         if self._aside is not None and random.random() < 0.5:
@@ -197,7 +197,7 @@ class Walker:
             self._aside, self._path = aside, []
 
     def _target(self, now: float, ways: Ways, robot: Other, random: Random) -> Point | None:
-        """The point to walk to next."""
+        """Return the point to walk to next."""
         if now < self._until and not (self.follows and hypot(robot.x - self.x, robot.y - self.y) < _BEHIND[0]):
             return None
         if self._aside is not None:
@@ -220,7 +220,7 @@ class Walker:
         return corner
 
     def _choose(self, now: float, random: Random) -> bool:
-        """Whether there is something to walk to, which is then the goal."""
+        """Set the next goal; return whether there is one."""
         if self._wanders and self._places:
             self._set_goal(random.choice(self._places), random.uniform(2.0, 10.0))
             return True
@@ -255,7 +255,9 @@ class Walker:
         return self._path[min(self._corner, len(self._path) - 1)]
 
     def _behind(self, now: float, ways: Ways, robot: Other, random: Random) -> Point | None:
-        """Follows the robot at some distance; who is distracted stands, and who has lost it waits for it."""
+        """Follow the robot at some distance. Somebody who is distracted stands, and somebody who has lost it waits for
+        it.
+        """
         distance = hypot(robot.x - self.x, robot.y - self.y)
         if random.random() < _DISTRACTED * PERIOD * (1.0 - self.person.follows):
             self._until = now + random.uniform(4.0, 10.0)

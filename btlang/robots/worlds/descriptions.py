@@ -36,12 +36,12 @@ _WORDS = {"inside": "in", "off": "on", "in_front_of": "in front of", "left_of": 
 
 
 def without_relations(parts: Mapping[str, str]) -> dict[str, str]:
-    """The parts that say what a thing is like, without its name and without how it stands to others."""
+    """Return the parts that describe a thing by itself, without its name and without its relations to others."""
     return {name: text for name, text in parts.items() if not (name == "named" or name in RELATIONS or name in DENIED)}
 
 
 def related_words(parts: Mapping[str, str]) -> str:
-    """The words for what the parts say beyond what a thing is like: ` on the table that isn't red`."""
+    """Return the words for the relations in the parts: ` on the table that isn't red`."""
     words = [
         f" {_WORDS.get(name, name)} {' and '.join(map(_thing, text.split(SECOND)))}"
         for name, text in parts.items()
@@ -67,9 +67,10 @@ def _thing(value: str) -> str:
 
 
 class Relations:
-    """Judges relations in one world. `things` are its objects and people, `where` gives the point of a name.
+    """Judges relations in one world.
 
-    `is_seen` says whether the robot has a name in view, `holder` who holds it.
+    `things` are its objects and people, `where` returns the point of a name. `is_seen` returns whether the robot has a
+    name in view, `holder` who holds it.
     """
 
     def __init__(
@@ -84,7 +85,9 @@ class Relations:
         self._is_seen, self._holder = is_seen, holder
 
     def holds(self, name: str, parts: Mapping[str, str], pose: Pose) -> bool:
-        """Whether a thing stands as the parts say, and is nothing that they deny, as seen from a pose."""
+        """Return whether the relations of a thing are as the parts say, and nothing that they deny is true, from a
+        pose.
+        """
         for part, text in parts.items():
             if part == "named" and name.lower() != text.lower():
                 return False
@@ -106,7 +109,7 @@ class Relations:
         return any(self._stands(name, relation, other, pose) for other in self._meant(value, pose))
 
     def _is_here(self, name: str, pose: Pose) -> bool:
-        """Whether the robot is at a place, or in the region of that name."""
+        """Return whether the robot is at a place, or in the region of that name."""
         here, point = (pose.x, pose.y), self._point(name)
         region = next((zone for zone in self._world.zones if zone.name == name), None)
         return (region is not None and region.contains(here)) or (point is not None and dist(here, point) <= HERE)
@@ -124,13 +127,13 @@ class Relations:
         return is_like or (part == "kind" and name.lower() in wanted)
 
     def _parts(self, name: str) -> Parts:
-        """What a thing or a place can be described by."""
+        """Return the parts that a thing or a place can be described by."""
         if name in self._things:
             return self._things[name].parts
         return next((place.parts for place in self._world.places if place.name == name), ())
 
     def _meant(self, value: str, pose: Pose) -> Iterator[str]:
-        """The names of what a relation leads to."""
+        """Return the names of the other side of a relation."""
         head, *filters = value.split("; ")
         likes = dict(each.split(" ", 1) for each in filters)
         if head.startswith("kind "):
@@ -149,7 +152,7 @@ class Relations:
                 yield name
 
     def _stands(self, name: str, relation: str, other: str, pose: Pose) -> bool:
-        """Whether one named thing stands so to another. Raises RobotError for what a map can't tell."""
+        """Return whether a relation holds between two names. Raises RobotError if a map can't tell."""
         if relation in ("under", "above"):
             raise RobotError(f"I can't tell what is {relation} {said(other)}")
         if relation == "held_by":
@@ -177,7 +180,7 @@ class Relations:
         return _is_on_side(relation, one, point, pose)
 
     def _is_at(self, one: Point, other: str, point: Point) -> bool:
-        """On or in a thing; at a place if no other place is nearer."""
+        """Return whether it is on or in a thing; at a place if no other place is nearer."""
         if other in self._things:
             size = getattr(self._things[other], "size", 0.0)
             return dist(one, point) <= max(_ON_THING, size)
@@ -198,7 +201,7 @@ class Relations:
 
 
 def _is_beside(relation: str, point: Point | None, pose: Pose) -> bool:
-    """Whether a point is on that side of the robot, or near it."""
+    """Return whether a point is on that side of the robot, or near it."""
     if point is None:
         return False
     if relation in ("near", "beside"):
@@ -207,7 +210,7 @@ def _is_beside(relation: str, point: Point | None, pose: Pose) -> bool:
 
 
 def _is_on_side(relation: str, one: Point, point: Point, pose: Pose) -> bool:
-    """Whether the first point is on that side of the second one, seen from the pose of the robot."""
+    """Return whether the first point is on that side of the second one, seen from the pose of the robot."""
     sight = point[0] - pose.x, point[1] - pose.y
     offset = one[0] - point[0], one[1] - point[1]
     ahead = sight[0] * offset[0] + sight[1] * offset[1]
@@ -222,7 +225,7 @@ _AHEAD = 90.0  # degrees to either side
 
 
 class Choices:
-    """The choices of one run after the other; each begins with a seed of its own.
+    """The choices of one run after the other; each run begins with its own seed.
 
     What is chosen depends on the seed and on how many random choices came before: so a run can go on elsewhere.
     """
@@ -231,7 +234,7 @@ class Choices:
         self.seed = self._made = 0
 
     def begin(self, seed: int, made: int = 0) -> None:
-        """A run with so many random choices behind it."""
+        """Begin a run after so many random choices."""
         self.seed, self._made = seed, made
 
     def choose(
@@ -246,7 +249,7 @@ class Choices:
         bearing: Callable[[str], float],
         by_name: bool = False,
     ) -> str:
-        """The nearest of the names, a random one and so on. Raises RobotError where nothing has these parts.
+        """Return the nearest of the names, a random one and so on. Raises RobotError if nothing has these parts.
 
         A number counts them from the nearest one on, or `by_name`.
         """
@@ -286,5 +289,5 @@ class Choices:
 
 
 def _natural(name: str) -> tuple[tuple[int, str], ...]:
-    """A key that sorts `room 2` before `room 10`."""
+    """Return a key that sorts `room 2` before `room 10`."""
     return tuple((int(part), "") if part.isdecimal() else (0, part) for part in re.split(r"(\d+)", name.lower()))

@@ -1,4 +1,4 @@
-"""None"""
+"""What a robot knows of its world, by name: what there is, where it is, and where to stand to open a door."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _BESIDE = 0.7  # metres from the middle of a door
 
 
 def spots_beside(door: Door, pose: Pose) -> list[Pose]:
-    """Before and behind a door, facing it; the one nearer to the pose first."""
+    """Return the poses before and behind a door, facing it; the one nearer to the pose first."""
     (ax, ay), (bx, by), (x, y) = door.start, door.end, door.middle
     length = max(hypot(bx - ax, by - ay), 1e-9)
     across = -(by - ay) / length * _BESIDE, (bx - ax) / length * _BESIDE
@@ -29,9 +29,9 @@ def spots_beside(door: Door, pose: Pose) -> list[Pose]:
 
 
 class Knowledge:
-    """The places, objects, people, doors and zones of a world, and who comes besides; names are in any case.
+    """The places, objects, people, doors and zones of a world, and people who come unexpected.
 
-    Raises RobotError for unknown names. Poses are those of the robot.
+    Names may be in any case; unknown ones raise RobotError. Poses are those of the robot.
     """
 
     def __init__(self, world: World, obstacles: Obstacles, sight: Sight) -> None:
@@ -42,11 +42,11 @@ class Knowledge:
         self._given_to: dict[str, str] = {}
 
     def name_places(self, places: Iterable[Place]) -> None:
-        """The places of a mission beside those of the world, in place of those of the mission before."""
+        """Set the places of a mission, in addition to those of the world."""
         self.world = self._given_world.with_places(places)
 
     def known(self, name: str) -> str:
-        """The name as the world spells it."""
+        """Return the name as the world spells it."""
         names = self.world.names
         for known in (*names.places, *names.objects, *names.people, *self.obstacles.things):
             if known.lower() == name.lower():
@@ -54,15 +54,17 @@ class Knowledge:
         raise RobotError(f"I don't know where '{name}' is")
 
     def is_person(self, name: str) -> bool:
-        """Whether it is the name of a person."""
+        """Return whether it is the name of a person."""
         return name in self.sight.names("person")
 
     def locate(self, name: str, pose: Pose) -> Point:
-        """Where it is; what the robot carries is where the robot is. Raises RobotError for what it hasn't seen."""
+        """Return where it is; what the robot carries is where the robot is. Raises RobotError
+        if it hasn't been seen.
+        """
         return self.where(name) or (pose.x, pose.y)
 
     def where(self, name: str) -> Point | None:
-        """As `locate`; None while the robot carries it."""
+        """Return where it is, like `locate`; None while the robot carries it."""
         known = self.known(name)
         for place in self.world.places:
             if place.name == known:
@@ -75,7 +77,7 @@ class Knowledge:
         return point
 
     def free(self, kind: str) -> list[str]:
-        """The names of a type that the robot knows a place of, without objects that it carries or that are fixed."""
+        """Return the names of a type whose position is known, without objects that are carried or fixed."""
         if kind not in ("object", "person"):
             return list(self.world.names.of(kind))
         things = self.obstacles.things
@@ -83,7 +85,7 @@ class Knowledge:
         return [name for name in names if not getattr(things[name], "fixed", False)]
 
     def described(self, kind: str, parts: Mapping[str, str], pose: Pose) -> list[str]:
-        """The names of a type with these parts that the robot knows a place of or carries, nearest first."""
+        """Return the names of a type with these parts whose position is known or that are carried, nearest first."""
         things, where, like = self.obstacles.things, self.sight.where, without_relations(parts)
         if kind in ("object", "person"):
             known = (name for name in self.sight.names(kind) if where(name) or self.obstacles.is_carried(name))
@@ -103,7 +105,7 @@ class Knowledge:
         return self.door(name).middle if kind == "door" else self.locate(name, pose)
 
     def _holder(self, name: str) -> str:
-        """Who holds a thing, SELF for the robot, "" for nobody."""
+        """Return who holds a thing, SELF for the robot, "" for nobody."""
         return self._given_to.get(name) or (SELF if self.obstacles.is_carried(name) else "")
 
     def choose(
@@ -116,9 +118,9 @@ class Knowledge:
         choices: Choices,
         on_event: OnEvent | None,
     ) -> str:
-        """One of the names of a type. Raises RobotError if there is none with these parts.
+        """Return one of the names of a type. Raises RobotError if there is none with these parts.
 
-        Places are counted from where the mission `began`: the third one isn't another one behind the second.
+        Places are counted from where the mission `began`, so that the third one stays the same.
         """
         listed = not parts and how not in PICKY
         pose = Pose(0.0, 0.0) if listed and how == "random" else where()
@@ -134,7 +136,7 @@ class Knowledge:
         )  # fmt: skip
 
     def nearby_people(self, within: float, pose: Pose) -> list[str]:
-        """The names of the people within so many metres, nearest first: those who walk as far as they are in view."""
+        """Return the names of the people within so many metres, nearest first: of those who walk, the ones in view."""
         found = []
         for name in self.sight.names("person"):
             point = self.sight.where(name)
@@ -143,16 +145,16 @@ class Knowledge:
         return [name for _, name in sorted(found)]
 
     def give(self, name: str, person: str) -> None:
-        """A person has an object from now on."""
+        """Note that a person has an object from now on."""
         self._given_to[name] = self.known(person)
 
     def check_free(self, name: str) -> None:
-        """Raises RobotError for what somebody was given."""
+        """Raise RobotError for an object that somebody was given."""
         if name in self._given_to:
             raise RobotError(f"{said(self._given_to[name])} has {said(name)}")
 
     def check_movable(self, name: str) -> None:
-        """Raises RobotError for an object that can't be picked up, or that the robot hasn't seen."""
+        """Raise RobotError for an object that can't be picked up, or that the robot hasn't seen."""
         known = self.known(name)
         self.check_free(known)
         self.where(known)
@@ -160,18 +162,18 @@ class Knowledge:
             raise RobotError(f"{said(known)} is fixed")
 
     def door(self, name: str) -> Door:
-        """A door as it is now. Raises RobotError for an unknown one."""
+        """Return a door as it is now. Raises RobotError for an unknown one."""
         for door in self.obstacles.doors.values():
             if door.name.lower() == name.lower():
                 return door
         raise RobotError(f"there's no door called '{name}'")
 
     def beside_door(self, name: str, pose: Pose) -> list[Pose]:
-        """Where a robot can stand to move a door: before and behind it, facing it; the nearer one first."""
+        """Return where a robot can stand to move a door, facing it: before and behind it, nearest first."""
         return spots_beside(self.door(name), pose)
 
     def _watched(self, where: Callable[[str], Point | None], is_seen: Callable[[str], bool]) -> tuple[Whereabouts, ...]:
-        """Of those who walk and what isn't known, to the centimetre."""
+        """Return where walking people and unknown things are, to the centimetre."""
         found: list[Whereabouts] = []
         for name in self.sight.watched:
             point = where(name)

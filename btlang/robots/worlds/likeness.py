@@ -20,7 +20,7 @@ def of_thing(
     content: str = "",
     having: tuple[str, ...] = (),
 ) -> Parts:
-    """The parts by which an object or a place can be described, in lower case but for its owner."""
+    """Return the parts by which an object or a place can be described, in lower case except for its owner."""
     several = (*(("state", state) for state in states), *(("use", use) for use in uses))
     pieces = (("part", text) for text in chain.from_iterable(map(_with_shorter, having)))
     named = [("color", _spelt(color)), ("kind", kind), ("size", size), ("content", content), *several, *pieces]
@@ -28,7 +28,7 @@ def of_thing(
 
 
 def head_of(name: str) -> str:
-    """The kind of what has a name of several words: `parcel` of "big parcel", `room` of "room 1"; else ""."""
+    """Return the kind in a name of several words: `parcel` of "big parcel", `room` of "room 1"; else ""."""
     words = name.split()
     if len(words) < 2:
         return ""
@@ -37,19 +37,21 @@ def head_of(name: str) -> str:
 
 
 def of_person(wears: tuple[str, ...], gesture: str) -> Parts:
-    """The same of a person: a red coat is a coat too."""
+    """Return the parts by which a person can be described: a red coat is a coat too."""
     clothes = (("clothing", text) for text in chain.from_iterable(map(_with_shorter, wears)))
     return tuple((name, text.lower()) for name, text in (*clothes, ("gesture", gesture)) if text)
 
 
 def wears(worn: tuple[str, ...], parts: Mapping[str, str]) -> bool:
-    """Whether one of the clothes has the colour and the name that are asked for."""
+    """Return whether one of the clothes has the wanted colour and name."""
     wanted = {*_spelt(parts.get("color", "")).split(), *parts.get("clothing", "").split()}
     return not wanted or any(wanted <= {*_spelt(one.lower()).split()} for one in worn)
 
 
 def unseen(kind: str, parts: Mapping[str, str], behind: str = "") -> str:
-    """What is said where the robot knows nothing like that: `I haven't seen a red cup`; `behind` follows the thing."""
+    """Return the sentence that the robot knows nothing like that: `I haven't seen a red cup`; `behind` follows the
+    thing.
+    """
     if kind == "person" and "named" not in parts:
         return f"I don't see anybody{_person(parts)}{behind}"
     words = [parts[name] for name in ("size", "state", "color", "kind", "named") if name in parts]
@@ -77,7 +79,7 @@ def _article(word: str) -> str:
 
 
 def _with_shorter(text: str) -> Iterator[str]:
-    """What is a red lid is a lid, too."""
+    """Return the parts with shorter forms: a red lid is a lid, too."""
     yield text
     if " " in text:
         yield text.split(" ", 1)[1]

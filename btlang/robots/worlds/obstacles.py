@@ -12,11 +12,13 @@ Disc = tuple[float, float, float]
 
 
 class Obstacles:
-    """The obstacles of one run. `version` changes whenever something moves, so that others may cache; `layout` only
-    when something that stands still does, and `walls` when a door does.
+    """The obstacles of one run.
 
-    `discs` are those of what stands on the floor, `walking` those of people who move by themselves. Plain numbers:
-    numpy costs more to import than most runs take, so that only what scans or plans imports it.
+    `version` changes whenever something moves, so that others may cache; `layout` only when something that stands still
+    does, and `walls` when a door does. `discs` are those of things on the floor, `walking` those of people who move by
+    themselves.
+
+    Plain numbers: numpy costs more to import than most runs take, so that only what scans or plans imports it.
     """
 
     def __init__(self, world: World) -> None:
@@ -38,41 +40,41 @@ class Obstacles:
         self._collect_discs()
 
     def move(self, name: str, x: float, y: float) -> None:
-        """Puts an object or a person who stands somewhere else. Raises KeyError for an unknown name."""
+        """Put an object or a person who stands somewhere else. Raises KeyError for an unknown name."""
         self.things[name] = self.things[name].replace(x=x, y=y)
         self._collect_discs()
 
     def walk(self, discs: dict[str, Disc]) -> None:
-        """Those who walk are here now, and nowhere else."""
+        """Set where everybody who walks is now."""
         self.walking = discs
         self.version += 1
 
     def add(self, thing: Thing) -> None:
-        """Somebody who walks, and whom the world doesn't know."""
+        """Add somebody who walks, and whom the world doesn't know."""
         self.things[thing.name] = thing
         self._away.add(thing.name)
 
     def start_walking(self, name: str) -> None:
-        """Somebody who only stood so far walks from now on."""
+        """Let somebody who only stood so far walk from now on."""
         self._away.add(name)
         self._collect_discs()
 
     def pick_up(self, name: str) -> None:
-        """Takes an object off the floor: it is no obstacle while carried."""
+        """Take an object off the floor: it is no obstacle while carried."""
         self._carried.add(name)
         self._collect_discs()
 
     def put_down(self, name: str, x: float, y: float) -> None:
-        """The opposite of `pick_up`."""
+        """Put an object down, as the opposite of `pick_up`."""
         self._carried.discard(name)
         self.move(name, x, y)
 
     def is_carried(self, name: str) -> bool:
-        """Whether the robot holds it."""
+        """Return whether the robot holds it."""
         return name in self._carried
 
     def point(self, name: str) -> Point | None:
-        """Where an object or a person is; None for what is carried, and for who isn't there."""
+        """Return where an object or a person is; None if it is carried, or they aren't there."""
         if name in self.walking:
             return self.walking[name][:2]
         if name in self._carried or name in self._away:
@@ -80,16 +82,16 @@ class Obstacles:
         return self.things[name].x, self.things[name].y
 
     def swing(self, name: str, is_open: bool) -> None:
-        """Opens or closes a door. Raises KeyError for an unknown name."""
+        """Open or close a door. Raises KeyError for an unknown name."""
         self.doors[name] = self.doors[name].replace(open=is_open)
         self._collect_walls()
 
     def nearest(self, x: float, y: float) -> tuple[float, str]:
-        """Metres from the point to the nearest surface, and the name of what it is ("a wall" if fixed)."""
+        """Return the metres from the point to the nearest surface, and its name ("a wall" if fixed)."""
         return min(self.nearest_standing(x, y), self.nearest_walking(x, y))
 
     def nearest_standing(self, x: float, y: float) -> tuple[float, str]:
-        """As `nearest`, but for people who walk."""
+        """Return the nearest like `nearest`, without people who walk."""
         distance, name = inf, "nothing"
         if self._spans:
             distance, name = self._to_segments(x, y), "a wall"
@@ -100,7 +102,7 @@ class Obstacles:
         return distance, name
 
     def nearest_walking(self, x: float, y: float) -> tuple[float, str]:
-        """As `nearest`, of people who walk."""
+        """Return the nearest like `nearest`, only of people who walk."""
         distance, name = inf, "nothing"
         for person, (disc_x, disc_y, radius) in self.walking.items():
             gap = hypot(disc_x - x, disc_y - y) - radius
@@ -109,8 +111,8 @@ class Obstacles:
         return distance, name
 
     def free_way(self, x: float, y: float, heading: float, radius: float) -> float:
-        """Metres that a disc can move from a point in a direction (degrees) until it touches something; inf if nothing
-        is there.
+        """Return the metres that a disc can move from a point in a direction (degrees) until it touches something, else
+        inf.
         """
         c, s = cos(radians(heading)), sin(radians(heading))
         free = inf
@@ -129,7 +131,7 @@ class Obstacles:
         return max(0.0, free)
 
     def wall_between(self, a: Point, b: Point) -> bool:
-        """True when a wall or a closed door (not furniture) crosses the straight line from a to b."""
+        """Return whether a wall or a closed door (not furniture) crosses the straight line from a to b."""
         dx, dy = b[0] - a[0], b[1] - a[1]
         for start_x, start_y, end_x, end_y in self._walls:
             span_x, span_y = end_x - start_x, end_y - start_y
@@ -172,7 +174,7 @@ class Obstacles:
 
 
 def _to_segment(ax: float, ay: float, bx: float, by: float, radius: float) -> float:
-    """Metres that a disc at the origin can move along x until it touches a segment."""
+    """Return the metres that a disc at the origin can move along x until it touches a segment."""
     ends = ((ax, ay), (bx, by))
     free = min((x - sqrt(radius * radius - y * y) for x, y in ends if x > 0.0 and abs(y) < radius), default=inf)
     dx, dy = bx - ax, by - ay

@@ -25,10 +25,10 @@ _MOST_AREA = 40_000  # square metres: the grid of a planner takes 250 MB
 
 
 class ClearanceGrid:
-    """Square cells of `size` metres. `xs` and `ys` are their centres, a row of the arrays has one y. `steps` lead from
-    a cell to its neighbours: what to add to its number, and the length in cells.
+    """Square cells of `size` metres. Raises RobotError if the world is too large.
 
-    Raises RobotError where the world is too large.
+    `xs` and `ys` are their centres, a row of the arrays has one y. `steps` lead from a cell to its neighbours: what to
+    add to its number, and the length in cells.
     """
 
     def __init__(self, world: World, size: float) -> None:
@@ -51,7 +51,7 @@ class ClearanceGrid:
         )
 
     def clearance(self, obstacles: Obstacles) -> Array:
-        """Metres from each cell to the nearest wall, closed door or box, 0 inside a box."""
+        """Return the metres from each cell to the nearest wall, closed door or box, 0 inside a box."""
         nearest2 = np.full(self.xs.shape, np.inf)
         for segment in obstacles.segments:
             nearest2 = np.minimum(nearest2, self._squared(segment))
@@ -62,13 +62,13 @@ class ClearanceGrid:
         return clearance
 
     def to_polygon(self, points: Sequence[Point]) -> Array:
-        """Metres from each cell to a polygon, 0 inside."""
+        """Return the metres from each cell to a polygon, 0 inside."""
         distances = self._to_border(points)
         distances[self._inside(points)] = 0.0
         return distances
 
     def depth(self, points: Sequence[Point]) -> Array:
-        """Metres from each cell in a polygon to its border, 0 outside."""
+        """Return the metres from each cell in a polygon to its border, 0 outside."""
         distances = self._to_border(points)
         distances[~self._inside(points)] = 0.0
         return distances
@@ -81,32 +81,32 @@ class ClearanceGrid:
         return distances
 
     def cell_of(self, point: Point) -> int:
-        """The cell in which a point lies; of one outside the grid the nearest."""
+        """Return the cell of a point; the nearest one for a point outside the grid."""
         column = int((point[0] - self.origin[0]) / self.size)
         row = int((point[1] - self.origin[1]) / self.size)
         return min(max(row, 0), self.rows - 1) * self.columns + min(max(column, 0), self.columns - 1)
 
     def centre(self, cell: int) -> Point:
-        """Of a cell."""
+        """Return the centre of a cell."""
         row, column = divmod(cell, self.columns)
         return self.origin[0] + self.size * (column + 0.5), self.origin[1] + self.size * (row + 0.5)
 
     def nearest_free(self, point: Point, blocked: Bools, within: float) -> int | None:
-        """The cell nearest to a point that isn't blocked, None where none is within so many metres."""
+        """Return the cell nearest to a point that isn't blocked, None if there is none within so many metres."""
         distances = np.hypot(self.xs - point[0], self.ys - point[1]).ravel()
         distances[blocked] = np.inf
         cell = int(distances.argmin())
         return cell if distances[cell] <= within else None
 
     def is_clear(self, clearance: Array, a: Point, b: Point, room: float) -> bool:
-        """Whether all cells on a straight line have so many metres of room."""
+        """Return whether all cells on a straight line have so many metres of room."""
         count = ceil(hypot(b[0] - a[0], b[1] - a[1]) / (self.size / 2)) + 1
         columns = (np.linspace(a[0], b[0], count) - self.origin[0]) / self.size
         rows = (np.linspace(a[1], b[1], count) - self.origin[1]) / self.size
         return bool((clearance[rows.astype(int), columns.astype(int)] >= room).all())
 
     def _squared(self, segment: tuple[float, float, float, float]) -> Array:
-        """Squared metres from each cell to a segment."""
+        """Return the squared metres from each cell to a segment."""
         ax, ay, bx, by = segment
         dx, dy = bx - ax, by - ay
         t = np.clip(((self.xs - ax) * dx + (self.ys - ay) * dy) / max(dx**2 + dy**2, 1e-12), 0.0, 1.0)
@@ -123,7 +123,7 @@ class ClearanceGrid:
 
 
 def smooth(points: list[Point], is_clear: Callable[[Point, Point], bool]) -> list[Point]:
-    """Leaves out points of a path where the straight line is clear."""
+    """Leave out points of a path if the straight line is clear."""
     kept, at = [points[0]], 0
     while at < len(points) - 1:
         far = min(len(points) - 1, at + 60)
@@ -142,9 +142,9 @@ _GOAL_SEARCH = 0.15
 
 
 class PathPlanner:
-    """Plans for a round robot among what stands still, around zones to keep out of; slow zones cost as they slow it.
+    """Plans for a round robot among standing obstacles, around zones to keep out of.
 
-    Raises RobotError where the world is too large.
+    Slow zones cost as much as they slow it. Raises RobotError if the world is too large.
     """
 
     def __init__(self, world: World, obstacles: Obstacles, radius: float, zones: Zones | None = None) -> None:
@@ -161,7 +161,8 @@ class PathPlanner:
         self._costs: list[float] = []
 
     def path(self, start: Point, goal: Point, reach: float = 0.0, around: Sequence[Disc] = ()) -> list[Point] | None:
-        """Points at most 0.1 m apart to the goal, or to a spot within reach of it without a wall between; None: no way.
+        """Return points at most 0.1 m apart to the goal, or to a spot within reach of it without a wall between; None:
+        no way.
 
         The last point is the goal itself, or up to 0.15 m beside one that is too near to an obstacle. The way leads
         `around` these discs, too.
@@ -209,7 +210,7 @@ class PathPlanner:
         self._planned = planned
 
     def _search(self, first: int, goal: Point, reach: float) -> list[int] | None:
-        """A*: cells near obstacles cost up to four times as much, blocked ones have cost 0."""
+        """Search with A*: cells near obstacles cost up to four times as much, blocked ones have cost 0."""
         costs, columns, steps = self._costs, self._columns, self._grid.steps
         goal_x, goal_y = (goal[0] - self._origin[0]) / CELL - 0.5, (goal[1] - self._origin[1]) / CELL - 0.5
         near = reach / CELL
@@ -241,7 +242,7 @@ class PathPlanner:
         return None
 
     def _smooth(self, points: list[Point]) -> list[Point]:
-        """Pulls the path straight where that leaves comfortable room, then spaces its points evenly."""
+        """Pull the path straight where that leaves comfortable room, then space its points evenly."""
         room = self._comfort - CELL / 2
         return _evenly(smooth(points, lambda a, b: self._grid.is_clear(self._clearance, a, b, room)))
 
@@ -255,7 +256,7 @@ def _walk_back(came: dict[int, int], cell: int) -> list[int]:
 
 
 def _evenly(points: list[Point]) -> list[Point]:
-    """The same polyline with a point at least every CELL metres."""
+    """Return the same polyline with a point at least every CELL metres."""
     spaced = [points[0]]
     for a, b in pairwise(points):
         pieces = max(1, ceil(hypot(b[0] - a[0], b[1] - a[1]) / CELL))
@@ -271,7 +272,7 @@ _SEARCH = 2.0  # metres to the nearest free cell
 
 
 class Walkways:
-    """Ways around walls, closed doors and furniture for somebody of a radius in metres."""
+    """Ways around walls, closed doors and furniture for somebody with a radius in metres."""
 
     def __init__(self, world: World, obstacles: Obstacles, radius: float) -> None:
         self._grid, self._obstacles, self._room = ClearanceGrid(world, _CELL), obstacles, radius + _ROOM
@@ -281,7 +282,7 @@ class Walkways:
         self._distances: dict[int, list[float]] = {}
 
     def path(self, start: Point, goal: Point) -> list[Point]:
-        """The corners of the way, from the start on; empty if there is none."""
+        """Return the corners of the way, from the start on; empty if there is none."""
         self._refresh()
         first = self._cell(start)
         last = self._cell(goal)
@@ -297,7 +298,9 @@ class Walkways:
         return smooth([start, *map(self._grid.centre, cells[1:-1]), goal], self.is_clear)
 
     def is_clear(self, a: Point, b: Point) -> bool:
-        """Whether the straight line leaves room beside walls and furniture; who stands too near to one may leave it."""
+        """Return whether the straight line leaves room beside walls and furniture; somebody too near to one may leave
+        it.
+        """
         self._refresh()
         free, grid = self._free, self._grid
         (x, y), (low_x, low_y), size, columns = a, grid.origin, grid.size, grid.columns
@@ -315,12 +318,12 @@ class Walkways:
         return True
 
     def is_free(self, point: Point) -> bool:
-        """Whether somebody can stand there."""
+        """Return whether somebody can stand there."""
         self._refresh()
         return self._free[self._grid.cell_of(point)]
 
     def near(self, point: Point, random: Random, within: float, good: Callable[[Point], bool]) -> Point | None:
-        """A good free point by chance, to which a straight line leads; None where a few tries find none."""
+        """Return a random free point to which a straight line leads; None if a few tries find none."""
         for _ in range(12):
             x, y = point[0] + random.uniform(-within, within), point[1] + random.uniform(-within, within)
             if self.is_free((x, y)) and good((x, y)) and self.is_clear(point, (x, y)):
@@ -341,7 +344,7 @@ class Walkways:
         return cell if self._free[cell] else self._grid.nearest_free(point, self._blocked, _SEARCH)
 
     def _to(self, goal: int) -> list[float]:
-        """Dijkstra's distances of all cells from a goal, in cells."""
+        """Return Dijkstra's distances of all cells from a goal, in cells."""
         if goal in self._distances:
             return self._distances[goal]
         if len(self._distances) >= _MOST_GOALS:

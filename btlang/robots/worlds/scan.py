@@ -28,7 +28,6 @@ class Scanner:
         self._ranges: Array = np.empty(0)
 
     def read(self, pose: Pose) -> Array:
-        """See `scan`."""
         if pose is not self._pose or self._version != self._obstacles.version:
             obstacles = self._obstacles
             if self._walls != obstacles.walls:
@@ -41,7 +40,7 @@ class Scanner:
 
 
 def scan(segments: Array, discs: Array, pose: Pose, reach: float) -> Array:
-    """360 distances in metres, index = degrees left of the heading; inf beyond `reach` metres.
+    """Return 360 distances in metres, index = degrees left of the heading; inf beyond `reach` metres.
 
     A row of `segments` is x, y of one end and of the other, a row of `discs` is x, y and radius.
     """
@@ -58,9 +57,9 @@ def scan(segments: Array, discs: Array, pose: Pose, reach: float) -> Array:
 
 
 def around(ranges: Array, angles: Array, at: Pose, step: float = 1.0) -> Array:
-    """360 distances from a robot's centre, index = degrees left of its heading; NaN where no valid beam looked.
+    """Return 360 distances from a robot's centre, index = degrees left of its heading; NaN if no valid beam looked.
 
-    `ranges` are metres that a scanner measured, inf where nothing was in range, NaN for a beam that says nothing, at
+    `ranges` are metres that a scanner measured, inf if nothing was in range, NaN for a beam without a measurement, at
     `angles` in radians left of its own front; two neighbours are `step` degrees apart. `at` is its pose as seen from
     the centre.
     """
@@ -77,7 +76,7 @@ def around(ranges: Array, angles: Array, at: Pose, step: float = 1.0) -> Array:
 
 
 def _covered(angles: Array, step: float) -> npt.NDArray[np.int64]:
-    """The degrees that beams cover which are so many degrees apart."""
+    """Return the degrees that are covered by beams so many degrees apart."""
     half = min(180, max(0, round(step / 2)))
     middles = np.rint(np.degrees(angles)).astype(int)
     covered: npt.NDArray[np.int64] = (middles[:, None] + np.arange(-half, half + 1)).ravel() % 360
@@ -85,15 +84,15 @@ def _covered(angles: Array, step: float) -> npt.NDArray[np.int64]:
 
 
 def summary(ranges: Array, radius: float) -> tuple[float, float]:
-    """Give two figures of a scan around a robot: metres that are free around its rim, -inf if a beam is missing, and a
-    number that changes whenever the ranges do.
+    """Return the metres that are free around a robot's rim, -inf if a beam is missing, and a number that changes with
+    the ranges.
     """
     room = -inf if np.isnan(ranges).any() else float(ranges.min()) - radius
     return room, float(ranges[np.isfinite(ranges)].sum())
 
 
 def as_measured(ranges: Array, at: Pose) -> Array:
-    """A scan around the robot's centre as a scanner measures it that is at this pose of the robot."""
+    """Return a scan around the robot's centre as a scanner at this pose of the robot measures it."""
     if at == CENTRE:
         return ranges
     measured = around(ranges, _DEGREES, at.inverse)
@@ -102,7 +101,7 @@ def as_measured(ranges: Array, at: Pose) -> Array:
 
 
 def _to_segments(segments: Array, pose: Pose, beams: Array) -> Array:
-    """Solves centre + t * beam = start + u * span for every span (rows) and beam (columns), with few temporaries."""
+    """Solve centre + t * beam = start + u * span for every span (rows) and beam (columns), with few temporaries."""
     fx, fy = segments[:, 0] - pose.x, segments[:, 1] - pose.y
     dx, dy = segments[:, 2] - segments[:, 0], segments[:, 3] - segments[:, 1]
     cross = np.array((dy, -dx)).T @ beams

@@ -14,9 +14,9 @@ _FRESH = 2.0  # seconds for which somebody seen counts as still there
 
 
 class Sight:
-    """What is in view, and what the robot knows of the places of people and objects.
+    """What is in view, and what the robot knows of the positions of people and objects.
 
-    `find` gives the point of a name if the robot at a pose has it in view, else None; `report` gets the name of what
+    `find` returns the point of a name if the robot at a pose has it in view, else None; `report` gets the name of what
     is seen for the first time.
     """
 
@@ -41,7 +41,7 @@ class Sight:
                     self._last[person.name] = (person.x, person.y), -_FRESH
 
     def watch(self, name: str, kind: str) -> None:
-        """From now on its place is known only as far as it is seen: who begins to walk, or comes unexpected."""
+        """Know its position only from sightings from now on: it begins to walk, or comes unexpected."""
         if name not in self.watched:
             self.watched[name] = None
             if name in self._kinds and (point := self._obstacles.point(name)) is not None:
@@ -49,11 +49,11 @@ class Sight:
         self._kinds[name] = kind
 
     def forget(self) -> None:
-        """Forgets where it saw what moves or isn't known."""
+        """Forget where walking people and unknown things were seen."""
         self._last.clear()
 
     def look(self, now: float, pose: Pose) -> None:
-        """Notes where everything is that can be seen at second `now`."""
+        """Note where everything is that can be seen at second `now`."""
         self._now = now
         if not self.watched or now + 1e-9 < self._next:
             return
@@ -62,7 +62,7 @@ class Sight:
             self._look_for(name, pose)
 
     def where(self, name: str) -> Point | None:
-        """Where it is as far as the robot knows; None for what it hasn't seen and what it carries."""
+        """Return where it is as far as the robot knows; None if it hasn't been seen or is carried."""
         if name not in self.watched:
             return self._obstacles.point(name)
         if self._obstacles.is_carried(name) or name not in self._last:
@@ -70,30 +70,30 @@ class Sight:
         return self._last[name][0]
 
     def sees(self, name: str, pose: Pose) -> bool:
-        """Whether it is in view at this moment."""
+        """Return whether it is in view at this moment."""
         return self._look_for(name, pose) is not None
 
     def is_fresh(self, name: str) -> bool:
-        """Whether its place is known as of now, or nearly so."""
+        """Return whether its position is known as of now, or nearly so."""
         return name not in self.watched or (name in self._last and self._now - self._last[name][1] <= _FRESH)
 
     def lost(self, name: str) -> str | None:
-        """Why who arrives where it was seen last doesn't find it; None where its place is fresh."""
+        """Return why somebody who arrives at the last position doesn't find it; None if the position is fresh."""
         if self.is_fresh(name):
             return None
         is_person = self._kinds.get(name) == "person"
         return f"I've lost sight of {said(name)}" if is_person else f"{said(name)} is no longer where I saw it"
 
     def is_seen(self, name: str) -> bool:
-        """Whether a watched thing was in view at the last look."""
+        """Return whether a watched thing was in view at the last look."""
         return name in self._last and self._now - self._last[name][1] < _PERIOD
 
     def seen(self, kind: str, pose: Pose) -> list[str]:
-        """The names of a type that are in view, nearest first."""
+        """Return the names of a type that are in view, nearest first."""
         return list(self.in_view(kind, pose))
 
     def in_view(self, kind: str, pose: Pose) -> dict[str, Point]:
-        """Where those of a type are that are in view, nearest first."""
+        """Return the positions of those of a type that are in view, nearest first."""
         found = []
         for name, of in self._kinds.items():
             if of == kind and (point := self._look_for(name, pose)) is not None:
@@ -101,11 +101,11 @@ class Sight:
         return {name: point for _, name, point in sorted(found)}
 
     def names(self, kind: str) -> list[str]:
-        """All names of a type that somebody has given it, or that came unexpected."""
+        """Return all names of a type that were given, or that came unexpected."""
         return [name for name, of in self._kinds.items() if of == kind]
 
     def _look_for(self, name: str, pose: Pose) -> Point | None:
-        """Where it is if it is in view, which is noted: what is seen in between two looks is known, too."""
+        """Return where it is if it is in view, and note it: what is seen between two looks is known, too."""
         point = self._find(name, pose)
         if point is not None and name in self.watched:
             self._last[name] = point, self._now
@@ -118,7 +118,7 @@ class Sight:
 class View:
     """The sensors of a body that recognise people and objects. Walls and closed doors hide what is behind them.
 
-    `joint` says where a joint of the robot stands, in degrees.
+    `joint` returns the angle of a joint of the robot, in degrees.
     """
 
     def __init__(self, obstacles: Obstacles, body: Body, joint: Callable[[str], float]) -> None:
@@ -126,7 +126,7 @@ class View:
         self._obstacles, self._joint = obstacles, joint
 
     def point(self, name: str, pose: Pose) -> Point | None:
-        """Where something is that a robot at this pose has in view; None for what it hasn't."""
+        """Return the position of something in view of a robot at this pose; None if it isn't in view."""
         point = self._obstacles.point(name)
         return point if point is not None and self._has(point, pose) else None
 

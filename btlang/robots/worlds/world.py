@@ -22,8 +22,9 @@ _WEEK = 7
 
 
 class Visits(Record):
-    """Once on each of these days (0 is Monday), not before `start` and gone by `end` (seconds since midnight), for
-    about `stays` seconds: half of it to one and a half.
+    """One visit on each of these days (0 is Monday), not before `start` and gone by `end` (seconds since midnight).
+
+    It lasts about `stays` seconds: half of it to one and a half.
     """
 
     start: float
@@ -32,7 +33,8 @@ class Visits(Record):
     days: tuple[int, ...] = tuple(range(_WEEK))
 
     def next(self, now: float, weekday: int, seed: str) -> tuple[float, float]:
-        """When the next visit begins and ends, in seconds since the midnight before day 0, which is that `weekday`.
+        """Return when the next visit begins and ends, in seconds since the midnight before day 0, which is that
+        `weekday`.
 
         It follows from the day and the seed alone. One that would have begun before `now` isn't made up for.
         """
@@ -58,7 +60,7 @@ _UNDRAWN = (
 
 
 class Place(Record):
-    """A named point to stand on; `facing` (degrees) is None where any direction will do, `kind` may be "room".
+    """A named point to stand on; `facing` (degrees) is None for any direction, `kind` may be "room".
 
     It may be described as an object is.
     """
@@ -75,14 +77,14 @@ class Place(Record):
 
     @property
     def parts(self) -> Parts:
-        """What it can be described by."""
+        """The parts that it can be described by."""
         return of_thing(self.kind or head_of(self.name), self.color, self.sized, self.state, self.owner)
 
 
 class Thing(Record):
-    """An object or a person: a disc that the robot sees, walks around and bumps into.
+    """An object or a person: a disc that the robot sees, drives around and bumps into.
 
-    A thing that isn't `known` the robot knows only from where its sensors have seen it.
+    If a thing isn't `known`, the robot knows it only from where its sensors have seen it.
     """
 
     name: str
@@ -93,11 +95,11 @@ class Thing(Record):
 
     @property
     def parts(self) -> Parts:
-        """What it can be described by: ("color", "red")."""
+        """The parts that it can be described by: ("color", "red")."""
         return ()
 
     def fits(self, parts: Mapping[str, str]) -> bool:
-        """Whether a description with these parts is one of it."""
+        """Return whether a description with these parts fits it."""
         return set(parts.items()) <= set(self.parts)
 
 
@@ -105,8 +107,8 @@ class WorldObject(Thing):
     """An object. `size` is the metres of its longest side, `uses` are what it is good for: "drink".
 
     It may be `sized` in a word ("small"), have a `state` ("dirty"), belong to its `owner`, hold its `content` ("water")
-    and be one `having` parts ("red lid").
-    `switch` is "on" or "off" where it can be switched; what is `fixed` can't be picked up.
+    and be one `having` parts ("red lid"). `switch` is "on" or "off" if it can be switched; a `fixed` object can't be
+    picked up.
     """
 
     kind: str = ""
@@ -123,13 +125,13 @@ class WorldObject(Thing):
 
     @property
     def parts(self) -> Parts:
-        """What it can be described by."""
+        """The parts that it can be described by."""
         kind = self.kind or head_of(self.name)
         return of_thing(kind, self.color, self.sized, self.state, self.owner, self.uses, self.content, self.having)
 
 
 class Stop(Record):
-    """A point of a route: nobody sets out for it before second `at` of the run, and stays there for `stays` seconds."""
+    """A point of a route: nobody leaves for it before second `at` of the run, and they stay for `stays` seconds."""
 
     x: float
     y: float
@@ -138,20 +140,20 @@ class Stop(Record):
 
 
 class PersonUtterance(Record):
-    """What somebody calls out at a second of the run."""
+    """A text that somebody calls out at a second of the run."""
 
     at: float
     text: str
 
 
 class Person(Thing):
-    """Somebody who may come, walk along a route, speak, answer, follow the robot, and leave; seconds of the run.
+    """Somebody who may come, walk along a route, speak, answer, follow the robot, and leave; in seconds of the run.
 
-    `walks` is the route, which is walked over and over where `again` is true; who `wanders` walks from place to place.
-    `answers` go by a word of the question, "*" by any, and take `answers_after` seconds. `follows` is from 0 to 1, how
-    well somebody keeps up when guided: 1 always. What he or she `refuses` isn't taken from the robot. `visits` say when
-    somebody comes in place of `comes` and `leaves`; the `kind` may be "guest"; what somebody `asks` is
-    asked now and then near the robot.
+    `walks` is the route, which is walked over and over if `again` is true; a person who `wanders` walks from place to
+    place. `answers` are by a word of the question, "*" for any, and take `answers_after` seconds. `follows` is from 0
+    to 1, how well they keep up when guided: 1 always. What they `refuse` isn't taken from the robot. `visits` are when
+    they come in place of `comes` and `leaves`; the `kind` may be "guest"; what they `ask` is asked now and then near
+    the robot.
     """
 
     comes: float = 0.0
@@ -173,30 +175,30 @@ class Person(Thing):
 
     @property
     def parts(self) -> Parts:
-        """What he or she can be described by."""
+        """The parts that they can be described by."""
         kind = (("kind", self.kind.lower()),) if self.kind else ()
         return (*of_person(self.wears, self.gesture), *kind)
 
     def fits(self, parts: Mapping[str, str]) -> bool:
-        """Whether a description with these parts is one of him or her."""
+        """Return whether a description with these parts fits them."""
         is_kind = parts.get("kind", "") in ("", self.kind.lower())
         return is_kind and wears(self.wears, parts) and parts.get("gesture", "") in ("", self.gesture.lower())
 
     @property
     def comes_later(self) -> bool:
-        """Whether he or she isn't there at the start."""
+        """Whether they aren't there at the start."""
         return bool(self.comes or self.visits)
 
     @property
     def moves(self) -> bool:
-        """Whether he or she is ever somewhere else by himself or herself."""
+        """Whether they ever move by themselves."""
         return bool(self.walks or self.wanders or self.comes_later or self.leaves < NEVER)
 
 
 class Zone(Record):
     """A polygon that the robot keeps out of, or drives through at no more than `speed` metres a second.
 
-    One that is an area means nothing by itself; a mission may close it, or stay in it.
+    An area has no effect by itself; a mission may close it, or stay in it.
     """
 
     name: str
@@ -215,12 +217,12 @@ class Zone(Record):
         return self.kind == SLOW
 
     def contains(self, point: Point) -> bool:
-        """By the even-odd rule."""
+        """Return whether a point is inside, by the even-odd rule."""
         return contains(self.points, point)
 
 
 class Door(Record):
-    """A door between two points of a wall. Closed, it is a piece of wall."""
+    """A door between two points of a wall. A closed one is a piece of wall."""
 
     name: str
     start: Point
@@ -229,7 +231,7 @@ class Door(Record):
 
     @property
     def middle(self) -> Point:
-        """Where it is."""
+        """The point in the middle."""
         return (self.start[0] + self.end[0]) / 2, (self.start[1] + self.end[1]) / 2
 
 
@@ -242,11 +244,11 @@ class FurnitureBox(Record):
     height: float
 
     def contains(self, point: Point) -> bool:
-        """True on its edge too."""
+        """Return whether a point is inside, or on the edge."""
         return abs(point[0] - self.x) <= self.width / 2 and abs(point[1] - self.y) <= self.height / 2
 
     def edges(self) -> tuple[Segment, ...]:
-        """Its four sides."""
+        """Return its four sides."""
         left, right = self.x - self.width / 2, self.x + self.width / 2
         low, high = self.y - self.height / 2, self.y + self.height / 2
         corners = ((left, low), (right, low), (right, high), (left, high))
@@ -256,9 +258,9 @@ class FurnitureBox(Record):
 class WorldFault(Record):
     """Something that goes wrong from `start` until `end` (seconds of the run).
 
-    kind "blocked": no way leads to `place`. "slip": of the motion of `wheel` ("left", "right", "both") the share `grip`
-    (0 to 1) reaches the floor. "silent scanner": no scans. "weak hand": `hand` drops what it has held for `seconds`.
-    "dock": connecting to the dock at `place`, "" for any, fails, so many `times`.
+    kind "blocked": no way leads to `place`. "slip": the share `grip` (0 to 1) of the motion of `wheel` ("left",
+    "right", "both") reaches the floor. "silent scanner": no scans. "weak hand": `hand` drops what it has held for
+    `seconds`. "dock": connecting to the dock at `place`, "" for any, fails, so many `times`.
     """
 
     kind: str
@@ -273,12 +275,12 @@ class WorldFault(Record):
 
 
 def said(name: str) -> str:
-    """The name as it is spoken of: "the lab", but "Alice" and the spot "(1.00, 2.00)"."""
+    """Return the name as it is spoken of: "the lab", but "Alice" and the spot "(1.00, 2.00)"."""
     return name if name[:1].isupper() or name[:1] == "(" else f"the {name}"
 
 
 class WorldNames(Record):
-    """The names a mission may use, as the world file spells them; `features` are what they are like, by their type."""
+    """The names a mission may use, as the world file spells them; `features` are their parts, by their type."""
 
     places: tuple[str, ...] = ()
     objects: tuple[str, ...] = ()
@@ -288,7 +290,7 @@ class WorldNames(Record):
     features: Mapping[str, tuple[tuple[str, Parts], ...]] = {}
 
     def of(self, kind: str) -> tuple[str, ...]:
-        """Those of a type: a key of `by_type`."""
+        """Return the names of a type: a key of `by_type`."""
         return self.by_type.get(kind, ())
 
     @property
@@ -301,12 +303,12 @@ class WorldNames(Record):
 
 
 class World(Record):
-    """A world as its file describes it. `walls` are polylines; a dock is also the place "dock", and each of further
-    `docks` the place of its name.
+    """A world as its file describes it.
 
-    `clock` is the time of day at its start, in seconds since midnight, on a `weekday` (0: Monday); `seed` is that of
-    runs which are given none. `ordinals` says what `the second room` counts by: the "way" from the robot, or the
-    "name". `home` is the place that is meant by that word.
+    `walls` are polylines; a dock is also the place "dock", and each of further `docks` the place of its name. `clock`
+    is the time of day at its start, in seconds since midnight, on a `weekday` (0: Monday); `seed` is the default for
+    runs. `ordinals` is what `the second room` counts by: the "way" from the robot, or the "name". `home` is the place
+    that this word means.
     """
 
     start: Pose
@@ -333,7 +335,7 @@ class World(Record):
         return self.docks if self.dock is None else (self.dock, *self.docks)
 
     def docks_from(self, pose: Pose) -> tuple[Place, ...]:
-        """Those of `all_docks`, the nearest to a pose first."""
+        """Return `all_docks`, the nearest to a pose first."""
         return tuple(sorted(self.all_docks, key=lambda dock: pose.distance_to((dock.x, dock.y))))
 
     @property
@@ -350,22 +352,22 @@ class World(Record):
         return WorldNames(places, objects, people, zones, doors, features)
 
     def wall_segments(self) -> tuple[Segment, ...]:
-        """The walls in straight pieces, without furniture."""
+        """Return the walls in straight pieces, without furniture."""
         return tuple((*a, *b) for wall in self.walls for a, b in pairwise(wall))
 
     def segments(self) -> tuple[Segment, ...]:
-        """All that is fixed: walls first, then the sides of boxes."""
+        """Return all that is fixed: walls first, then the sides of boxes."""
         return self.wall_segments() + tuple(edge for box in self.boxes for edge in box.edges())
 
     def with_places(self, places: Iterable[Place]) -> World:
-        """The world with more named places; each replaces a place of the same name."""
+        """Return the world with more named places; each replaces a place of the same name."""
         named = {place.name.lower(): place for place in places}
         others = tuple(known for known in self.places if known.name.lower() not in named)
         changed: World = self.replace(places=(*others, *named.values()))
         return changed
 
     def as_map(self) -> dict[str, Any]:
-        """What is drawn of it, as in a world file."""
+        """Return what is drawn of it, as in a world file."""
         found: dict[str, Any] = {
             kind: [each.as_dict(_UNDRAWN) for each in getattr(self, kind)]
             for kind in ("boxes", "places", "objects", "people", "zones", "doors")

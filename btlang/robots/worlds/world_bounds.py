@@ -28,7 +28,7 @@ Polyline = tuple[Point, ...]
 
 
 def outer_wall(world: World) -> Polyline | None:
-    """The closed wall around the largest area, its first point once; None where no wall is closed.
+    """Return the closed wall around the largest area, its first point once; None if no wall is closed.
 
     Walls and doors that meet end to end are one wall.
     """
@@ -37,14 +37,14 @@ def outer_wall(world: World) -> Polyline | None:
 
 
 def _area(wall: Polyline) -> float:
-    """Square metres inside a closed wall, 0 for any other."""
+    """Return the square metres inside a closed wall, 0 for any other."""
     if wall[0] != wall[-1]:
         return 0.0
     return abs(sum(ax * by - bx * ay for (ax, ay), (bx, by) in pairwise(wall))) / 2
 
 
 def _joined(walls: list[Polyline]) -> list[Polyline]:
-    """The walls; two are joined if their ends meet where no other one ends."""
+    """Return the walls; two are joined if their ends meet and no other one ends there."""
     ends: dict[Point, list[Polyline]] = {}
     done = [wall for wall in walls if wall[0] == wall[-1]]
     for wall in walls:
@@ -70,9 +70,9 @@ def _joined(walls: list[Polyline]) -> list[Polyline]:
 
 
 def entries(rows: Rows, sections: Iterable[str]) -> Iterator[tuple[Path, tuple[Any, ...]]]:
-    """What the rows of these sections of a world file have made, and where each of them is in the file.
+    """Return what the rows of these sections of a world file have made, and where each of them is in the file.
 
-    `rows` has a list for each section, None for what is wrong. The people of a crowd are made by one row.
+    `rows` has a list for each section, None for a wrong row. The people of a crowd are made by one row.
     """
     for section in sections:
         for index, row in enumerate(rows[section]):
@@ -81,14 +81,14 @@ def entries(rows: Rows, sections: Iterable[str]) -> Iterator[tuple[Path, tuple[A
 
 
 def spots(rows: Rows, sections: Iterable[str] = _STANDING) -> Iterator[tuple[str, Path, Any]]:
-    """What each row of these sections is called in messages, where it is in the file, and what has its x and y."""
+    """Return for each row of these sections its name in messages, its place in the file, and what has its x and y."""
     for path, (first, *_) in entries(rows, sections):
         kind = _STANDING[str(path[0])]
         yield f"the {kind}" if kind == "start" else f'the {kind} "{first.name}"', path, first
 
 
 def outside(world: World, rows: Rows) -> Iterator[Problem]:
-    """A Problem for each place, object, person, stop of a route, zone and door outside the outer wall.
+    """Return a Problem for each place, object, person, stop of a route, zone and door outside the outer wall.
 
     `rows` are as those of `entries`.
     """

@@ -42,7 +42,7 @@ _FAULTS = ("blocked", "slip", "silent scanner", "weak hand", "dock")
 
 
 class WorldError(DataFileError):
-    """A world file that cannot be used."""
+    """The reason why a world file can't be used."""
 
     code = "BT070"
 
@@ -50,7 +50,7 @@ class WorldError(DataFileError):
 def load_world(
     file: str | PathLike[str] | Source | None = None, body: Body | None = None, *, bounded: bool = False
 ) -> World:
-    """The world in a file or a text, or the world that ships. Raises WorldError with all that is wrong.
+    """Return the world in a file or a text, or the world that ships. Raises WorldError with everything that is wrong.
 
     It has to leave room for the body, by default that of the robot that ships. In a `bounded` world nothing may be
     outside the outer walls.
@@ -59,13 +59,13 @@ def load_world(
 
 
 def world_from(values: dict[str, Any], path: str, body: Body | None = None) -> World:
-    """As `load_world`, from the tables of a world file in another notation, such as JSON. Raises WorldError."""
+    """Return the world from the tables of a world file in another notation, such as JSON. Raises WorldError."""
     radius = (body or standard_body()).radius
     return make_from(values, path, "a world", lambda top: _world(top, radius), WorldError)
 
 
 def world_names(file: str | PathLike[str] | Source | None = None) -> WorldNames:
-    """Places, objects and people of the world in a file or a text, or of the one that ships. Raises WorldError.
+    """Return the names in a file or a text, or in the world that ships. Raises WorldError.
 
     Which robot will need room there isn't known yet.
     """
@@ -78,7 +78,7 @@ def _loaded(file: str | PathLike[str] | Source | None, radius: float | None, *, 
 
 
 def _world(top: Table, radius: float | None, bounded: bool = False) -> World:
-    """Without a radius there may be any wall beside places, but none around them."""
+    """Make a world. Without a radius there may be any wall beside places, but none around them."""
     problems = Problems()
     begins: tuple[Pose | None, float] = (None, 100.0)
     start, battery = problems.part(lambda: _start(top), begins)
@@ -165,7 +165,7 @@ def _box(table: Table) -> FurnitureBox:
 
 
 def _place(table: Table) -> tuple[Place, Zone | None]:
-    """A place, and the zone that it is where the file has its corners."""
+    """Read a place, and the zone that it is if the file has its corners."""
     facing = table.number("facing") if table.has("facing") else None
     kind = table.text("kind") if table.has("kind") else ""
     color, (sized, state, owner) = table.text("color") if table.has("color") else "", read_likeness(table)
@@ -192,7 +192,7 @@ def _fault(table: Table, places: tuple[str, ...], docks: tuple[str, ...]) -> Wor
 
 
 def _names_given_twice(rows: Rows) -> Iterator[Problem]:
-    """A name may be that of several sorts: the kitchen is a place and an area, the shed may be a door."""
+    """Report names that are given twice. Several kinds may share one: a place and an area may both be "kitchen"."""
     seen: dict[tuple[str, str], str] = {}
     for (section, *index), group in entries(rows, _NAMED):
         for named in group:
@@ -217,13 +217,16 @@ def _without_room(world: World, rows: Rows, radius: float | None) -> Iterator[Pr
 
 
 def has_room(world: World, point: Point, radius: float, segments: Iterable[Segment]) -> bool:
-    """Whether a point is that far from all segments, which are those of the world, and in no box."""
+    """Return whether a point is that far from all segments of the world, and in no box."""
     inside = any(box.contains(point) for box in world.boxes)
     return not inside and min((segment_distance(point, segment) for segment in segments), default=NEVER) >= radius
 
 
 def read_world(world: str | Source | None = None, body: Body | None = None, *, bounded: bool = False) -> World:
-    """The world in a file or a text, by default the world that ships; as `load_world`. Raises MissionError (BT070)."""
+    """Return the world in a file or a text, by default the world that ships; as `load_world`.
+
+    Raises MissionError (BT070).
+    """
     try:
         return load_world(world, body, bounded=bounded)
     except WorldError as error:

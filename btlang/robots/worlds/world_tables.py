@@ -34,12 +34,12 @@ _SHORTEST_VISIT = 60.0  # seconds
 
 
 def is_point(value: Any) -> bool:
-    """Whether it is [x, y]."""
+    """Return whether it is [x, y]."""
     return isinstance(value, list) and len(value) == 2 and all(map(is_coordinate, value))
 
 
 def read_object(table: Table, known: bool) -> WorldObject:
-    """An entry of `objects`. Raises Problem."""
+    """Read an entry of `objects`. Raises Problem."""
     name, x, y = table.text("name"), table.number("x"), table.number("y")
     radius = table.number("radius", OBJECT_RADIUS, low=0.01)
     known = table.flag("known", known)
@@ -57,13 +57,13 @@ def read_object(table: Table, known: bool) -> WorldObject:
 
 
 def read_likeness(table: Table) -> tuple[str, tuple[str, ...], str]:
-    """The size of a thing in a word, "" where it is in metres, its states, and its owner. Raises Problem."""
+    """Read the size of a thing in a word, "" if it is in metres, its states, and its owner. Raises Problem."""
     sized = table.text("size") if table.has("size") and table.is_text("size") else ""
     return sized, table.texts("state"), _optional(table, "owner")
 
 
 def read_person(table: Table, known: bool, places: Sequence[Place]) -> Person:
-    """An entry of `people`. Raises Problem."""
+    """Read an entry of `people`. Raises Problem."""
     name, x, y = table.text("name"), table.number("x"), table.number("y")
     radius = table.number("radius", PERSON_RADIUS, low=0.01)
     known = table.flag("known", known)
@@ -87,7 +87,7 @@ def read_person(table: Table, known: bool, places: Sequence[Place]) -> Person:
 
 
 def read_crowd(table: Table, known: bool, places: Sequence[Place]) -> tuple[Person, ...]:
-    """An entry of `crowds`: people of the same kind, called "guest 1", "guest 2" and so on. Raises Problem."""
+    """Read an entry of `crowds`: people of the same kind, called "guest 1", "guest 2" and so on. Raises Problem."""
     count = int(table.number("count", low=1.0, high=_MOST_IN_CROWD))
     person = read_person(table, known, places)
     each = person.replace(wanders=True) if not person.walks else person
@@ -95,7 +95,7 @@ def read_crowd(table: Table, known: bool, places: Sequence[Place]) -> tuple[Pers
 
 
 def read_zone(table: Table) -> Zone:
-    """An entry of `zones`. Raises Problem."""
+    """Read an entry of `zones`. Raises Problem."""
     name, kind = table.text("name"), table.choice("kind", (KEEP_OUT, SLOW, AREA))
     points = read_corners(table)
     speed = table.number("speed", low=0.01) if kind == SLOW else 0.0
@@ -103,7 +103,7 @@ def read_zone(table: Table) -> Zone:
 
 
 def read_corners(table: Table) -> tuple[Point, ...]:
-    """The `points` of an area. Raises Problem."""
+    """Read the `points` of an area. Raises Problem."""
     points = table.items("points")
     if len(points) < 3 or not all(map(is_point, points)):
         message = "a zone has three or more points: write points = [[0, 0], [4, 0], [4, 2]]"
@@ -112,7 +112,7 @@ def read_corners(table: Table) -> tuple[Point, ...]:
 
 
 def read_door(table: Table) -> Door:
-    """An entry of `doors`. Raises Problem."""
+    """Read an entry of `doors`. Raises Problem."""
     name, start, end = table.text("name"), _point(table, "from"), _point(table, "to")
     if start == end:
         raise table.problem("to", "a door needs two different points")

@@ -25,7 +25,7 @@ _LISTS = ("boxes", "docks", "places", "objects", "people", "zones", "doors", "fa
 
 
 def as_data(world: World) -> dict[str, Any]:
-    """The tables of its file: texts, numbers, flags, lists and dicts."""
+    """Return the tables of its file: texts, numbers, flags, lists and dicts."""
     start, dock = world.start, world.dock
     begin = {"x": start.x, "y": start.y, "facing": start.heading}
     data: dict[str, Any] = {"start": begin | ({} if world.battery == 100.0 else {"battery": world.battery})}
@@ -65,7 +65,7 @@ def _row(record: Record) -> dict[str, Any]:
 
 
 def _always(record: Record) -> tuple[str, ...]:
-    """Fields that the file has no default for, or one that depends on others."""
+    """Return the fields without a default in the file, or with one that depends on others."""
     if isinstance(record, WorldObject):
         return ("size", "fixed") if record.switch else ("size",)
     if isinstance(record, WorldFault):
@@ -91,7 +91,7 @@ def _plain(value: Any) -> Any:
 
 
 def to_toml(world: World) -> str:
-    """A world file: a line for each wall, place and other thing."""
+    """Return a world file: a line for each wall, place and other thing."""
     return "".join(_entry(key, value) for key, value in as_data(world).items())
 
 

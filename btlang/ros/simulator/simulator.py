@@ -97,7 +97,7 @@ class Simulator:
             self._parts.append(NavigationServer(node, self.robot, self._calls, self._wheels))
             if self.robot.body.has("docking"):
                 with suppress(ImportError):  # Nav2 has had docking since Jazzy
-                    from btlang.ros.simulator.navigation import DockingServer
+                    from btlang.ros.simulator.docking import DockingServer
 
                     self._parts.append(DockingServer(node, self.robot, self._calls, self._wheels))
         self._stepped = self._system_time()

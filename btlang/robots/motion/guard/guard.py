@@ -43,7 +43,7 @@ _STEP = 0.3  # metres between two looks at a sensor, after which nothing is know
 
 
 class Cause(Enum):
-    """What made the guard allow less."""
+    """The cause of a limit that the guard sets."""
 
     NONE, OBSTACLE, ZONE, SENSOR, ODOMETRY, PERSON = range(6)
 
@@ -53,9 +53,9 @@ _PATIENCE = {Cause.NONE: inf, Cause.OBSTACLE: 1.0, Cause.ZONE: 1.0, Cause.SENSOR
 
 
 class Verdict(Record):
-    """What may be sent, in metres and degrees a second, and why that is less than what was wanted.
+    """The velocity that may be sent, in metres and degrees a second, and why it is less than the wanted one.
 
-    `who` is the name of the person or the zone that is in the way.
+    `who` is the name of the person or the zone in the way.
     """
 
     linear: float
@@ -66,11 +66,13 @@ class Verdict(Record):
 
 
 class Guard:
-    """The guard of one base. `sensors` gives the readings of what looks out for obstacles, `odometry` the latest one of
-    where the robot is; None if it isn't known. `pose` is where it is on the map of zones and people; None likewise.
+    """The guard of one base. `judge` is for one thread.
 
-    Not seen is not clear: a sensor that looks in the direction of travel and says nothing, or nothing that can be true,
-    stops the robot. `judge` is for one thread.
+    `sensors` returns the readings of the sensors for obstacles, `odometry` the latest odometry, None if it isn't known.
+    `pose` is where the robot is on the map of zones and people; None likewise.
+
+    Not seen is not clear: a sensor that looks in the direction of travel and reports nothing, or nothing that can be
+    true, stops the robot.
     """
 
     def __init__(
@@ -112,24 +114,24 @@ class Guard:
         return self._disagrees == STANDS
 
     def touch(self) -> None:
-        """The robot may touch what is ahead, at the contact speed of its body. To be repeated, as velocities are."""
+        """Allow the robot to touch what is ahead, at the contact speed of its body. Repeat this, as velocities are."""
         self._touches_until = self._now() + _TOUCHING
 
     def rest(self) -> None:
-        """A drive has ended; the next one is judged for itself."""
+        """End a drive; the next one is judged independently."""
         self._check.rest()
         self._disagrees, self._stands_since = "", None
 
     def forget(self) -> None:
-        """Somebody else moved the robot, or will."""
+        """Forget the motion so far: somebody else moved the robot, or will."""
         self.rest()
         self._check.forget()
 
     def judge(self, linear: float, angular: float, may_touch: bool = True) -> Verdict:
-        """What may be sent in place of a velocity that is wanted, in metres and degrees a second. Not on every way may
-        it touch what is ahead, even if something else wants it to.
+        """Return the velocity that may be sent in place of a wanted one, in metres and degrees a second.
 
-        Raises RobotError for one that isn't finite, or faster than any robot.
+        On a journey, the robot may not touch what is ahead, even if something else allows it. Raises RobotError for a
+        velocity that isn't finite, or is faster than any robot.
         """
         check_velocity(linear, angular)
         now = self._now()
@@ -170,7 +172,7 @@ class Guard:
         return Verdict(copysign(most, linear) if most else 0.0, angular, reason, cause, who)
 
     def _safe(self, backward: bool, wanted: float, now: float) -> tuple[float, str, Cause, str]:
-        """Metres a second that are safe straight ahead, or backward, and what limits it most."""
+        """Return the metres a second that are safe straight ahead or backward, and what limits them most."""
         found = wanted, "", Cause.NONE, ""
         pose = self._pose()
         if pose is not None:
@@ -225,7 +227,7 @@ class Guard:
         return most, f"{reading.source}: {max(0.0, free):.2f} m {side}", Cause.OBSTACLE
 
     def _free_way(self, reading: ScanReading, direction: float) -> float:
-        """As `free_way` of btlang.robots.motion.guard.corridor."""
+        """Return the metres that are free, as `free_way` of the corridor does."""
         if reading.free_way is not None:
             return reading.free_way(direction)
         assert reading.ranges is not None
@@ -235,7 +237,7 @@ class Guard:
         return free_way(reading.ranges(), direction, self._body.radius - _BESIDE, view)
 
     def _since_changed(self, sensor: str, said: float) -> float:
-        """Metres that the robot has gone since a sensor said something else: a sensor may be frozen."""
+        """Return the metres that the robot has gone since a sensor's reading changed: the sensor may be frozen."""
         rolled, commanded = self._check.rolled, self._check.commanded
         before, since, commanded_since, asked = self._seen.get(sensor, (inf, 0.0, 0.0, 0.0))
         if before != said or not isfinite(said) or rolled - asked > _STEP:
@@ -245,7 +247,7 @@ class Guard:
         return gone + _LATE if gone > _LATE else gone  # it may have been old when it came first
 
     def _before_contact(self, gap: float) -> float:
-        """The speed at which it still stands before something so far away, if it brakes a moment later."""
+        """Return the speed at which the robot still stops before something so far away, if it brakes a moment later."""
         if gap <= 0.0:
             return 0.0
         lost = self._body.driving.brake * _DELAY
@@ -253,27 +255,24 @@ class Guard:
 
 
 class Guarded:
-    """A robot whose base a guard judges; see btlang.robots.robot.Base."""
+    """A robot whose base a guard judges; see the protocol Base."""
 
     _guard: Guard
 
     @property
     def held_back(self) -> str:
-        """See btlang.robots.robot.Base."""
         return self._guard.held
 
     @property
     def limited_by(self) -> str:
-        """See btlang.robots.robot.Base."""
         return self._guard.verdict.reason
 
     def touch(self) -> None:
-        """See btlang.robots.robot.Base."""
         self._guard.touch()
 
 
 def check_velocity(linear: float, angular: float) -> None:
-    """Raises RobotError for metres and degrees a second that aren't finite, or faster than any robot."""
+    """Raise RobotError for metres and degrees a second that aren't finite, or are faster than any robot."""
     if not isfinite(linear) or not isfinite(angular):
         raise RobotError(f"a velocity of {linear:g} m/s and {radians(angular):g} rad/s is not finite")
     if abs(linear) > FASTEST or abs(angular) > FASTEST_TURN * _ROUNDING:
@@ -283,7 +282,7 @@ def check_velocity(linear: float, angular: float) -> None:
 
 
 def _looks(reading: ObstacleReading, backward: bool) -> bool:
-    """Whether a sensor is there to look in the direction of travel."""
+    """Return whether a sensor looks in the direction of travel."""
     away = abs(wrap(reading.angle - 180.0 * backward))
     if isinstance(reading, ScanReading):
         return away <= reading.view / 2
@@ -291,12 +290,12 @@ def _looks(reading: ObstacleReading, backward: bool) -> bool:
 
 
 def _blind_speed(reading: SensorReading, now: float) -> float:
-    """The speed at which a robot doesn't go too far until it hears from a sensor again, or stops."""
+    """Return the speed at which a robot doesn't go too far until a sensor reports again, or it stops."""
     age = now - reading.stamp
     return _BLIND / age if age > _OFTEN else inf
 
 
 def _fault(reading: SensorReading, now: float) -> str:
-    """Why a reading isn't to be believed now, "" if it is."""
+    """Return why a reading isn't believed now, "" if it is."""
     age = now - reading.stamp
     return reading.fault or (f"{reading.source} is silent for {age:.1f} s" if age > FRESH else "")

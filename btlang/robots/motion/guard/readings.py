@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 
 class SensorReading(Record):
-    """What a sensor said. `source` is its name, `stamp` the second of the guard's clock at which it was measured.
+    """A reading of a sensor. `source` is its name, `stamp` the second of the guard's clock at which it was measured.
 
-    `fault` says why the reading isn't to be believed, in the words of the sensor: "/scan repeats its time stamp"; it is
-    "" if the reading is valid.
+    `fault` is why the reading isn't believed, in the words of the sensor: "/scan repeats its time stamp"; "" for a
+    valid one.
     """
 
     source: str
@@ -28,10 +28,10 @@ class SensorReading(Record):
 class ScanReading(SensorReading):
     """A reading of a scanner that looks `view` degrees wide, in the middle `angle` degrees left of ahead.
 
-    `ranges` gives 360 metres from the centre of the robot, index = degrees left of its heading: inf where a valid beam
-    found nothing, NaN where no valid beam looked. It is only called where it matters: `room` metres around the rim are
-    known to be free without it. With `free_way`, the metres that are free in a direction are known without it, too.
-    `content` is a number that changes whenever the ranges do, inf if they can't be frozen.
+    `ranges` returns 360 metres from the centre of the robot, index = degrees left of its heading: inf if a valid beam
+    found nothing, NaN if no valid beam looked. It is only called if it matters: `room` metres around the rim are known
+    to be free without it. With `free_way`, the metres that are free in a direction are known without it, too. `content`
+    is a number that changes whenever the ranges do, inf if they can't be frozen.
     """
 
     ranges: Callable[[], Array] | None = None
@@ -43,8 +43,10 @@ class ScanReading(SensorReading):
 
 
 class RangeReading(SensorReading):
-    """A reading of a distance sensor on the rim: metres to what is nearest, inf for nothing; it looks `angle` degrees
-    left of ahead."""
+    """A reading of a distance sensor on the rim: metres to the nearest thing, inf for nothing.
+
+    It looks `angle` degrees left of ahead.
+    """
 
     distance: float = 0.0
     angle: float = 0.0
@@ -58,7 +60,7 @@ class ContactReading(SensorReading):
 
 
 class OdometryReading(SensorReading):
-    """Where the robot is by its odometry, which may have begun anywhere."""
+    """The pose by odometry, which may have begun anywhere."""
 
     pose: Pose = Pose(0.0, 0.0)
     measured: float | None = None
@@ -66,7 +68,7 @@ class OdometryReading(SensorReading):
 
 
 class JointReading(SensorReading):
-    """Where a joint is: degrees, or metres if it slides."""
+    """The position of a joint: degrees, or metres if it slides."""
 
     position: float = 0.0
 
@@ -85,7 +87,7 @@ _AGAIN = 3.0  # seconds in which stamps go on steadily after a jump, until they 
 
 
 class StampCheck:
-    """For the messages of one sensor, in the order in which they arrive. Seconds; a stamp of 0 is none.
+    """A check of the time stamps of one sensor, in the order of arrival. In seconds; a stamp of 0 means none.
 
     The offset between both clocks is learnt from the message that was under way for the shortest time.
     """
@@ -98,9 +100,9 @@ class StampCheck:
         self._last = 0.0
 
     def fault(self, stamp: float, arrival: float, lags: bool = True) -> str:
-        """Why a stamp can't be true, to be read after the name of the sensor; "" if it can.
+        """Return why a stamp can't be true, to be read after the name of the sensor; "" if it can.
 
-        Without `lags` it isn't judged how long messages are under way: their clock may be faster than real time.
+        Without `lags` the time under way isn't judged: the clock of the stamps may be faster than real time.
         """
         if stamp == 0.0:
             return ""
@@ -125,7 +127,7 @@ class StampCheck:
         return ""
 
     def _jumped(self, reason: str, arrival: float, last: float, under_way: float | None = None) -> str:
-        """A clock that was set is believed again once its stamps have been steady for a while."""
+        """Believe a clock that was set once its stamps have been steady for a while."""
         if self._steady_since is None or under_way is None or arrival - last > _LATE:
             self._steady_since = arrival
         if under_way is not None and arrival - self._steady_since > _AGAIN:
@@ -140,16 +142,14 @@ _COUNTS = 3.0  # seconds
 
 
 class ChargeCheck:
-    """For the percentages of one battery, in the order in which they come. A jump that no battery makes has to be
-    reported again.
-    """
+    """A check of the percentages of one battery, in order. A jump that no battery makes has to be reported twice."""
 
     def __init__(self) -> None:
         self._believed: tuple[float, float] | None = None  # percent, and when
         self._doubted: tuple[float, float] | None = None
 
     def believes(self, percent: float, now: float) -> bool:
-        """Whether a percentage counts, at a second of any clock."""
+        """Return whether a percentage counts, at a second of any clock."""
         if self._believed is None or self._follows(self._believed, percent, now):
             self._believed, self._doubted = (percent, now), None
         elif self._doubted is None or not self._follows(self._doubted, percent, now):
@@ -159,11 +159,11 @@ class ChargeCheck:
         return self._doubted is None
 
     def is_recent(self, now: float) -> bool:
-        """Whether a percentage was believed a short time ago, so that it still counts while another one is doubted."""
+        """Return whether a percentage was believed recently, so that it still counts while another one is doubted."""
         return self._believed is not None and now - self._believed[1] <= _COUNTS
 
     def fault(self, percent: float, now: float) -> str:
-        """Why a percentage isn't believed, to be read after the name of the sensor; "" if it is."""
+        """Return why a percentage isn't believed, to be read after the name of the sensor; "" if it is."""
         before = self._believed
         return "" if self.believes(percent, now) or before is None else f"jumps from {before[0]:.0f}% to {percent:.0f}%"
 

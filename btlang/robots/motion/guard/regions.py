@@ -18,19 +18,21 @@ _LOOK = 2.0  # metres
 
 
 class WalkingPeople(Protocol):
-    """Those who walk, as far as the robot knows."""
+    """The people who walk, as far as the robot knows."""
 
     @property
     def walking(self) -> Mapping[str, tuple[float, float, float]]:
-        """x, y and radius by their names, on the map."""
+        """The x, y and radius of people by their names, on the map."""
 
     def wall_between(self, a: Point, b: Point) -> bool:
-        """True when a wall crosses the straight line from a to b."""
+        """Return whether a wall crosses the straight line from a to b."""
 
 
 def safe_among(people: WalkingPeople, pose: Pose, backward: bool, radius: float, brake: float) -> tuple[float, str]:
-    """Metres a second that are safe for a robot of a radius which can brake so, and who limits it; inf and "" where
-    nobody does."""
+    """Return the metres a second that are safe near people, and who limits them; inf and "" if nobody does.
+
+    They are for a robot with this radius and braking.
+    """
     heading = radians(pose.heading + 180.0 * backward)
     ahead = cos(heading), cos(heading - radians(90.0))
     most, who = inf, ""
@@ -55,7 +57,7 @@ _RIM = tuple((cos(radians(side)), sin(radians(side))) for side in range(-90, 91,
 
 
 class Regions:
-    """The zones as they are now, for a robot of a radius that can brake so."""
+    """The zones as they are now, for a robot with this radius and braking."""
 
     def __init__(self, zones: Zones, radius: float, brake: float) -> None:
         self._zones, self._radius, self._brake = zones, radius, brake
@@ -64,7 +66,9 @@ class Regions:
         self._version = -1
 
     def safe(self, pose: Pose, backward: bool) -> tuple[float, str]:
-        """Metres a second that are safe straight ahead, or backward, and what zone stops it; inf where none does."""
+        """Return the metres a second that are safe straight ahead or backward, and which zone stops the robot; inf
+        without one.
+        """
         if self._version != self._zones.version:
             self._measure()
         most = min(
@@ -82,7 +86,7 @@ class Regions:
         return most, found
 
     def _measure(self) -> None:
-        """Notes in which boxes the zones matter: most of the time the robot is in none."""
+        """Note in which boxes the zones matter: most of the time the robot is in none."""
         self._version = self._zones.version
         self._slow = [(zone, _box(zone, self._radius)) for zone in self._zones.slow]
         self._closed = [(zone, _box(zone, self._radius + _EDGE + _LOOK)) for zone in self._zones.closed]
@@ -92,7 +96,7 @@ class Regions:
         return zone.contains(point) or edge_distance(zone, point) < self._radius
 
     def _before(self, zone: Zone, pose: Pose, direction: Point) -> float:
-        """The speed at which it can brake before the zone; inf where it drives away from it, or out of it."""
+        """Return the speed at which it can brake before the zone; inf if it drives away from it, or out of it."""
         point = pose.x, pose.y
         gap = edge_distance(zone, point) - self._radius - _EDGE
         if gap > _LOOK or zone.contains(point):
@@ -104,7 +108,7 @@ class Regions:
         return sqrt(2 * self._brake * max(0.0, gap) * _PROBE / max(nearer, 1e-9)) if gap > 0.0 else 0.0
 
     def _inside(self, zones: Sequence[Zone], pose: Pose, direction: Point) -> float:
-        """The speed at which it can brake before its rim leaves these zones; inf where it drives into them."""
+        """Return the speed at which it can brake before its rim leaves these zones; inf if it drives into them."""
         point = pose.x, pose.y
         inside = [zone for zone in zones if zone.contains(point)]
         if not inside:  # somebody put it there
@@ -119,7 +123,7 @@ class Regions:
         return inf
 
     def _holds(self, zones: Sequence[Zone], centre: Point, direction: Point) -> bool:
-        """Whether the front half of the rim is in the zones."""
+        """Return whether the front half of the rim is in the zones."""
         reach, (dx, dy) = self._radius + _EDGE, direction
         rim = ((centre[0] + reach * (dx * c - dy * s), centre[1] + reach * (dx * s + dy * c)) for c, s in _RIM)
         return all(any(zone.contains(point) for zone in zones) for point in rim)
@@ -134,7 +138,7 @@ def _gap(zones: Sequence[Zone], point: Point) -> float:
 
 
 def _box(zone: Zone, margin: float) -> Segment:
-    """The least and the greatest x and y of a zone with so many metres around it."""
+    """Return the smallest and largest x and y of a zone with so many metres around it."""
     xs, ys = [x for x, _ in zone.points], [y for _, y in zone.points]
     return min(xs) - margin, min(ys) - margin, max(xs) + margin, max(ys) + margin
 
@@ -144,5 +148,5 @@ def _within(box: Segment, pose: Pose) -> bool:
 
 
 def edge_distance(zone: Zone, point: Point) -> float:
-    """Metres from a point to the border of a zone."""
+    """Return the metres from a point to the border of a zone."""
     return min(segment_distance(point, (*a, *b)) for a, b in edges(zone.points))

@@ -29,7 +29,7 @@ _DROVE, _TURNED = "shows {:.2f} m where {:.2f} m were commanded", "shows {:.0f} 
 
 
 class OdometryCheck:
-    """Compares what was sent to the base with what its odometry shows, over a window that slides along."""
+    """Compares what was sent to the base with what its odometry shows, over a sliding window."""
 
     def __init__(self, body: Body) -> None:
         self._body = body
@@ -48,7 +48,7 @@ class OdometryCheck:
         """Metres that the odometry has shown in sum, in whatever direction, and that the commands come to."""
 
     def sent(self, now: float, linear: float, angular: float) -> None:
-        """The base has been commanded so, in metres and degrees a second, since the last call."""
+        """Note the commanded metres and degrees a second since the last call."""
         passed = min(now - self._times[-1], _STEP) if self._times else 0.0
         driving, turning = self._body.driving, self._body.turning
         speed = _towards(self._speeds[0], linear, driving.acceleration * passed, driving.brake * passed)
@@ -64,18 +64,18 @@ class OdometryCheck:
             del self._times[:_KEPT], self._ways[:_KEPT]
 
     def rest(self) -> None:
-        """The base is commanded to stand, so nothing is compared: somebody else may move it."""
+        """Compare nothing while the base is commanded to stand: somebody else may move it."""
         self._samples.clear()
 
     def forget(self) -> None:
-        """Compares nothing that was before: somebody else moved the robot, or will."""
+        """Forget the motion so far: somebody else moved the robot, or will."""
         self._samples.clear()
         self._times.clear()
         self._ways.clear()
         self._pose, self._speeds = None, (0.0, 0.0)
 
     def fault(self, pose: Pose, stamp: float, measured: float | None = None) -> str:
-        """Why a new pose can't be true, to be read after the name of the odometry; "" if it can.
+        """Return why a new pose can't be true, to be read after the name of the odometry; "" if it can.
 
         `measured` is when it was measured, by another clock than that of `stamp`.
         """
@@ -106,9 +106,9 @@ class OdometryCheck:
         return STANDS if stood > (_STOPPED if self._under_way else _SETS_OFF) else ""
 
     def _too_fast(self, stamp: float) -> str:
-        """A robot is never faster than it was commanded a while ago, however late it obeys.
+        """Return whether the robot moves faster than it was commanded a while ago, however late it obeys.
 
-        It has to be so over a longer time, too: what was held up before comes at once.
+        It has to over a longer time, too: delayed messages arrive all at once.
         """
         if stamp - self._drives_since < _ROLLS_ON or not self._tops:
             return ""
@@ -151,7 +151,7 @@ class OdometryCheck:
 
 
 def _disagreement(measured: float, commanded: list[float], slack: float) -> tuple[float, float] | None:
-    """What was measured and what was commanded, if these differ too much."""
+    """Return what was measured and what was commanded, if these differ too much."""
     if max(commanded) < 0.0:
         measured, commanded, sign = -measured, [-way for way in commanded], -1.0
     else:
@@ -173,18 +173,20 @@ _NEARER = 0.5  # of what is close enough counts as nearer
 
 
 class JointProgress:
-    """The joints of a body that are on their way. `now` gives seconds."""
+    """The joints of a body that are on their way. `now` returns seconds."""
 
     def __init__(self, body: Body, now: Callable[[], float]) -> None:
         self._body, self._now = body, now
         self._nearest: dict[str, tuple[float, float]] = {}  # what was left at the nearest, and since when
 
     def start(self, names: Collection[str]) -> None:
-        """These joints set off now."""
+        """Start watching joints that set off now."""
         self._nearest.update(dict.fromkeys(names, (inf, self._now())))
 
     def has_arrived(self, name: str, left: float) -> bool:
-        """Whether a joint is close enough, with so much left. Raises RobotError if it gets no nearer for too long."""
+        """Return whether a joint is close enough, with so much left. Raises RobotError if it gets no nearer for too
+        long.
+        """
         joint = joint_of(self._body, name)
         if abs(left) <= joint.close_enough:
             self._nearest.pop(name, None)
@@ -199,5 +201,5 @@ class JointProgress:
 
 
 def shown_distance(joint: Joint, distance: float) -> str:
-    """How far a joint is from where it should be, for people."""
+    """Return how far a joint is from where it should be, for people."""
     return f"{abs(distance):.2f} m" if joint.slides else f"{abs(distance):.0f} degrees"

@@ -26,7 +26,10 @@ class TrajectoryCheck:
         self._collisions = Collisions(body, kinematics)
 
     def problem(self, way: MotionState, joints: list[int]) -> str:
-        """Why the body may not go a way, "" if it may. The way samples all joints; it is new for `joints`."""
+        """Return why the body may not do a movement, "" if it may.
+
+        The movement samples all joints; it is new for `joints`.
+        """
         return self._beyond(way.of(joints), joints) or self._touching(way)
 
     def _beyond(self, way: MotionState, joints: list[int]) -> str:
@@ -68,7 +71,7 @@ class TrajectoryCheck:
         return ""
 
     def _braking(self, way: MotionState, rows: slice | Array) -> Array:
-        """Where the body is on its way to rest from these samples."""
+        """Return the body's positions on its way to rest from these samples."""
         halt = brake(way.rows(rows), self._limits)
         times = np.append(np.arange(_BRAKING, halt.seconds, _BRAKING), halt.seconds)
         return np.concatenate([halt.at(float(time)).position for time in times])
