@@ -11,7 +11,7 @@ from btlang.robots.robot import Base, Machine, Power, RobotError, Sensors
 
 
 def where(robot: Base, place: str | None, x: float | None, y: float | None) -> Point:
-    """Metres on the map. Raises RobotError for an unknown place, and where neither it nor a point is given."""
+    """Return the metres on the map. Raises RobotError for an unknown place, and without a place and a point."""
     if place is not None:
         return robot.locate(place)
     if x is None or y is None:
@@ -20,12 +20,12 @@ def where(robot: Base, place: str | None, x: float | None, y: float | None) -> P
 
 
 def spot(x: float | None, y: float | None) -> str:
-    """What a point is called in messages."""
+    """Return the name of a point in messages."""
     return f"({x}, {y})"
 
 
 def things_described(robot: Base, type: str, **parts: str) -> list[str]:
-    """The names of the type "object" or "person" with these parts that the robot knows, nearest first.
+    """Return the names of the known things of type "object" or "person" with these parts, nearest first.
 
     The parts are `kind`, `color` and `use` of objects, `clothing`, `color` and `gesture` of people; "" is any.
     """
@@ -37,7 +37,7 @@ _SHARES = {"slowly": 0.5, "carefully": 0.5, "quietly": 0.4}
 
 
 def paced(robot: Base, manner: str | None, steps: Generator[None, None, None]) -> Generator[None, None, None]:
-    """Does the steps in this manner, without one at the pace there is; halted, they are halted."""
+    """Do the steps in this manner, without one at the current pace; when halted, halt them."""
     if manner is None:
         yield from steps
         return
@@ -49,7 +49,7 @@ def paced(robot: Base, manner: str | None, steps: Generator[None, None, None]) -
 
 
 def share_of(robot: Base, manner: str | None) -> float:
-    """The share of the normal speed; 1 without a manner."""
+    """Return the share of the normal speed; 1 without a manner."""
     return 1.0 if manner is None else _SHARES.get(manner, robot.max_speed / robot.normal_speed)
 
 
@@ -57,23 +57,23 @@ STUCK = "the wheels turn but the robot doesn't move"
 
 
 class Driving(Base, Sensors, Power, Protocol):
-    """A base that says what keeps it from driving on, as far as it has a bumper and a battery."""
+    """A base that reports what keeps it from driving on, as far as it has a bumper and a battery."""
 
 
 class Watch:
-    """Notices emergency stops that happen after it was made."""
+    """A watch for emergency stops that happen after it was made."""
 
     def __init__(self, robot: Machine) -> None:
         self._machine = robot
         self._stops = robot.stops
 
     def check_stop(self) -> None:
-        """Raises ActionFailed when somebody has stopped the robot."""
+        """Raise ActionFailed if somebody has stopped the robot."""
         if self._machine.stops != self._stops:
             raise ActionFailed("the robot was stopped")
 
     def pause(self, seconds: float) -> Generator[None, None, None]:
-        """Waits. Raises as `check_stop`."""
+        """Wait. Raises as `check_stop`."""
         until = self._machine.time + seconds
         while self._machine.time < until:
             yield
@@ -81,7 +81,7 @@ class Watch:
 
 
 class BaseWatch(Watch):
-    """Notices bumps and the like, too."""
+    """A watch for bumps and other trouble of the base, too."""
 
     def __init__(self, robot: Driving) -> None:
         super().__init__(robot)
@@ -89,7 +89,7 @@ class BaseWatch(Watch):
         self._bumps = robot.bumps
 
     def check_base(self, so_far: str) -> None:
-        """Raises ActionFailed when the base cannot go on; `so_far` says how far it got: "0.31 m"."""
+        """Raise ActionFailed if the base can't go on; `so_far` is how far it got: "0.31 m"."""
         self.check_stop()
         if self._robot.bumps != self._bumps:
             raise ActionFailed(f"bumped into something after {so_far}")

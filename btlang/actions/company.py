@@ -33,27 +33,27 @@ _TRIES, _PAUSE = 3, 1.0  # journeys that fail one after the other, and the secon
 
 
 class Meeting(Perception, Listening, Navigation, Protocol):
-    """It goes to people that it sees or hears."""
+    """A robot that goes to people whom it sees or hears."""
 
 
 class Following(Meeting, Driving, Protocol):
-    """It goes where somebody goes."""
+    """A robot that follows people."""
 
 
 class Guiding(Leading, Following, Presenting, Protocol):
-    """It asks people to follow."""
+    """A robot that asks people to follow."""
 
 
 class Greeting(Navigation, Presenting, Aiming, Protocol):
-    """It goes to people, waves and speaks."""
+    """A robot that goes to people, waves and speaks."""
 
 
 class Telling(Navigation, Presenting, Protocol):
-    """It goes to people and speaks."""
+    """A robot that goes to people and speaks."""
 
 
 def speaker(robot: Meeting) -> str | None:
-    """Who "me" is: who spoke last, else the nearest person in view; None where there is nobody."""
+    """Return who "me" is: the last speaker, else the nearest person in view; None if there is nobody."""
     heard = robot.ears.since(0) if robot.body.has("ears") else []
     spoken = next((each.who for each in reversed(heard) if each.who), None)
     return spoken or next(iter(robot.seen("person")), None)
@@ -67,7 +67,7 @@ def _somebody(robot: Meeting, person: str | None) -> str:
 
 
 def come_to_me(robot: Meeting, manner: str | None = None) -> Steps:
-    """Goes to who spoke last, else to the nearest person in view."""
+    """Go to the last speaker, else to the nearest person in view."""
     yield from paced(robot, manner, travel(robot, _somebody(robot, None)))
 
 
@@ -79,10 +79,10 @@ def follow(
     y: float | None = None,
     manner: str | None = None,
 ) -> Steps:
-    """Goes where a person goes, to a place or a point if one is given, else without end.
+    """Follow a person to a place or a point, or without end.
 
-    Without a person it is who spoke last, else the nearest one in view. Fails where the person is out of view for five
-    seconds.
+    Without a person it follows the last speaker, else the nearest person in view. Fails if the person is out of view
+    for five seconds.
     """
     name = _somebody(robot, person)
     goal = None if place is None and x is None else where(robot, place, x, y)
@@ -90,7 +90,7 @@ def follow(
 
 
 def follow_until_still(robot: Following, person: str, duration: float) -> Steps:
-    """Goes where a person goes, until he or she stands for so many seconds. Fails as `follow` does."""
+    """Follow a person until they stand for so many seconds. Fails as `follow` does."""
     yield from paced(robot, "quickly", _follow(robot, person, None, duration))
 
 
@@ -134,7 +134,7 @@ class _Journeys:
         return self._operation is not None and not self._operation.done
 
     def go_on(self, point: Point) -> None:
-        """Sets out where the person has gone away or to the side. Raises ActionFailed where there is no way."""
+        """Set out if the person has gone away or to the side. Raises ActionFailed if there is no way."""
         robot, operation = self._robot, self._operation
         if operation is not None and operation.done:
             self._operation = None
@@ -150,7 +150,7 @@ class _Journeys:
             self._operation = robot.navigate_to(self._person)
 
     def end(self) -> None:
-        """Brakes."""
+        """Brake."""
         if self._operation is not None:
             self._operation.cancel()
         self._robot.drive(0.0, 0.0)
@@ -165,8 +165,10 @@ def guide(
     facing: float | None = None,
     manner: str | None = None,
 ) -> Steps:
-    """Asks a person to follow and drives to a place or a point. It waits for who falls behind, and goes back for who
-    doesn't come. Without a person it is who spoke last, else the nearest one in view. Fails after four returns.
+    """Ask a person to follow and drive to a place or a point.
+
+    It waits for a person who falls behind, and goes back for one who doesn't come. Without a person it is the last
+    speaker, else the nearest person in view. Fails after four returns.
     """
     name = _somebody(robot, person)
     if not robot.sees(name):
@@ -186,14 +188,14 @@ def guide(
 
 
 def fetch_person(robot: Guiding, person: str) -> Steps:
-    """Goes to a person and guides him or her to where the robot is now. Fails as `guide` does."""
+    """Go to a person and guide them to where the robot is now. Fails as `guide` does."""
     here = robot.pose
     yield from travel(robot, person)
     yield from guide(robot, person, x=here.x, y=here.y)
 
 
 def _lead(robot: Guiding, person: str, steps: Steps) -> Generator[None, None, bool]:
-    """Goes on while the person keeps up. Whether they came to the end of it together."""
+    """Go on while the person keeps up; return whether both came to the end together."""
     with_us, arrived = robot.time, False
     try:
         while True:
@@ -218,7 +220,7 @@ def _is_with(robot: Guiding, person: str) -> bool:
 
 
 def _rejoin(robot: Guiding, person: str) -> Steps:
-    """Waits for a person, facing where he or she was seen last, then goes there."""
+    """Wait for a person, facing where they were seen last, then go there."""
     watch, until = Watch(robot), robot.time + WAITS
     yield from turn(robot, robot.pose.bearing_to(robot.locate(person)))
     while robot.time < until:
@@ -235,25 +237,25 @@ def _rejoin(robot: Guiding, person: str) -> Steps:
 
 
 def greet(robot: Greeting, person: str, text: str | None = None) -> Steps:
-    """Drives to a person, waves and says the text, or hello."""
+    """Drive to a person, wave and say the text, or hello."""
     yield from travel(robot, person)
     yield from wave(robot, person)
     yield from say(robot, text or f"Hello, {person}!")
 
 
 def tell(robot: Telling, person: str, text: str, kept: dict[str, Any] | None = None) -> Steps:
-    """Drives to a person and says the text."""
+    """Drive to a person and say the text."""
     yield from travel(robot, person)
     yield from say(robot, text, kept)
 
 
 def wait_for_person(robot: Perception, person: str, duration: float | None = None) -> Steps:
-    """Waits until a person is in view. Fails after `duration` seconds, if they are given."""
+    """Wait until a person is in view. Fails after `duration` seconds, if given."""
     yield from _wait(robot, person, duration)
 
 
 def wait_for_someone(robot: Perception, duration: float | None = None) -> Steps:
-    """Waits until anybody is in view. Fails after `duration` seconds, if they are given."""
+    """Wait until anybody is in view. Fails after `duration` seconds, if given."""
     yield from _wait(robot, None, duration)
 
 

@@ -15,15 +15,15 @@ from btlang.robots.robot import Hand, Navigation
 
 
 class Bringing(Fetching, Meeting, Protocol):
-    """It carries things to people."""
+    """A robot that carries things to people."""
 
 
 class Patrolling(Driving, Navigation, Protocol):
-    """It finds its way, and looks around."""
+    """A robot that finds its way, and looks around."""
 
 
 def come_back(robot: Navigation, manner: str | None = None) -> Steps:
-    """Drives to where the robot was when the mission began, and faces as it did then."""
+    """Drive to where the robot was when the mission began, and face as it did then."""
     yield from paced(robot, manner, _return(robot))
 
 
@@ -32,7 +32,7 @@ def _return(robot: Navigation) -> Steps:
 
 
 def fetch(robot: Fetching, object: str, manner: str | None = None) -> Steps:
-    """Picks up an object and brings it to where the robot is now. Fails as `pick_up` does."""
+    """Pick up an object and bring it to where the robot is now. Fails as `pick_up` does."""
     yield from paced(robot, manner, _fetch(robot, object))
 
 
@@ -43,13 +43,13 @@ def _fetch(robot: Fetching, object: str) -> Steps:
 
 
 def bring_back(robot: Fetching, object: str) -> Steps:
-    """Picks up an object unless a hand holds it, and brings it to where the robot was when the mission began."""
+    """Pick up an object unless a hand holds it, and bring it to where the robot was when the mission began."""
     yield from _hold(robot, object)
     yield from _return(robot)
 
 
 def hold(robot: Fetching, object: str) -> Steps:
-    """Picks up an object unless a hand holds it."""
+    """Pick up an object unless a hand holds it."""
     yield from _hold(robot, object)
 
 
@@ -62,27 +62,27 @@ def carry(
     facing: float | None = None,
     manner: str | None = None,
 ) -> Steps:
-    """Picks up an object unless a hand holds it, drives to a place or a point, and puts it down there."""
+    """Pick up an object unless a hand holds it, drive to a place or a point, and put it down there."""
     yield from paced(robot, manner, _carry(robot, object, go_to(robot, place, x, y, facing)))
 
 
 def put_in(robot: Fetching, object: str, container: str, manner: str | None = None) -> Steps:
-    """Picks up an object unless a hand holds it, drives up to another object and puts it down there."""
+    """Pick up an object unless a hand holds it, drive up to another object and put it down there."""
     yield from paced(robot, manner, _carry(robot, object, travel(robot, container)))
 
 
 def _carry(robot: Fetching, object: str, way: Steps) -> Steps:
-    """Picks up an object unless a hand holds it, goes this way and puts it down."""
+    """Pick up an object unless a hand holds it, go this way and put it down."""
     yield from _hold(robot, object)
     yield from way
     yield from put_down(robot, object)
 
 
 def bring(robot: Bringing, object: str, person: str | None = None, manner: str | None = None) -> Steps:
-    """Picks up an object unless a hand holds it, drives to a person and hands it over.
+    """Pick up an object unless a hand holds it, drive to a person and hand it over.
 
-    Without a person it is who spoke last, else the nearest one in view; where there is nobody, the object is put down
-    where the mission began. Fails where the person is gone or doesn't want it.
+    Without a person it is the last speaker, else the nearest person in view; if there is nobody, the object is put down
+    where the mission began. Fails if the person is gone or doesn't want it.
     """
     yield from paced(robot, manner, _bring(robot, object, person or speaker(robot)))
 
@@ -100,7 +100,7 @@ def _bring(robot: Bringing, object: str, person: str | None) -> Steps:
 
 
 def _hold(robot: Fetching, object: str) -> Generator[None, None, Hand]:
-    """The hand that holds the object, which is picked up first where none does."""
+    """Return the hand that holds the object, which is picked up first if none does."""
     hand = hand_with(robot, object)
     if hand is None:
         yield from pick_up(robot, object)
@@ -114,12 +114,12 @@ def patrol(
     y: float | None = None,
     manner: str | None = None,
 ) -> Steps:
-    """Drives to a place or a point and turns once around."""
+    """Drive to a place or a point and turn once around."""
     yield from paced(robot, manner, go_to(robot, place, x, y))
     yield from turn(robot, 360.0)
 
 
 def localize(robot: Driving) -> Steps:
-    """Forgets its place on the map, where the robot can find that out, and turns once around so that its sensors do."""
+    """Forget the pose on the map, if the robot can find it again, and turn once around so that its sensors do."""
     robot.reset_localization()
     yield from turn(robot, 360.0)

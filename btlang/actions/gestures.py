@@ -15,11 +15,11 @@ from btlang.robots.worlds.world import said
 
 
 class Aiming(Joints, Base, Protocol):
-    """It knows where it is, so it can point at what it knows."""
+    """A robot that knows where it is, so it can point at what it knows."""
 
 
 def wave(robot: Aiming, person: str | None = None) -> Steps:
-    """Waves the right arm, towards the person if one is named, and lets it hang again."""
+    """Wave the right arm, towards the person if one is named, and let it hang again."""
     yield from _towards(robot, "wave", person) if person else take(robot, "wave")
 
 
@@ -32,7 +32,7 @@ def perform(
     x: float | None = None,
     y: float | None = None,
 ) -> Steps:
-    """Does a gesture of the robot file, aimed at what is named. Fails where that is out of reach."""
+    """Do a gesture of the robot file, aimed at what is named. Fails if that is out of reach."""
     name = person or object
     is_aimed = name or place or x is not None
     aim = None if not is_aimed else robot.locate(name) if name else where(robot, place, x, y)
@@ -40,92 +40,92 @@ def perform(
 
 
 def point_at_person(robot: Aiming, person: str) -> Steps:
-    """Stretches the right arm towards a person."""
+    """Stretch the right arm towards a person."""
     yield from _towards(robot, "right arm pointing", person)
 
 
 def point_at_object(robot: Aiming, object: str) -> Steps:
-    """Stretches the right arm towards an object."""
+    """Stretch the right arm towards an object."""
     yield from _towards(robot, "right arm pointing", object)
 
 
 def point_at_place(robot: Aiming, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
-    """Stretches the right arm towards a place or a point."""
+    """Stretch the right arm towards a place or a point."""
     yield from _towards(robot, "right arm pointing", place or spot(x, y), where(robot, place, x, y))
 
 
 def point_left(robot: Joints) -> Steps:
-    """Stretches the left arm to the left."""
+    """Stretch the left arm to the left."""
     yield from take(robot, "left arm pointing", bearing=90.0)
 
 
 def point_right(robot: Joints) -> Steps:
-    """Stretches the right arm to the right."""
+    """Stretch the right arm to the right."""
     yield from take(robot, "right arm pointing", bearing=-90.0)
 
 
 def point_ahead(robot: Joints) -> Steps:
-    """Stretches the right arm ahead."""
+    """Stretch the right arm ahead."""
     yield from take(robot, "right arm pointing", bearing=0.0)
 
 
 def nod(robot: Joints) -> Steps:
-    """Nods the head twice."""
+    """Nod the head twice."""
     yield from take(robot, "nod")
 
 
 def shake_head(robot: Joints) -> Steps:
-    """Turns the head from side to side."""
+    """Turn the head from side to side."""
     yield from take(robot, "shake head")
 
 
 def look_around(robot: Joints) -> Steps:
-    """Turns the head all the way to both sides and back ahead."""
+    """Turn the head all the way to both sides and back ahead."""
     yield from take(robot, "look around")
 
 
 def look_left(robot: Joints) -> Steps:
-    """Turns the head to the left."""
+    """Turn the head to the left."""
     yield from take(robot, "look left")
 
 
 def look_right(robot: Joints) -> Steps:
-    """Turns the head to the right."""
+    """Turn the head to the right."""
     yield from take(robot, "look right")
 
 
 def look_ahead(robot: Joints) -> Steps:
-    """Turns the head straight ahead."""
+    """Turn the head straight ahead."""
     yield from take(robot, "look ahead")
 
 
 def look_up(robot: Joints) -> Steps:
-    """Raises the head."""
+    """Raise the head."""
     yield from take(robot, "look up")
 
 
 def look_down(robot: Joints) -> Steps:
-    """Lowers the head."""
+    """Lower the head."""
     yield from take(robot, "look down")
 
 
 def look_at_person(robot: Aiming, person: str) -> Steps:
-    """Turns the head to a person. Fails where they are behind the robot."""
+    """Turn the head to a person. Fails if they are behind the robot."""
     yield from _towards(robot, "look at", person)
 
 
 def look_at_object(robot: Aiming, object: str) -> Steps:
-    """Turns the head to an object. Fails if it is behind the robot."""
+    """Turn the head to an object. Fails if it is behind the robot."""
     yield from _towards(robot, "look at", object)
 
 
 def look_at_place(robot: Aiming, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
-    """Turns the head to a place or a point. Fails if it is behind the robot."""
+    """Turn the head to a place or a point. Fails if it is behind the robot."""
     yield from _towards(robot, "look at", place or spot(x, y), where(robot, place, x, y))
 
 
 def _towards(robot: Aiming, posture: str, name: str, point: Point | None = None) -> Steps:
-    """To the point, by default that of the name. Raises ActionFailed where the joint doesn't turn so far."""
+    """Turn to the point, by default that of the name. Raises ActionFailed if the joint doesn't turn so far."""
     bearing = robot.pose.bearing_to(robot.locate(name) if point is None else point)
     joint = robot.body.falls_short(posture, bearing)
     if joint is not None:
@@ -138,13 +138,13 @@ _BOWED = 1.0  # seconds
 
 
 def bow(robot: Joints) -> Steps:
-    """Lowers the head for a second."""
+    """Lower the head for a second."""
     yield from take(robot, "look down")
     yield from Watch(robot).pause(_BOWED)
     yield from take(robot, "look ahead")
 
 
 def dance(robot: Driving) -> Steps:
-    """Swings from side to side on the spot, and turns once around."""
+    """Swing from side to side on the spot, and turn once around."""
     for angle in (45.0, -90.0, 90.0, -45.0, 360.0):
         yield from turn(robot, angle)

@@ -28,7 +28,7 @@ def move_forward(
     manner: str | None = None,
     progress: Report = unheard,
 ) -> Steps:
-    """Drives straight ahead by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
+    """Drive straight ahead by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
     yield from drive_straight(robot, distance, _speed(robot, speed, manner), progress)
 
 
@@ -39,7 +39,7 @@ def move_backward(
     manner: str | None = None,
     progress: Report = unheard,
 ) -> Steps:
-    """Drives straight back by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
+    """Drive straight back by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
     yield from drive_straight(robot, -distance, _speed(robot, speed, manner), progress)
 
 
@@ -48,27 +48,27 @@ def _speed(robot: Driving, speed: float | None, manner: str | None) -> float:
 
 
 def turn_left(robot: Driving, angle: float, progress: Report = unheard) -> Steps:
-    """Turns on the spot by `angle` degrees counter-clockwise, to the degree."""
+    """Turn on the spot by `angle` degrees counter-clockwise, to the degree."""
     yield from turn(robot, angle, progress)
 
 
 def turn_right(robot: Driving, angle: float, progress: Report = unheard) -> Steps:
-    """Turns on the spot by `angle` degrees clockwise, to the degree."""
+    """Turn on the spot by `angle` degrees clockwise, to the degree."""
     yield from turn(robot, -angle, progress)
 
 
 def turn_around(robot: Driving) -> Steps:
-    """Turns on the spot to where its back was."""
+    """Turn on the spot to where its back was."""
     yield from turn(robot, 180.0)
 
 
 def turn_once_around(robot: Driving) -> Steps:
-    """Turns on the spot by a full turn."""
+    """Turn on the spot by a full turn."""
     yield from turn(robot, 360.0)
 
 
 def stop(robot: Driving) -> Steps:
-    """Brings the base to rest. Fails if it does not come to rest within the patience of the robot."""
+    """Bring the base to rest. Fails if it does not come to rest within the patience of the robot."""
     robot.drive(0.0, 0.0)
     until = robot.time + robot.body.patience
     while (velocity := robot.velocity) != (0.0, 0.0):
@@ -80,22 +80,22 @@ def stop(robot: Driving) -> Steps:
 
 
 def face_place(robot: Driving, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
-    """Turns on the spot towards a place or a point."""
+    """Turn on the spot towards a place or a point."""
     yield from turn(robot, robot.pose.bearing_to(where(robot, place, x, y)))
 
 
 def face_person(robot: Driving, person: str) -> Steps:
-    """Turns on the spot towards a person."""
+    """Turn on the spot towards a person."""
     yield from turn(robot, robot.pose.bearing_to(robot.locate(person)))
 
 
 def face_object(robot: Driving, object: str) -> Steps:
-    """Turns on the spot towards an object."""
+    """Turn on the spot towards an object."""
     yield from turn(robot, robot.pose.bearing_to(robot.locate(object)))
 
 
 def drive_straight(robot: Driving, distance: float, speed: float | None = None, progress: Report = unheard) -> Steps:
-    """Drives `distance` metres along the heading (negative: backwards), keeps the course, and brakes."""
+    """Drive `distance` metres along the heading (negative: backwards), keep the course, and brake."""
     start, watch = robot.pose, BaseWatch(robot)
     bounds = DriveProgress(
         distance, _CLOSE_ENOUGH, False, lambda: robot.time, robot.body.patience, lambda: robot.limited_by
@@ -121,7 +121,7 @@ def drive_straight(robot: Driving, distance: float, speed: float | None = None, 
 
 
 def turn(robot: Driving, angle: float, progress: Report = unheard) -> Steps:
-    """Turns on the spot by `angle` degrees (left positive; more than a whole turn is fine) and brakes."""
+    """Turn on the spot by `angle` degrees (left positive; more than a whole turn is fine) and brake."""
     heading, turned, watch = robot.pose.heading, 0.0, BaseWatch(robot)
     turning = robot.body.turning
     approach = Approach(turning.speed, 4.0, turning.slowing, _SLOWEST_TURN)

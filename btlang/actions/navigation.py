@@ -28,7 +28,7 @@ def go_to(
     manner: str | None = None,
     via: str | None = None,
 ) -> Steps:
-    """Drives to a place and faces as the place says, or to a point; past those of `via` (`hall; lobby`) first."""
+    """Drive to a place and face as the place says, or to a point; past those of `via` (`hall; lobby`) first."""
     steps = travel(robot, place) if place is not None else _go_to_point(robot, x, y, facing)
     yield from paced(
         robot, manner, _past(robot, [name.strip() for name in (via or "").split(";") if name.strip()], steps)
@@ -36,7 +36,7 @@ def go_to(
 
 
 def _past(robot: Navigation, places: list[str], steps: Steps) -> Steps:
-    """Passes each of the places, or zones, without a stop, then takes the steps."""
+    """Pass each of the places, or zones, without a stop, then take the steps."""
     for name in places:
         try:
             point = robot.locate(name)
@@ -55,7 +55,7 @@ def _past(robot: Navigation, places: list[str], steps: Steps) -> Steps:
 
 
 def over_border(robot: Navigation, zone: str, *, inside: bool) -> Steps:
-    """Drives until the robot is inside a zone, or outside. Fails where no way leads there."""
+    """Drive until the robot is inside a zone, or outside. Fails if no way leads there."""
     here = robot.pose.x, robot.pose.y
     if robot.zones.contains(zone, here) == inside:
         return
@@ -82,17 +82,17 @@ def _go_to_point(robot: Navigation, x: float | None, y: float | None, facing: fl
 
 
 def go_to_person(robot: Navigation, person: str, manner: str | None = None) -> Steps:
-    """Drives to talking distance of a person and faces them."""
+    """Drive to talking distance of a person and faces them."""
     yield from paced(robot, manner, travel(robot, person))
 
 
 def approach(robot: Navigation, object: str, manner: str | None = None) -> Steps:
-    """Drives until an object is within arm's reach, and faces it."""
+    """Drive until an object is within arm's reach, and face it."""
     yield from paced(robot, manner, travel(robot, object))
 
 
 def travel(robot: Navigation, name: str) -> Steps:
-    """Drives to anything that has a name; halted, it brakes."""
+    """Drive to anything that has a name; brake when halted."""
     yield from accomplish(robot.navigate_to(name))
 
 
@@ -103,15 +103,15 @@ def choose(
     output: Callable[[str], object],
     **parts: str,
 ) -> None:
-    """Puts out the "nearest", a "random" name and so on of a type. Fails if there is none with these parts.
+    """Write the "nearest", a "random" name and so on of a type. Fails if there is none with these parts.
 
-    The parts are those of a description: what it is like, what it isn't, and how it stands to something else.
+    The parts are those of a description: what it is like, what it isn't, and its relations.
     """
     output(robot.choose(type, how, {name: text for name, text in parts.items() if text}))
 
 
 def choose_all(robot: Base, type: str, output: Callable[[str], object], count: str = "", **parts: str) -> None:
-    """Puts out the names of a type with these parts, the nearest first. Fails if there are none, or too few."""
+    """Write the names of a type with these parts, nearest first. Fails if there are none, or too few."""
     wanted = {name: text for name, text in parts.items() if text}
     names = robot.described(type, wanted)
     if not names:
@@ -122,7 +122,7 @@ def choose_all(robot: Base, type: str, output: Callable[[str], object], count: s
 
 
 def accomplish(operation: Operation) -> Steps:
-    """Waits until the robot has done it; halted, it gives up. Raises ActionFailed with the robot's reason."""
+    """Wait until an operation is done; cancel it when halted. Raises ActionFailed with the robot's reason."""
     try:
         while not operation.done:
             yield
@@ -147,9 +147,9 @@ def go_to_side(
     zone: str | None = None,
     manner: str | None = None,
 ) -> Steps:
-    """Drives to a side of a place, a person or an object, or to a part of a region, as the robot sees it.
+    """Drive to a side of a place, a person or an object, or to a part of a region, as the robot sees it.
 
-    Fails for the middle, a corner or an edge of what has no region.
+    Fails for the middle, a corner or an edge of something without a region.
     """
     name = place or person or object or zone or ""
     inside = place is not None or zone is not None

@@ -22,11 +22,11 @@ _MARGIN = 0.02  # metres by which the scanner may be wrong
 
 
 class Homing(Navigation, Docking, Driving, Protocol):
-    """It finds its dock and drives into it."""
+    """A robot that finds its dock and drives into it."""
 
 
 def enter_a_dock(robot: Homing, stations: Sequence[Station]) -> Steps:
-    """Enters the first dock that it gets into. Fails with the reason of the last one."""
+    """Enter the first dock that works. Fails with the reason of the last one."""
     watch = Watch(robot)
     for station in stations:
         try:
@@ -39,9 +39,9 @@ def enter_a_dock(robot: Homing, stations: Sequence[Station]) -> Steps:
 
 
 def enter_dock(robot: Homing, station: Station, stage: Callable[[str], object] = lambda stage: None) -> Steps:
-    """Drives to the staging pose, then straight into the dock, and connects; where it stands there, it only connects.
+    """Drive to the staging pose, then straight into the dock, and connect; from inside, it only connects.
 
-    Where that fails it backs off and tries again, as often as the body says. Fails with the reason of the last attempt.
+    If that fails it backs off and tries again, as often as the body says. Fails with the reason of the last attempt.
     `stage` is called with each stage that begins.
     """
     part, watch = robot.body.dock, Watch(robot)
@@ -81,7 +81,10 @@ def _drive_in(robot: Homing, spot: Pose, speed: float) -> Steps:
 
 
 def _is_blocked(robot: Homing, left: float) -> bool:
-    """Whether it would run into what the scanner sees, driving on by `left` metres. Without a scan nobody knows: no."""
+    """Return whether it would run into something in the scan, driving on by `left` metres.
+
+    Without a scan nobody knows: no.
+    """
     if robot.body.sensor("scanner") is None:
         return False
     with suppress(RobotError):
@@ -101,22 +104,22 @@ def _is_blocked(robot: Homing, left: float) -> bool:
 
 
 class Undocking(Driving, Docking, Protocol):
-    """It can leave its dock."""
+    """A robot that can leave its dock."""
 
 
 class Charging(Homing, Power, Protocol):
-    """It finds its dock, and knows its battery."""
+    """A robot that finds its dock, and knows its battery."""
 
 
 def dock(robot: Homing) -> Steps:
-    """Drives to the nearest dock and connects, or to the next one where that fails; does nothing when docked."""
+    """Drive to the nearest dock and connect, or to the next one if that fails; do nothing when docked."""
     if not robot.docked:
         stations = robot.stations
         yield from accomplish(robot.dock()) if stations is None else enter_a_dock(robot, stations)
 
 
 def undock(robot: Undocking) -> Steps:
-    """Disconnects and backs off; does nothing when not docked."""
+    """Disconnect and back off; do nothing when not docked."""
     if robot.docked:
         backs_off = robot.stations is not None
         yield from accomplish(robot.undock())
@@ -125,7 +128,7 @@ def undock(robot: Undocking) -> Steps:
 
 
 def charge(robot: Charging, percent: float) -> Steps:
-    """Docks if need be and waits until the battery holds `percent`. Fails where the robot leaves the dock before."""
+    """Dock if need be and wait until the battery has `percent`. Fails if the robot leaves the dock before."""
     yield from dock(robot)
     watch = Watch(robot)
     while robot.battery < percent:

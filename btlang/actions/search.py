@@ -24,20 +24,20 @@ _AROUND = 360.0
 
 
 class Searching(Perception, Navigation, Driving, Hands, Protocol):
-    """It goes about and recognises what it sees."""
+    """A robot that moves about and recognises what it sees."""
 
 
 def look_for_person(
     robot: Searching, person: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
-    """Searches a place, or all of them, until a person is in view. Fails where he or she is in none."""
+    """Search a place, or all of them, until a person is in view. Fails if they are in none."""
     yield from _search(robot, person, lambda: robot.sees(person), place, x, y)
 
 
 def look_for_object(
     robot: Searching, object: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
-    """Searches a place, or all of them, until an object is in view or in a hand. Fails where it is in none."""
+    """Search a place, or all of them, until an object is in view or in a hand. Fails if it is in none."""
     if robot.body.has("holding") and holding(robot, object):
         return
     yield from _search(robot, object, lambda: robot.sees(object), place, x, y)
@@ -46,14 +46,14 @@ def look_for_object(
 def look_for_someone(
     robot: Searching, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
-    """Searches a place, or all of them, until anybody is in view. Fails where nobody is."""
+    """Search a place, or all of them, until anybody is in view. Fails if nobody is."""
     yield from _search(robot, None, lambda: bool(robot.seen("person")), place, x, y)
 
 
 def find_person(
     robot: Searching, person: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
-    """Looks for a person and goes there."""
+    """Look for a person and go there."""
     yield from look_for_person(robot, person, place, x, y)
     yield from travel(robot, person)
 
@@ -61,13 +61,13 @@ def find_person(
 def find_object(
     robot: Searching, object: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
-    """Looks for an object and goes there."""
+    """Look for an object and go there."""
     yield from look_for_object(robot, object, place, x, y)
     yield from travel(robot, object)
 
 
 def find_someone(robot: Searching, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
-    """Looks for anybody and goes there."""
+    """Look for anybody and go there."""
     yield from look_for_someone(robot, place, x, y)
     for person in robot.seen("person")[:1]:
         yield from travel(robot, person)
@@ -80,7 +80,7 @@ def count_people(
     x: float | None = None,
     y: float | None = None,
 ) -> Steps:
-    """Counts the people in view from a place or a point, or from where the robot is, while it turns once around."""
+    """Count the people in view from a place or a point, or from where the robot is, while it turns once around."""
     yield from _count(robot, blackboard, "person", place, x, y)
 
 
@@ -91,7 +91,7 @@ def count_objects(
     x: float | None = None,
     y: float | None = None,
 ) -> Steps:
-    """Counts the objects in view from a place or a point, or from where the robot is, while it turns once around."""
+    """Count the objects in view from a place or a point, or from where the robot is, while it turns once around."""
     yield from _count(robot, blackboard, "object", place, x, y)
 
 
@@ -103,12 +103,12 @@ def count_kind(
     x: float | None = None,
     y: float | None = None,
 ) -> Steps:
-    """Counts the objects of a kind, as `count_objects` counts all."""
+    """Count the objects of a kind, as `count_objects` counts all."""
     yield from _count(robot, blackboard, "object", place, x, y, kinds)
 
 
 def count(blackboard: Blackboard) -> int | Failed:
-    """How many the robot counted last. Fails where it hasn't counted."""
+    """Return how many the robot counted last. Fails if it hasn't counted."""
     if COUNT not in blackboard:
         raise ActionFailed("nothing was counted")
     return int(blackboard.get(COUNT))
@@ -122,7 +122,7 @@ def counted(
     at_most: float | None = None,
     equal: float | None = None,
 ) -> bool | Failed:
-    """Whether the robot counted so many last. Fails where it hasn't counted."""
+    """Return whether the robot counted so many last. Fails if it hasn't counted."""
     found = count(blackboard)
     if isinstance(found, Failed):
         return found
@@ -184,7 +184,7 @@ def _look_in(robot: Searching, place: str | None, x: float | None, y: float | No
 
 
 def _tour(robot: Searching, name: str | None) -> Steps:
-    """Turns once around here, goes where the robot knows it, and looks into all places."""
+    """Turn once around here, go where the robot knows it, and look into all places."""
     watch = Watch(robot)
     yield from turn(robot, _AROUND)
     if name is not None:

@@ -24,11 +24,11 @@ _LATEST = 2.0  # seconds by which speech may begin later, for its first stroke
 
 
 class Presenting(Voice, Gesturing, Protocol):
-    """It speaks, and moves in step with that."""
+    """A robot that speaks, and moves in step with that."""
 
 
 class Stroke(Record):
-    """A gesture, what it is aimed at, and the index of the text from which its word is looked for."""
+    """A gesture, its target, and the index of the text from which its word is looked for."""
 
     name: str
     aim: Point | None
@@ -36,9 +36,9 @@ class Stroke(Record):
 
 
 class Strokes:
-    """The gestures of one text, one after the other. `step` at each tick, `halt` at the end.
+    """The gestures of one text, one after the other. Call `step` at each tick, `halt` at the end.
 
-    Raises RobotError where the target of one isn't known.
+    Raises RobotError if the target of one isn't known.
     """
 
     def __init__(self, robot: Presenting, marks: Sequence[GestureMark]) -> None:
@@ -50,14 +50,14 @@ class Strokes:
         self._period = _PERIOD
 
     def delay(self, text: str) -> float:
-        """Seconds by which speech has to begin later, so that the first stroke can meet its word."""
+        """Return the seconds to delay speech, so that the first stroke can meet its word."""
         if not self._left or (needed := self._needed(self._left[0])) is None:
             return 0.0
         return min(_LATEST, max(0.0, needed - self._robot.utterance(text).time_of(self._left[0].index)))
 
     @property
     def busy(self) -> bool:
-        """True while a gesture is to come, or isn't over."""
+        """Whether a gesture is to come, or isn't over."""
         for operation in self._going:
             if operation.done and operation.failure is not None:
                 self._warn(operation.failure)
@@ -65,7 +65,7 @@ class Strokes:
         return bool(self._left or self._going)
 
     def step(self) -> None:
-        """Starts what has to start before the next tick."""
+        """Start the gestures that have to start before the next tick."""
         robot, now = self._robot, self._robot.time
         if self._last is not None and now > self._last:
             self._period = now - self._last
@@ -96,12 +96,12 @@ class Strokes:
                 robot.on_event("stroke", {"name": stroke.name, "stroke": round(met, 3), "word": round(word, 3)})
 
     def halt(self) -> None:
-        """They come to rest where they are."""
+        """Bring the gestures to rest where they are."""
         for operation in self._going:
             operation.cancel()
 
     def _needed(self, stroke: Stroke) -> float | None:
-        """Seconds to the stroke at least; None, with a warning, where the body can't do it: speech goes on."""
+        """Return the least seconds to the stroke; None, with a warning, if the body can't do it: speech goes on."""
         try:
             return self._robot.lead(stroke.name, stroke.aim)
         except RobotError as problem:
@@ -114,7 +114,7 @@ class Strokes:
 
 
 def _strokes(robot: Presenting, marks: Sequence[GestureMark]) -> Iterator[Stroke]:
-    """Those that the robot has. Raises RobotError where a target isn't known."""
+    """Return the strokes that the robot has. Raises RobotError if a target isn't known."""
     moves = hasattr(robot, "gesture")  # robots of other people may only speak
     for mark in marks:
         found = said_gesture(robot.body, mark.words) if moves else None
@@ -125,9 +125,9 @@ def _strokes(robot: Presenting, marks: Sequence[GestureMark]) -> Iterator[Stroke
 
 
 def say(robot: Presenting, text: str, kept: dict[str, Any] | None = None) -> Steps:
-    """Speaks the text to its end, with the gestures of its marks; halted, falls silent and lets its joints rest.
+    """Speak the text to its end, with the gestures of its marks.
 
-    Suspended, it begins again with the sentence in which it was.
+    When halted, it falls silent and joints come to rest. Suspended, it begins again with the sentence in which it was.
     """
     watch, kept = Watch(robot), {} if kept is None else kept
     whole, marks = read_marks(text)
@@ -152,12 +152,12 @@ def say(robot: Presenting, text: str, kept: dict[str, Any] | None = None) -> Ste
 
 
 def report_back(robot: Presenting) -> Steps:
-    """Says that the robot is done."""
+    """Say that the robot is done."""
     yield from say(robot, "I am done.")
 
 
 def _begun(robot: Voice, text: str) -> int:
-    """Where the sentence of a text begins that it is in; behind the last one when all is said."""
+    """Return where the current sentence of a text begins; its end when all is said."""
     if robot.said is None or robot.said.text != text:
         return 0
     if not robot.speaking:
@@ -167,10 +167,10 @@ def _begun(robot: Voice, text: str) -> int:
 
 
 def speak_language(robot: Voice, language: str) -> None:
-    """What is said from now on is in this language, such as "es", to the end of the mission."""
+    """Speak in this language, such as "es", until the end of the mission."""
     robot.speak_in(language)
 
 
 def print_text(robot: Voice, text: str) -> None:
-    """Shows the text."""
+    """Show the text."""
     robot.print(text)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from btlang.components.component import Component
 
     class Link(Protocol):
-        """The way to a robot: see btlang.components.worker.Worker."""
+        """The link to a robot; see btlang.components.worker.Worker."""
 
         @property
         def component(self) -> Component: ...
@@ -44,7 +44,9 @@ _RECORD, _BYTES = "record", "bytes"
 
 
 def packed(message: object) -> bytes:
-    """A message as bytes. Raises TypeError for values that are neither plain data nor a pose, reading or command."""
+    """Return a message as bytes. Raises TypeError for values that are neither plain data nor a pose, reading or
+    command.
+    """
     try:
         return dump_json(message, _other, separators=(",", ":")).encode()
     except ValueError:
@@ -52,17 +54,17 @@ def packed(message: object) -> bytes:
 
 
 def unpacked(data: bytes) -> Any:
-    """The message again; tuples are lists. Raises ValueError for what is no message."""
+    """Return the message in bytes; tuples become lists. Raises ValueError if it isn't a message."""
     return load_json(data, _record)
 
 
 def refused(problem: BaseException) -> dict[str, Any]:
-    """The answer where something was raised; `value_of` raises it on the other side."""
+    """Return the answer for an exception; `value_of` raises it on the other side."""
     return {"problem": reason_of(problem), "unknown": isinstance(problem, Unknown)}
 
 
 def value_of(answer: Mapping[str, Any]) -> Any:
-    """The value of an answer. Raises ActionFailed, or Unknown, for one that is `refused`."""
+    """Return the value of an answer. Raises ActionFailed, or Unknown, for one that is `refused`."""
     if "problem" in answer:
         raise (Unknown if answer.get("unknown") else ActionFailed)(answer["problem"])
     return answer.get("value")
@@ -95,7 +97,7 @@ _AGAIN = 0.2  # seconds after which a question to the robot is asked once more
 
 
 class RobotQuestions:
-    """What one thread of the component asks its robot, one thing after the other."""
+    """The questions of one thread of the component to its robot, one after the other."""
 
     def __init__(self, worker: Link, number: int = 0) -> None:
         self._worker, self.number = worker, number
@@ -105,16 +107,16 @@ class RobotQuestions:
         self._asking = threading.Lock()
 
     def halt(self) -> None:
-        """Asks it to end, as the engine does with leaves."""
+        """Ask the thread to end, as the engine does with leaves."""
         self.halted.set()
         self._answers.put({})
 
     def answer(self, message: dict[str, Any]) -> None:
-        """What the robot says to its question."""
+        """Take the robot's answer to the current question."""
         self._answers.put(message)
 
     def ask(self, **question: Any) -> Any:
-        """What the robot says to it. Raises ActionFailed, also once the call was halted."""
+        """Ask the robot; return its answer. Raises ActionFailed, also once the call was halted."""
         with self._asking:
             self._asked += 1
             asked = {"ask": self._asked, "call": self.number, **question}
@@ -131,7 +133,7 @@ class RobotQuestions:
 
 
 class MethodCall(RobotQuestions):
-    """One call of a method, in a thread of its own."""
+    """One call of a method, in its own thread."""
 
     def __init__(self, worker: Link, number: int, method: str, arguments: Mapping[str, Any]) -> None:
         super().__init__(worker, number)
@@ -139,7 +141,7 @@ class MethodCall(RobotQuestions):
         self._stored: dict[str, Any] = {}
 
     def start(self) -> None:
-        """Begins it."""
+        """Begin the call."""
         threading.Thread(target=self._work, name="btlang call", daemon=True).start()
 
     def _work(self) -> None:
@@ -174,7 +176,7 @@ class MethodCall(RobotQuestions):
 
 
 class RemoteRobot:
-    """The robot as a method of a component gets it: see btlang.robots.robot.Robot. Each use waits for the mission."""
+    """The robot as a method of a component gets it: a Robot. Each use waits for the mission."""
 
     def __init__(self, call: MethodCall) -> None:
         self._call = call
@@ -196,17 +198,14 @@ class RemoteOperation:
 
     @property
     def done(self) -> bool:
-        """See Operation."""
         return bool(self._call.ask(operation=self._number, robot="done"))
 
     @property
     def failure(self) -> str | None:
-        """See Operation."""
         failure: str | None = self._call.ask(operation=self._number, robot="failure")
         return failure
 
     def cancel(self) -> None:
-        """See Operation."""
         self._call.ask(operation=self._number, robot="cancel", args=())
 
 
@@ -217,9 +216,7 @@ class RemoteDevice:
         self._worker, self._questions = worker, worker.questions
 
     def read(self, name: str) -> Any:
-        """See Component.read."""
         return self._questions.ask(device=name)
 
     def write(self, name: str, command: Any) -> None:
-        """See Component.write."""
         self._worker.send({"write": name, "command": command})

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 def circle(needs: Mapping[str, Collection[str]]) -> list[str]:
-    """Names that need each other in a circle, the first one again at the end; none where there is no circle."""
+    """Return names that need each other in a circle, with the first one again at the end; none without a circle."""
     done: set[str] = set()
     for start in needs:
         path: dict[str, None] = {}
@@ -50,7 +50,7 @@ def circle(needs: Mapping[str, Collection[str]]) -> list[str]:
 
 
 def levels(needs: Mapping[str, Collection[str]]) -> list[list[str]]:
-    """Names in groups that come up one after the other: each needs only those of groups before it."""
+    """Return names in groups that come up one after the other: each needs only those of earlier groups."""
     left, found = dict(needs), list[list[str]]()
     while left:
         ready = [name for name, wanted in left.items() if not any(each in left for each in wanted if each != name)]
@@ -65,7 +65,7 @@ _DESCRIBE = 30.0  # seconds that a class gets to be loaded and to say what it is
 
 
 def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:
-    """The body of a robot file, None where it can't be read, and what is wrong with the file (BT071, BT076)."""
+    """Return the body of a robot file, None if it can't be read, and what is wrong with the file (BT071, BT076)."""
     try:
         body = load_body(source)
     except DataFileError as error:
@@ -87,7 +87,9 @@ def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:
 
 
 def describe_apart(part: ComponentPart, folder: str) -> Mapping[str, Any]:
-    """What its class says of itself, in a process of its own. Raises ComponentError, or ParameterError."""
+    """Return the description of a component's class, made in another process. Raises
+    ComponentError, or ParameterError.
+    """
     command = [
         sys.executable,
         "-B",
@@ -165,7 +167,7 @@ def _of_driver(body: Body, driver: str, port: str, members: Sequence[tuple[int, 
 
 
 def _lacking(body: Body) -> Iterator[Problem]:
-    """What the body has but no device for, though it runs over devices."""
+    """Return the parts of the body without a device, though it runs over devices."""
     kinds, names = {device.kind for device in body.devices}, {device.name for device in body.devices}
     parts = {
         "base": ("drive", body.base),
@@ -184,7 +186,7 @@ def _lacking(body: Body) -> Iterator[Problem]:
 
 
 def _components(body: Body, described: dict[str, Mapping[str, Any]]) -> Iterator[Problem]:
-    """Fills `described` with what the class at each place says of itself, where that can be loaded."""
+    """Fill `described` with the descriptions of the classes that can be loaded, by their place."""
     names, devices = {part.name for part in body.components}, {device.name for device in body.devices}
     known = names | devices | set(CAPABILITIES)
     needs: dict[str, set[str]] = {}

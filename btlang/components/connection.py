@@ -42,23 +42,23 @@ if TYPE_CHECKING:
 
 
 class DeviceGate:
-    """See btlang.devices.device_set.Reads. A device that moves and isn't commanded again comes to rest by itself."""
+    """Devices for components. A device that moves and isn't commanded again comes to rest by itself."""
 
     def __init__(self, devices: Reads, kind: str, robot: Any) -> None:
         self._devices, self._rest, self._robot = devices, KINDS[kind].rest, robot
 
     def read(self, name: str) -> Reading:
-        """The latest reading. Raises DeviceSilent."""
+        """Return the latest reading. Raises DeviceSilent."""
         return self._devices.read(name)
 
     def write(self, name: str, command: Command) -> None:
-        """Raises DeviceError while the robot is stopped, or for what the device doesn't take."""
+        """Command a device. Raises DeviceError while the robot is stopped, or for an invalid command."""
         if self._rest is not None and command != self._rest and self._robot.refuses:
             raise DeviceError(f"the {name} isn't moved: the robot is stopped")
         self._devices.write(name, command)
 
     def silent(self, name: str) -> str | None:
-        """Why it is silent."""
+        """Return why it is silent."""
         return self._devices.silent(name)
 
 
@@ -67,7 +67,7 @@ _UP = 30.0  # seconds that all components get to come up before the first missio
 
 
 class ComponentConnection:
-    """See btlang.run.connection.Connection: another one, with the components and devices of a body."""
+    """A connection with the components and devices of a body added to it."""
 
     def __init__(self, inner: Connection, body: Body) -> None:
         self._inner, self._body = inner, body
@@ -94,11 +94,12 @@ class ComponentConnection:
 
     @property
     def bus(self) -> Bus:
-        """See Connection."""
         return self._inner.bus
 
     def bind(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
-        """See Connection. A word whose `call` is a method of a component is done by it, as it is by then."""
+        """Implement Connection. A word whose `call` is a method of a component uses the component as it is at that
+        time.
+        """
         if entry.ros is not None and self._nodes is not None:
             return self._bound_to_node(entry, vocabulary)
         place, _, method = entry.call.rpartition(".") if isinstance(entry.call, str) else ("", "", "")
@@ -110,7 +111,7 @@ class ComponentConnection:
         return leaf_binding(entry, vocabulary, call, entry.slots).replace(thread=False)  # type: ignore[no-any-return]
 
     def _bound_to_node(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
-        """A word with a `ros` table. Where it uses what is below the name of a component, it fails with that."""
+        """Bind a word with a `ros` table. If it uses a name below that of a component, it fails with the component."""
         bound = self._inner.bind(entry, vocabulary) or self._nodes.bind(entry, vocabulary)
         assert entry.ros is not None
         name = f"/{entry.ros.name.lstrip('/')}"
@@ -121,21 +122,17 @@ class ComponentConnection:
         return bound.replace(call=_led(keeper, bound.call))  # type: ignore[no-any-return]
 
     def check(self, tree: Tree, vocabulary: Lexicon) -> None:
-        """See Connection."""
         self._inner.check(tree, vocabulary)
 
     def begin(self, bus: Bus) -> None:
-        """See Connection."""
         self._used.clear()
         self._inner.begin(bus)
         self._flush()
 
     def pace(self, speed: float, controls: Controls) -> Pace:
-        """See Connection."""
         return self._inner.pace(speed, controls)
 
     def close(self) -> None:
-        """See Connection."""
         try:
             if self._hearing is not None:
                 self._hearing.close()
@@ -163,11 +160,11 @@ class ComponentConnection:
         return name in self._used and not self.bus.closed
 
     def _post(self, kind: str, data: Mapping[str, Any]) -> None:
-        """From any thread; who watches the mission hears of it from the thread that ticks."""
+        """Post an event from any thread; the thread that ticks emits it."""
         self._changes.append((kind, data))
 
     def _post_from_component(self, kind: str, data: Mapping[str, Any]) -> None:
-        """What a component reports; it never counts as an event of the robot itself."""
+        """Post what a component reports; it never counts as an event of the robot itself."""
         self._said.append((kind, data))
 
     def _step(self, seconds: float) -> None:
@@ -191,7 +188,7 @@ def _is_below(name: str, node: RosNode | None) -> bool:
 
 
 def _led(keeper: ComponentKeeper, call: Callable[..., Any]) -> Callable[..., Any]:
-    """A leaf that fails as soon as its component isn't active."""
+    """Return a leaf that fails as soon as its component isn't active."""
     led: Any
 
     def steps(**ports: Any) -> Generator[object, Any, object]:
@@ -225,7 +222,7 @@ def _asking(keeper: ComponentKeeper, method: str, entry: Entry) -> Callable[...,
 
 
 def _leaf_class(keeper: ComponentKeeper, method: str, entry: Entry) -> type:
-    """A class leaf that asks at each start where the component lives by then: it may have been started again."""
+    """Return a leaf class that asks for the component's host at each start: it may have been restarted."""
 
     class ComponentLeaf:
         def __init__(self, robot: Any, wake: Callable[[], object], beside: set[object]) -> None:
@@ -247,8 +244,9 @@ def _leaf_class(keeper: ComponentKeeper, method: str, entry: Entry) -> type:
 
 
 def component_connection(connect: Callable[[], Connection], body: Body) -> Connection:
-    """What `connect` gives, with the components and devices of the body. Raises MissionError (BT071) for those that
-    can't be.
+    """Return the connection of `connect`, with the components and devices of the body.
+
+    Raises MissionError (BT071) for those that can't be used.
     """
     inner: Connection | None = None
     try:

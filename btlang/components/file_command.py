@@ -20,9 +20,9 @@ _OF_NODES = {"version": "", "needs": []}
 
 
 def serve_file(act: str, path: str) -> int:
-    """Checks a robot file, draws the robot, writes it as URDF, or makes a robot file of URDF; returns the exit code.
+    """Check, draw or import a robot file, or write it as URDF; return the exit code.
 
-    Raises MissionError with all that is wrong.
+    Raises MissionError with everything that is wrong.
     """
     source = read_source(path)
     if act == "urdf":
@@ -51,7 +51,7 @@ def _imported(source: Source) -> str:
 
 
 def drawn(body: Body) -> Iterator[str]:
-    """The robot as lines: its body, its components as they come up, and its devices by their port."""
+    """Return the robot as lines: its body, its components in starting order, and its devices by their port."""
     yield f"{one_line(body.name)}, over {body.over}"
     yield from _tree([(part, []) for part in _parts(body)])
     if body.components:

@@ -27,7 +27,7 @@ _SOUND = 2.0  # seconds that it has to be active until pauses are short again
 
 
 class ComponentStatus(Record):
-    """What is known of a component. `why` is why it isn't active; `process` the number of its own process."""
+    """The status of a component. `why` is why it isn't active; `process` the number of its own process."""
 
     name: str
     place: str
@@ -43,8 +43,8 @@ class ComponentStatus(Record):
 class ComponentManager:
     """The components of one robot, by name. Each has its own thread; all methods are for any thread.
 
-    `make` makes the host of a part. `report` gets an event of each change: see PartChanged.
-    `in_use` says whether a running mission uses the component of a name: then it is not replaced.
+    `make` makes the host of a part. `report` gets an event of each change: see PartChanged. `in_use` returns whether a
+    running mission uses the component of a name: then it isn't replaced.
     """
 
     def __init__(
@@ -63,18 +63,18 @@ class ComponentManager:
             self._keepers[part.name] = ComponentKeeper(self, part)
 
     def start(self) -> None:
-        """Begins to bring all of them up."""
+        """Begin to start all components."""
         for keeper in self.keepers:
             keeper.start()
 
     def wait(self, seconds: float) -> bool:
-        """Waits until none is on its way up; whether all are active then."""
+        """Wait until none is starting; return whether all are active then."""
         with self.changed:
             self.changed.wait_for(lambda: all(keeper.settled for keeper in self._keepers.values()), seconds)
             return all(keeper.state == ACTIVE for keeper in self._keepers.values())
 
     def close(self) -> None:
-        """Brings all of them down, those first that others don't need, and waits for it. May be called twice."""
+        """Shut all components down, dependents first, and wait for it. May be called twice."""
         with self.changed:
             self._closing = True
             self.changed.notify_all()
@@ -85,11 +85,11 @@ class ComponentManager:
 
     @property
     def closing(self) -> bool:
-        """Whether all of them go down."""
+        """Whether all components shut down."""
         return self._closing
 
     def keeper(self, name: str) -> ComponentKeeper:
-        """The keeper of a component. Raises ComponentError for an unknown name."""
+        """Return the keeper of a component. Raises ComponentError for an unknown name."""
         if name not in self._keepers:
             listed = ", ".join(self._keepers) or "none"
             raise ComponentError(f'there is no component "{name}"; the components are {listed}')
@@ -97,15 +97,15 @@ class ComponentManager:
 
     @property
     def keepers(self) -> Sequence[ComponentKeeper]:
-        """Those of all components."""
+        """The keepers of all components."""
         return tuple(self._keepers.values())
 
     def statuses(self) -> list[ComponentStatus]:
-        """Of all components, in the order of the robot file."""
+        """Return the statuses of all components, in the order of the robot file."""
         return [keeper.status() for keeper in self.keepers]
 
     def load(self, part: ComponentPart) -> None:
-        """One more, or another one in place of that of its name: as soon as no running mission uses that.
+        """Add a component, or replace that of its name as soon as no running mission uses it.
 
         Raises ComponentError for one that isn't installed.
         """
@@ -120,20 +120,20 @@ class ComponentManager:
             self.changed.notify_all()
 
     def unload(self, name: str) -> None:
-        """Brings one down for good, as soon as no running mission uses it. Raises ComponentError."""
+        """Shut one down for good, as soon as no running mission uses it. Raises ComponentError."""
         with self.changed:
             self.keeper(name).replace(None)
             self.changed.notify_all()
 
     def restart(self, name: str) -> None:
-        """Starts one again, even one that was given up. Raises ComponentError."""
+        """Restart a component, even one that was given up. Raises ComponentError."""
         with self.changed:
             keeper = self.keeper(name)
             keeper.replace(keeper.next or keeper.part)
             self.changed.notify_all()
 
     def report(self, keeper: ComponentKeeper) -> None:
-        """Reports a changed state; called with the lock."""
+        """Report a changed state; called with the lock."""
         self.changed.notify_all()
         name, state = keeper.part.name, keeper.state
         why = keeper.why if keeper.has_failed else ""
@@ -141,28 +141,28 @@ class ComponentManager:
         self._report("part", {"kind": "component", "name": name, "state": state, "text": text})
 
     def make(self, part: ComponentPart) -> Host:
-        """A host, not started."""
+        """Return a host that isn't started."""
         return self._make(part, self._wake)
 
     def needs_met(self, names: Iterable[str]) -> str | None:
-        """The first of the components among these names that isn't active, or won't be for long; None: all are."""
+        """Return the first component among these names that isn't active, or soon won't be; None if all are."""
         known = ((name, self._keepers[name]) for name in names if name in self._keepers)
         return next((name for name, keeper in known if keeper.state != ACTIVE or keeper.leaving), None)
 
     def is_needed(self, name: str) -> bool:
-        """Whether one that needs it is still active."""
+        """Return whether a component that needs it is still active."""
         keepers = self.keepers
         return any(keeper.state == ACTIVE and name in keeper.needs for keeper in keepers)
 
     def is_free(self, name: str) -> bool:
-        """Whether no running mission uses it, or one that needs it."""
+        """Return whether no running mission uses it, or a component that needs it."""
         users, keepers = [name], self.keepers
         for user in users:  # which grows
             users += [each.part.name for each in keepers if user in each.needs and each.part.name not in users]
         return self._closing or not any(map(self._in_use, users))
 
     def forget(self, keeper: ComponentKeeper) -> None:
-        """It was unloaded."""
+        """Remove a component that was unloaded."""
         if self._keepers.get(keeper.part.name) is keeper:
             del self._keepers[keeper.part.name]
 
@@ -172,12 +172,14 @@ class ComponentManager:
 
 
 def class_of(part: ComponentPart) -> str | None:
-    """The `module:Class` of a part; None of a ROS 2 node. Raises ComponentError for one that isn't installed."""
+    """Return the `module:Class` of a part; None for a ROS 2 node. Raises ComponentError for
+    one that isn't installed.
+    """
     return located(part.place) if part.node is None else None
 
 
 class ComponentKeeper:
-    """Leads one component through its life, in a thread that also starts its process."""
+    """The thread that leads one component through its life and starts its process."""
 
     def __init__(self, manager: ComponentManager, part: ComponentPart) -> None:
         self._manager, self.part = manager, part
@@ -197,38 +199,38 @@ class ComponentKeeper:
         self._thread = threading.Thread(target=self._keep, name=f"btlang component {part.name}", daemon=True)
 
     def start(self) -> None:
-        """Begins to bring it up."""
+        """Begin to start the component."""
         self._thread.start()
 
     def join(self, seconds: float) -> bool:
-        """Waits until it is down, but no longer than that; whether it is."""
+        """Wait at most so long until the component is down; return whether it is."""
         if self._thread.ident is not None:
             self._thread.join(max(0.0, seconds))
         return not self._thread.is_alive()
 
     def abandon(self) -> None:
-        """Lets go of it, whatever it does."""
+        """Close the host, whatever it does."""
         if self.host is not None:
             self.host.close()
         self.join(_LOOK * 10)
 
     def replace(self, part: ComponentPart | None) -> None:
-        """It is to be another one, or none; called with the lock of the manager."""
+        """Request another component, or none, in its place; called with the lock of the manager."""
         self.next, self._asked, self._given_up, self._due, self._in_a_row = part, True, False, 0.0, 0
         self._failures.clear()
 
     @property
     def settled(self) -> bool:
-        """Whether it is active, or will not be without help."""
+        """Whether it is active, or won't be without help."""
         return self.state == ACTIVE or self._given_up or self._absent or self.gone or bool(self._failures)
 
     @property
     def has_failed(self) -> bool:
-        """Whether it is down since it failed."""
+        """Whether it is down because it failed."""
         return bool(self._failures) and self.state == UNCONFIGURED
 
     def status(self) -> ComponentStatus:
-        """What is known of it."""
+        """Return the status of the component."""
         part, process = self.part, getattr(self.host, "process", None)
         return ComponentStatus(
             part.name, part.place, self.version, self.state, self.why, self._starts, process, self.needs,
@@ -236,7 +238,7 @@ class ComponentKeeper:
         )  # fmt: skip
 
     def working(self) -> Host:
-        """Where it lives now. Raises ActionFailed where it isn't active."""
+        """Return the current host. Raises ActionFailed if the component isn't active."""
         host = self.host
         if host is None or self.state != ACTIVE or host.state != ACTIVE:
             raise ActionFailed(NotThere(f"the {self.part.name} {self.why or f'is {self.state}'}"))
@@ -269,14 +271,14 @@ class ComponentKeeper:
         return not self._given_up and time.monotonic() >= self._due and self._has(self.part.needs)
 
     def _has(self, needs: Iterable[str]) -> bool:
-        """Whether all that it needs is active; where it isn't, that is what it waits for. Called with the lock."""
+        """Return whether all that it needs is active; if not, note what it waits for. Called with the lock."""
         missing = self._manager.needs_met(needs)
         if missing is not None:
             self._set(self.state, f"waits for the {missing}")
         return missing is None
 
     def _live(self) -> None:
-        """From its start to its end or failure."""
+        """Lead the component from its start to its end or failure."""
         host = self.host = self._manager.make(self.part)
         self.leaving, self._starts = False, self._starts + 1
         try:
@@ -305,7 +307,7 @@ class ComponentKeeper:
             host.close()
 
     def _leaves(self) -> bool:
-        """Whether it is to end, or to be another one, and may."""
+        """Return whether the component is to end or to be replaced, and may."""
         self.leaving = (self._over() or self._asked) and self._manager.is_free(self.part.name)
         return self.leaving
 
@@ -318,7 +320,7 @@ class ComponentKeeper:
         return False
 
     def _watch(self, host: Host) -> None:
-        """While it is active; where what it needs is gone, it is deactivated."""
+        """Watch the active component; deactivate it if what it needs is gone."""
         manager = self._manager
         while True:
             self._look()
@@ -340,7 +342,7 @@ class ComponentKeeper:
         host.transition("shut down")
 
     def _fail(self, reason: str) -> None:
-        """After growing pauses it is started again, until that was tried too often in a minute."""
+        """Wait before the next start, longer each time, until too many failed within a minute."""
         now = time.monotonic()
         with self._manager.changed:
             while self._failures and now - self._failures[0] > _MINUTE:

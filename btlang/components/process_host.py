@@ -39,7 +39,7 @@ _END = 0.5  # seconds that a process gets to end by itself
 
 
 class ProcessHost:
-    """See Host. `changed` is called, from any thread, when there is something to look at."""
+    """A host in another process. `changed` is called, from any thread, when there is something to look at."""
 
     def __init__(
         self,
@@ -73,7 +73,7 @@ class ProcessHost:
         return self._process.pid if self._process is not None and self._process.poll() is None else None
 
     def _own(self) -> socket.socket:
-        """The way to a process of its own."""
+        """Return a socket to a new process of its own."""
         ours, its = socket.socketpair()
         with its:
             words = [str(its.fileno()), str(os.getpid())]
@@ -81,7 +81,7 @@ class ProcessHost:
         return ours
 
     def _shared(self) -> socket.socket:
-        """The way to the process that other robots of this user share; it is started if there is none."""
+        """Return a socket to the process that other robots of this user share; start it if there is none."""
         path = os.path.join(socket_folder(), f"component-{sha256(self._part.shared.encode()).hexdigest()[:16]}.sock")
         link, until = socket.socket(socket.AF_UNIX), time.monotonic() + _LOADING
         while True:
@@ -99,7 +99,6 @@ class ProcessHost:
         return link
 
     def load(self) -> Mapping[str, Any]:
-        """See Host."""
         link = self._own() if not self._part.shared else self._shared()
         link.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, _SEND)
         self._connection = Connection(link.detach())
@@ -117,11 +116,10 @@ class ProcessHost:
         return dict(value)
 
     def transition(self, name: str) -> None:
-        """See Host."""
         self._wait(self._request(name), name, self._part.limit)
 
     def look(self) -> str | None:
-        """See Host; to be called every 0.1 s. It asks for the state each time: a slow answer alone is no failure."""
+        """Implement Host; call this every 0.1 s. It asks for the state each time: a slow answer alone is no failure."""
         if self._lost is None and self._connection is not None:
             now = time.monotonic()
             if now - self._heard > self._part.silence:
@@ -136,11 +134,10 @@ class ProcessHost:
     def leaf(
         self, method: str, outputs: tuple[str, ...], robot: Any, wake: Callable[[], object], beside: set[object]
     ) -> RemoteLeaf:
-        """See Host."""
         return RemoteLeaf(self, method, outputs, robot, wake, beside)
 
     def ask(self, method: str, ports: Mapping[str, Any], robot: Any) -> Any:
-        """See Host. What it asks of the robot meanwhile is answered at once."""
+        """Implement Host. Questions to the robot are answered at once in the meantime."""
         news = threading.Event()
         leaf = RemoteLeaf(self, method, (), robot, news.set, set())
         leaf.start(**ports)
@@ -153,18 +150,18 @@ class ProcessHost:
         return answer
 
     def begin(self, method: str, arguments: dict[str, Any], wake: Callable[[], object]) -> WorkerRequest:
-        """Calls a method. Raises ActionFailed where it can't be called now."""
+        """Call a method. Raises ActionFailed if it can't be called now."""
         if self._lost is not None or self.state != ACTIVE:
             raise ActionFailed(NotThere(f"the {self._part.name} {self._lost or f'is {self.state}'}"))
         return self._request("call", wake, method=method, arguments=arguments)
 
     def halt(self, request: WorkerRequest) -> None:
-        """It need not be done any more."""
+        """Cancel a request."""
         self._send({"halt": request.number})
         request.end({"problem": "it was halted"})
 
     def answer(self, request: WorkerRequest, asked: dict[str, Any], answer: dict[str, Any]) -> None:
-        """Answers a question of a call."""
+        """Answer a question of a call."""
         message = {"answer": asked["ask"], "call": request.number, **answer}
         try:
             packed(message)
@@ -175,7 +172,9 @@ class ProcessHost:
         self._send(message)
 
     def close(self) -> None:
-        """See Host. Its process ends with the socket; where it doesn't, it is killed with all that it has started."""
+        """Implement Host. The process ends with the socket; if it doesn't, it is killed with everything that it has
+        started.
+        """
         patience = 0.0 if self._lost is not None else _END
         self._lose("is being shut down")
         connection, self._connection = self._connection, None
@@ -298,7 +297,7 @@ class ProcessHost:
             return {**refused(problem), "unknown": True}
 
     def _tidy(self, known: set[int]) -> None:
-        """Forgets what is over on both sides; what the component knows nothing of is sent again."""
+        """Forget requests that are over on both sides; send again what the component doesn't know."""
         now = time.monotonic()
         for number, request in tuple(self._requests.items()):
             if number in known:
@@ -310,7 +309,7 @@ class ProcessHost:
                 self._send({**request.message, "again": True})
 
     def _lose(self, reason: str) -> None:
-        """Nothing can be asked of it any more; all that waits for it fails with this reason."""
+        """Close the link; everything that waits for an answer fails with this reason."""
         if self._lost is None:
             self._lost = reason
             for request in tuple(self._requests.values()):

@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 
 
 def robot_words(robot: str | Source) -> list[str]:
-    """As `words_of`, of a robot as --robot names it. Raises as btlang.robots.registry.body_of, too."""
+    """Return the keyword files of a robot as --robot names it. Raises as `words_of` and `body_of`."""
     return words_of(body_of(robot))
 
 
 def words_of(body: Body) -> list[str]:
-    """The keyword files of the components of a body, and that of its gestures. Imports no class.
+    """Return the keyword files of the components of a body, and that of its gestures. Imports no class.
 
     Raises MissionError (BT071) for a component that isn't installed, or (BT076) for a gesture whose phrase means
     something else.
@@ -51,8 +51,9 @@ _SERVICES = ("robot", "halted")
 
 
 def check_words(path: str, methods: Mapping[str, Mapping[str, Any]]) -> Iterator[Diagnostic]:
-    """Problems of a keyword file (BT060 to BT064, BT080), with the methods of each component by its place: see
-    btlang.components.location.describe.
+    """Return the problems of a keyword file (BT060 to BT064, BT080) with the methods of each component by its place.
+
+    Methods are as in btlang.components.location.describe.
     """
     try:
         vocabulary = load_vocabulary([path])
@@ -66,7 +67,7 @@ def check_words(path: str, methods: Mapping[str, Mapping[str, Any]]) -> Iterator
 
 
 def _reason(entry: Entry, methods: Mapping[str, Mapping[str, Any]]) -> str:
-    """Why its method can't do it, "" where it can, and where it isn't done by a component."""
+    """Return why a component's method can't do a word, "" if it can, or if no component does it."""
     place, _, name = entry.call.rpartition(".") if isinstance(entry.call, str) else ("", "", "")
     if place not in methods:
         modules = {known.partition(":")[0] for known in methods}

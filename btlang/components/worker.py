@@ -50,7 +50,7 @@ _HEIGHTS = {FINALIZED: -1, UNCONFIGURED: 0, INACTIVE: 1, ACTIVE: 2}
 
 
 class Worker:
-    """What one robot says to the component, and what is under way for it. `state` is what this robot led it to."""
+    """The requests of one robot to the component. `state` is the one that this robot led it to."""
 
     def __init__(self, connection: Connection, life: Life) -> None:
         self._connection, self._life = connection, life
@@ -65,11 +65,11 @@ class Worker:
 
     @property
     def component(self) -> Component:
-        """What it speaks for."""
+        """The component that it talks for."""
         return self._life.component
 
     def run(self) -> None:
-        """Until the robot is gone."""
+        """Serve the robot until it is gone."""
         while True:
             try:
                 message = unpacked(self._connection.recv_bytes())
@@ -81,14 +81,14 @@ class Worker:
         self.questions.halt()
 
     def send(self, message: dict[str, Any]) -> None:
-        """Sends a message to the robot, if it is still there. Raises TypeError for values that can't be sent."""
+        """Send a message to the robot, if it still exists. Raises TypeError for values that can't be sent."""
         data = packed(message)
         if not self._gone:
             with self._sending, suppress(OSError):  # the robot is gone, which `run` notices too
                 self._connection.send_bytes(data)
 
     def ended(self, number: int, outcome: dict[str, Any]) -> None:
-        """A request is done; its outcome is sent until the robot says that it knows."""
+        """Note that a request is done; its outcome is sent until the robot confirms it."""
         try:
             packed(outcome)
         except TypeError as problem:
@@ -99,12 +99,12 @@ class Worker:
         self.report()
 
     def report(self) -> None:
-        """Sends what is known, again and again, so that no answer is lost for good."""
+        """Send the state again and again, so that no answer is lost for good."""
         known = [*self._calls, *self._begun]
         self.send({"state": self.state, "known": known, "ended": dict(self._ended), "problem": self._life.problem})
 
     def halt_calls(self) -> None:
-        """Ends what this robot has begun."""
+        """End all calls of this robot."""
         for call in tuple(self._calls.values()):
             call.halt()
 
@@ -135,9 +135,9 @@ class Worker:
 
 
 class Life:
-    """The component and its life, in a thread of its own: for one robot, or for several that share it.
+    """The component and its life cycle, in a thread: for one robot, or for several that share it.
 
-    With several it is as far up as the one that needs it most; a hook is called when that changes.
+    With several, its state is that of the robot that needs it most; a hook is called when that changes.
     """
 
     def __init__(self, shared: bool = False) -> None:
@@ -149,7 +149,7 @@ class Life:
         threading.Thread(target=self._work, name="btlang life", daemon=True).start()
 
     def put(self, worker: Worker, message: dict[str, Any]) -> None:
-        """A request of a robot, to be done in its turn."""
+        """Queue a request of a robot."""
         self._asked.put((worker, message))
 
     def _work(self) -> None:
@@ -206,14 +206,14 @@ class Life:
         return worker.state
 
     def _is_due(self, worker: Worker, transition: Transition) -> bool:
-        """Whether the hook has to be called: no robot has led it there yet, or none needs it any more."""
+        """Return whether the hook has to be called: no robot has led it there yet, or none needs it any more."""
         if transition.name in UPWARDS:
             return _HEIGHTS[self.state] < _HEIGHTS[transition.ends]
         others = (_HEIGHTS[other.state] for other in self.workers if other is not worker)
         return all(height <= _HEIGHTS[transition.ends] for height in others)
 
     def _step(self, seconds: float) -> None:
-        """A step that raises ends the activity."""
+        """Do a step; if it raises, the component isn't active any more."""
         try:
             self.component.step(seconds)
         except BaseException as problem:
@@ -237,12 +237,12 @@ class Life:
 
 
 def _end() -> None:
-    """With all that it has started."""
+    """End this process with everything that it has started."""
     os.killpg(0, signal.SIGKILL)
 
 
 def _leave_nothing() -> None:
-    """Forks a process that waits for the end of this one, however it ends, and ends what this one has started."""
+    """Fork a process that waits for the end of this one, however it ends, and ends what this one has started."""
     waits, held = os.pipe()
     if os.fork():
         os.close(waits)
@@ -255,7 +255,7 @@ def _leave_nothing() -> None:
 
 
 def main(descriptor: int, robot: int) -> None:
-    """Works for the robot whose process has the number `robot`, over an inherited socket."""
+    """Work for the robot whose process has the number `robot`, over an inherited socket."""
     ctypes.CDLL(None).prctl(_DIE_WITH_PARENT, signal.SIGKILL)  # also while this process is stopped
     if os.getppid() == robot:
         _leave_nothing()
@@ -266,7 +266,7 @@ def main(descriptor: int, robot: int) -> None:
 
 
 def main_shared(path: str) -> None:
-    """Works for all robots that come to a socket, until none is left; where another process does that, it ends."""
+    """Work for all robots that connect to a socket, until none is left; end if another process does that already."""
     if os.fork():  # no robot is its parent: whoever started it may be gone before the others
         os._exit(0)
     os.setsid()

@@ -20,25 +20,27 @@ __all__ = ["Device", "DeviceError", "DeviceSilent", "Driver", "MakesDriver"]
 
 
 class DeviceError(RobotError):
-    """Why a device or a port can't be used, in plain English."""
+    """The reason why a device or a port can't be used, in plain English."""
 
 
 class DeviceSilent(DeviceError, SensorSilent):
-    """A device reports nothing, or nothing that can be true, so its reading is unknown."""
+    """The error that a device reports nothing, or nothing that can be true, so its reading is unknown."""
 
 
 class Driver(Protocol):
-    """The devices of one port. It is used by one thread, that of its loop, and made with the port, the devices on it,
-    and its own options of the robot file; that opens nothing yet."""
+    """The devices of one port, used only by the thread of its loop.
+
+    It is made with the port, the devices on it, and its own options of the robot file; that opens nothing yet.
+    """
 
     rate: float
     """Cycles a second that it asks for; `open` may change it."""
 
     def open(self) -> None:
-        """Finds the devices. Raises DeviceError where that can't be done now; it is tried again later."""
+        """Find the devices. Raises DeviceError if that can't be done now; it is tried again later."""
 
     def exchange(self, commands: Mapping[str, Command]) -> Mapping[str, Reading | DeviceError]:
-        """One cycle: sends all devices their commands and returns their new readings, both by name.
+        """Do one cycle: send all devices their commands and return their new readings, both by name.
 
         A device without a new reading since the last cycle is left out; if its reading can't be used, an error takes
         the reading's place. A device that measures nothing, such as a light, answers with an empty `Reading()`. The
@@ -47,18 +49,20 @@ class Driver(Protocol):
         """
 
     def close(self) -> None:
-        """Brings to rest what moves, as far as the port can still be reached, and lets go of it. May be called twice,
-        and of a driver that isn't open."""
+        """Bring to rest what moves, as far as the port can still be reached, and close it.
+
+        May be called twice, and for a driver that isn't open.
+        """
 
 
 class MakesDriver(Protocol):
-    """A class of drivers. `kinds` are those that it can drive; `needs_port`, whether a device has to name a port."""
+    """A class of drivers. `kinds` are those that it can drive; `needs_port` is whether a device has to name a port."""
 
     kinds: Sequence[str]
     needs_port: bool
 
     def __call__(self, port: str, devices: Sequence[Device]) -> Driver:
-        """A driver, not opened yet. Raises DeviceError for options that it can't use, naming the device."""
+        """Return a driver that isn't open yet. Raises DeviceError for unusable options, naming the device."""
 
 
 SIMULATED = "simulated"
@@ -74,7 +78,7 @@ ENTRY_POINTS = "btlang.drivers"
 
 
 def driver_class(name: str, folder: str = "") -> MakesDriver:
-    """The class of a driver: one of DRIVERS, an entry point of the group `btlang.drivers`, or `module:Class`.
+    """Return a driver class: one of DRIVERS, an entry point of the group `btlang.drivers`, or `module:Class`.
 
     Raises DeviceError.
     """
@@ -101,7 +105,7 @@ def driver_class(name: str, folder: str = "") -> MakesDriver:
 
 
 def make_driver(name: str, folder: str, port: str, devices: Sequence[Device]) -> Driver:
-    """A driver, not opened yet. Raises DeviceError, whatever its constructor raises."""
+    """Return a driver that isn't open yet. Raises DeviceError, whatever its constructor raises."""
     kind = driver_class(name, folder)
     try:
         return kind(port, devices)

@@ -18,8 +18,9 @@ _NUMBERS, _NO_NUMBER, _NOT_FINITE = ("float", "int"), "not a number", "not finit
 
 
 def wrong_field(record: Reading | Command) -> tuple[str, str] | None:
-    """The name of the first field that isn't a number where it has to be one, and what is wrong with it. Distances may
-    be infinite.
+    """Return the name of the first field that isn't a number although it has to be, and what is wrong with it.
+
+    Distances may be infinite.
     """
     for name, may_lack in _number_fields(type(record)):
         value = getattr(record, name)
@@ -36,7 +37,7 @@ def wrong_field(record: Reading | Command) -> tuple[str, str] | None:
 
 
 def check_command(name: str, kind: str, command: Command) -> None:
-    """Raises DeviceError for a command that a device of this name and kind doesn't take."""
+    """Raise DeviceError for a command that a device of this name and kind doesn't take."""
     wanted = KINDS[kind].command
     if wanted is None or not isinstance(command, wanted):
         raise DeviceError(f"the {name} doesn't take a {type(command).__name__}")
@@ -45,7 +46,7 @@ def check_command(name: str, kind: str, command: Command) -> None:
 
 
 def wrong_content(reading: Reading) -> str:
-    """Why the beams of a scan or the pixels of a picture can't be used, "" where they can."""
+    """Return why the beams of a scan or the pixels of a picture can't be used, "" if they can."""
     if isinstance(reading, Scan):
         try:
             all_invalid = isnan(fsum(reading.ranges)) and all(map(isnan, reading.ranges))
@@ -61,7 +62,7 @@ def wrong_content(reading: Reading) -> str:
 
 @cache
 def _number_fields(kind: type[Reading | Command]) -> tuple[tuple[str, bool], ...]:
-    """The fields that are numbers, and whether each may be None."""
+    """Return the fields that are numbers, and whether each may be None."""
     kinds = ((name, str(kind.__annotations__.get(name, "")).split(" | ")) for name in kind.fields)
     return tuple((name, "None" in each) for name, each in kinds if each[0] in _NUMBERS)
 
@@ -74,7 +75,7 @@ _NOT_YET, _NOTHING_NEW, _CLOSED = "it has not answered yet", "it reports nothing
 
 
 class DeviceLoop:
-    """The loop of one driver, from `start` to `close`. All else is for any thread.
+    """The loop of one driver, from `start` to `close`. All other methods are for any thread.
 
     `changed` is called, in the thread of the loop, with a device and why it is silent (None: it is back).
     """
@@ -101,40 +102,40 @@ class DeviceLoop:
         """Cycles a second that it reaches, over about a second; 0 while the port is not open."""
 
     def start(self) -> None:
-        """Begins to open the port, and goes on trying until it can."""
+        """Begin to open the port, and retry until it can be opened."""
         self._thread.start()
 
     def close(self) -> None:
-        """Brings the devices to rest and lets go of the port. May be called twice."""
+        """Bring the devices to rest and close the port. May be called twice."""
         self._stopped.set()
         if self._thread.ident is not None:
             self._thread.join(_JOIN)
 
     def read(self, name: str) -> Reading:
-        """The latest reading. Raises DeviceSilent if there is no new one."""
+        """Return the latest reading. Raises DeviceSilent if there is no new one."""
         found, wrong = self._readings.get(name), self.silent(name)
         if wrong is None and found is not None:
             return found[0]
         raise DeviceSilent(f"the {name} is silent: {wrong or _NOTHING_NEW}")
 
     def follow(self, name: str, take: Callable[[Reading], object]) -> None:
-        """`take` gets each new reading from now on, in the thread of the loop; it must return at once."""
+        """Call `take` with each new reading from now on, in the thread of the loop; it must return at once."""
         self._followers[name] = [*self._followers.get(name, ()), take]
 
     def write(self, name: str, command: Command) -> None:
-        """Commands a device; the command counts for `silence` seconds, so whoever drives repeats it.
+        """Command a device; the command counts for `silence` seconds, so whoever drives repeats it.
 
-        Raises DeviceError for one that the device doesn't take, or with a field that isn't a finite number.
+        Raises DeviceError for an invalid command, or for a field that isn't a finite number.
         """
         check_command(name, self.devices[name].kind, command)
         self._commands[name] = command, time.monotonic()
 
     def rest(self) -> None:
-        """Forgets all commands: what moves comes to rest in the next cycle. Takes no lock."""
+        """Forget all commands: what moves comes to rest in the next cycle. Takes no lock."""
         self._commands.clear()
 
     def silent(self, name: str) -> str | None:
-        """Why a device is silent, None if it isn't."""
+        """Return why a device is silent, None if it isn't."""
         found, wrong = self._readings.get(name), self._wrong[name]
         if wrong is None and (found is None or time.monotonic() - found[1] > self._silence):
             return _NOTHING_NEW  # its driver hangs
@@ -177,7 +178,7 @@ class DeviceLoop:
                 self._stopped.wait(due - now)
 
     def _due_commands(self, until: float) -> dict[str, Command]:
-        """Commands that count until then, when the next ones are sent. A device that moves rests while it's silent."""
+        """Return the commands that count until the next cycle. A device that moves rests while it's silent."""
         found: dict[str, Command] = {}
         for name, device in self.devices.items():
             kind = KINDS[device.kind]
@@ -225,7 +226,7 @@ class DeviceLoop:
 
 
 def _untrue(reading: Reading, device: Device) -> str:
-    """Why a reading can't be used, "" where it can."""
+    """Return why a reading can't be used, "" if it can."""
     wanted = KINDS[device.kind].reading or Reading
     if not isinstance(reading, wanted):
         return f"its driver gives {type(reading).__name__}, not {wanted.__name__}"

@@ -22,15 +22,15 @@ _JOIN = 1.0  # seconds that a camera gets to give the picture that it is about t
 
 
 def missing(extra: str) -> DeviceError:
-    """PyAV isn't installed."""
+    """Return the error that PyAV isn't installed."""
     return DeviceError(f"it needs the Python package av, which isn't installed: pip install 'btlang[{extra}]'")
 
 
 class MediaSource:
-    """Opens a place with PyAV and hands each frame to `take`, in a thread; files at the speed of their time.
+    """A source that PyAV opens; a thread passes each frame to `take`, those of files at their own speed.
 
-    `form` is the FFmpeg format of a device, such as v4l2; "" for a file, which begins again when it is over if it
-    `repeats`. Raises DeviceError where it can't be opened.
+    `form` is the FFmpeg format of a device, such as v4l2; "" for a file, which starts again when it is over if it
+    `repeats`. Raises DeviceError if it can't be opened.
     """
 
     def __init__(
@@ -45,12 +45,12 @@ class MediaSource:
         self._thread.start()
 
     def check(self) -> None:
-        """Raises DeviceError where nothing more comes."""
+        """Raise DeviceError if nothing more comes."""
         if self._problem is not None:
             raise DeviceError(self._problem)
 
     def close(self) -> None:
-        """Lets go of it; of a device that gives nothing any more, as soon as it does."""
+        """Close the source; a device that sends nothing any more, as soon as it does."""
         self._ended.set()
         self._thread.join(_JOIN)
 
@@ -95,7 +95,7 @@ _OPTIONS = ("width", "height", "rate", "repeat")
 
 
 class Camera:
-    """See btlang.devices.driver.Driver. The port is a device such as /dev/video0, or a video or picture file.
+    """The driver `camera`. The port is a device such as /dev/video0, or a video or picture file.
 
     Options: `width`, `height` and `rate` that a device is asked for, pictures a second at most (10); `repeat` = false
     ends a file when it is over.
@@ -121,7 +121,6 @@ class Camera:
         self._newest: Any = None
 
     def open(self) -> None:
-        """See Driver."""
         if find_spec("av") is None:
             raise missing("camera")
         options, wanted = self._device.options, {}
@@ -134,7 +133,6 @@ class Camera:
         self._source = MediaSource(self._port, "v4l2" if is_device else "", "video", wanted, repeats, self._take)
 
     def exchange(self, commands: Mapping[str, Command]) -> Mapping[str, Reading | DeviceError]:
-        """See Driver."""
         assert self._source is not None
         frame, self._newest = self._newest, None
         if frame is None:
@@ -144,7 +142,6 @@ class Camera:
         return {self._device.name: Image(frame.width, frame.height, pixels.tobytes())}
 
     def close(self) -> None:
-        """See Driver."""
         source, self._source, self._newest = self._source, None, None
         if source is not None:
             source.close()
@@ -159,10 +156,10 @@ _PIECE = 0.05  # seconds that are written at once
 
 
 class SoundCard:
-    """See btlang.devices.driver.Driver. The port is a device of ALSA such as "default" or "hw:1", or a file that ends
-    in .wav. One microphone or one speaker on it; sound is mono, 16 bits, 16 kHz.
+    """The driver `sound`. The port is a device of ALSA such as "default" or "hw:1", or a file that ends in .wav.
 
-    A speaker plays on if its command is repeated; a different one begins, and one without samples is silence at once.
+    It has one microphone or one speaker; sound is mono, 16 bits, 16 kHz. A speaker plays on if its command is repeated;
+    a different one begins, and one without samples is silence at once.
     """
 
     kinds: ClassVar[Sequence[str]] = ("microphone", "speaker")
@@ -183,7 +180,6 @@ class SoundCard:
         self._resampler: Any = None
 
     def open(self) -> None:
-        """See Driver."""
         if find_spec("av") is None:
             raise missing("ears" if self._device.kind == "microphone" else "voice")
         if self._device.kind == "speaker":
@@ -195,7 +191,6 @@ class SoundCard:
         self._source = MediaSource(self._port, self._form, "audio", {}, False, self._hear)
 
     def exchange(self, commands: Mapping[str, Command]) -> Mapping[str, Reading | DeviceError]:
-        """See Driver."""
         name = self._device.name
         if self._speaker is not None:
             return {name: self._speaker.play(commands.get(name))}
@@ -210,7 +205,6 @@ class SoundCard:
         return {name: Sound(samples, _RATE)}
 
     def close(self) -> None:
-        """See Driver."""
         source, self._source = self._source, None
         speaker, self._speaker = self._speaker, None
         for each in (source, speaker):
@@ -227,7 +221,7 @@ class SoundCard:
 
 
 class Speaker:
-    """Writes samples in a thread, in pieces, so that silence comes at once. Raises DeviceError where it can't."""
+    """A thread that writes samples in pieces, so that silence comes at once. Raises DeviceError if it can't."""
 
     def __init__(self, place: str, form: str) -> None:
         import av
@@ -248,7 +242,7 @@ class Speaker:
         self._thread.start()
 
     def play(self, command: Command | None) -> Playing | DeviceError:
-        """Begins a command that is another one than the last, and says how much of it is left."""
+        """Begin a command that differs from the last one; return how much of it is left."""
         with self._changing:
             if isinstance(command, Play) and command is not self._command:
                 self._left = _resampled(command)
@@ -259,7 +253,7 @@ class Speaker:
         return Playing(len(self._left) / 2 / _RATE) if self._problem is None else DeviceError(self._problem)
 
     def close(self) -> None:
-        """Silence, and lets go of it."""
+        """Silence the speaker, and close it."""
         self._left = b""
         self._ended.set()
         self._news.set()
@@ -292,7 +286,7 @@ class Speaker:
 
 
 def _resampled(command: Play) -> bytes:
-    """The samples at the rate of the speaker."""
+    """Return the samples at the rate of the speaker."""
     if command.rate == _RATE or not command.samples:
         return command.samples
     import numpy as np

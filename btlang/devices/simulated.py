@@ -46,9 +46,9 @@ _RATE = 16_000
 class SimulatedDevice:
     """One device. `read` and `write` are for any thread, `step` for that of the robot. Seconds are those of its world.
 
-    Options of all kinds: `noise` (standard deviation), `delay` in seconds, `silent` and `frozen` as [from, until].
-    Of a range sensor: `cone` (degrees), `range` (metres). Of a camera: `view` (degrees). Of a joint or hand: `part`,
-    the name in the body, by default that of the device. Of a button: `bumper`. Of a gauge: `value`.
+    Options of all kinds: `noise` (standard deviation), `delay` in seconds, `silent` and `frozen` as [from, until]. Of a
+    range sensor: `cone` (degrees), `range` (metres). Of a camera: `view` (degrees). Of a joint or hand: `part`, the
+    name in the body, by default that of the device. Of a button: `bumper`. Of a gauge: `value`.
     """
 
     def __init__(self, device: Device, robot: Any) -> None:
@@ -76,7 +76,7 @@ class SimulatedDevice:
         return self._command
 
     def read(self, name: str) -> Reading:
-        """The latest reading. Raises DeviceSilent."""
+        """Return the latest reading. Raises DeviceSilent."""
         if self._is_perfect:
             return self._read()
         now = self._robot.time
@@ -93,7 +93,7 @@ class SimulatedDevice:
 
     @property
     def exact(self) -> Any:
-        """The base around which a lidar sees all exactly, so that there's no need to measure it; else None."""
+        """The base around which a lidar sees everything exactly, so that there's no need to measure it; else None."""
         sees = self._is_perfect and self._device.kind == "lidar" and not self._robot.faults.scanner_silent
         return self._robot.base if sees else None
 
@@ -104,7 +104,7 @@ class SimulatedDevice:
             raise DeviceSilent(f"the {self._device.name} is silent: {problem}") from None
 
     def write(self, name: str, command: Command) -> None:
-        """Commands the device. Raises DeviceError for a command that it doesn't take."""
+        """Command the device. Raises DeviceError for an invalid command."""
         check_command(name, self._device.kind, command)
         self._command, self._command_time = command, self._robot.time
         act = _WRITE.get(self._device.kind)
@@ -112,14 +112,14 @@ class SimulatedDevice:
             act(self, command)
 
     def step(self) -> None:
-        """Brings the device to rest if it moves and its command isn't repeated."""
+        """Bring the device to rest if it moves and its command isn't repeated."""
         rest = self._kind.rest
         if rest is not None and self._command is not None and self._robot.time - self._command_time > SILENCE:
             self._command = None
             _WRITE[self._device.kind](self, rest)
 
     def silent(self, name: str) -> str | None:
-        """Why it is silent."""
+        """Return why it is silent."""
         return "it is switched off in the robot file" if self._within("silent", self._robot.time) else None
 
     def _option(self, name: str, usual: Any) -> Any:
@@ -212,7 +212,7 @@ class SimulatedDevice:
             pass
 
     def _image(self) -> Image:
-        """What the scanner sees, as walls that are darker and lower the farther they are."""
+        """Return an image of what the scanner sees, as walls that are darker and lower the farther they are."""
         import numpy as np  # most missions need none
 
         view, angle = float(self._option("view", 60.0)), self._device.angle
@@ -282,7 +282,7 @@ _WRITE: dict[str, Callable[[SimulatedDevice, Command], None]] = {
 
 
 def twins(body: Body) -> tuple[Device, ...]:
-    """A simulated device for each of the body's own, and for each of its parts that has none."""
+    """Return a simulated device for each device of the body, and for each part without a device."""
     made = {device.name: twin(device) for device in body.devices}
     kinds = {device.kind for device in body.devices}
     parts = [
@@ -304,7 +304,7 @@ def twins(body: Body) -> tuple[Device, ...]:
 
 
 def twin(device: Device) -> Device:
-    """A simulated one in its place, to which the options of its driver say nothing."""
+    """Return a simulated device in place of another one. The options of its driver don't count."""
     if device.driver == SIMULATED:
         return device
     options = {"bumper": True} if device.kind == "button" and "bumper" in device.name else {}

@@ -19,7 +19,7 @@ _SLOWED = 1.02  # times as long
 
 
 def check_file(path: str, body: Body) -> Iterator[Diagnostic]:
-    """What is wrong with a gesture file for a body (BT076), and what would be slowed (BT077)."""
+    """Return what is wrong with a gesture file for a body (BT076), and what would be slowed (BT077)."""
     source = read_source(path)
     try:
         gestures = load_gestures(source, body.joints)
@@ -31,7 +31,7 @@ def check_file(path: str, body: Body) -> Iterator[Diagnostic]:
 
 
 def check_gesture(gesture: Gesture, body: Body, source: Source) -> Iterator[Diagnostic]:
-    """As `check_file`, of one that was read."""
+    """Return what is wrong with a gesture that was read, like `check_file`."""
     rehearsal = rehearse(body, gesture)
     if not rehearsal.problem and rehearsal.slower <= _SLOWED:
         return
@@ -49,7 +49,7 @@ def check_gesture(gesture: Gesture, body: Body, source: Source) -> Iterator[Diag
 
 
 def _first(gesture: Gesture, body: Body, whole: Rehearsal) -> int:
-    """The number in the file of the first key frame up to which it goes wrong as the whole gesture does."""
+    """Return the number in the file of the first key frame up to which it goes wrong as the whole gesture does."""
     for count in range(1, len(gesture.frames)):
         part = rehearse(body, _until(gesture, count))
         if part.problem if whole.problem else part.slower > _SLOWED:
@@ -64,6 +64,6 @@ def _until(gesture: Gesture, count: int) -> Gesture:
 
 
 def _written(gesture: Gesture, index: int) -> int:
-    """Of a repeated key frame, which is in the file once."""
+    """Return the place of a repeated key frame, which is in the file once."""
     written = list(dict.fromkeys(id(frame.joints) for frame in gesture.frames))
     return written.index(id(gesture.frames[index].joints))

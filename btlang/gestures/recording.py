@@ -29,16 +29,16 @@ _SLOW = 5.0  # degrees a second at most until a servo holds
 
 
 def servos_of(body: Body) -> tuple[Device, ...]:
-    """The real servos of its joints."""
+    """Return the real servos of a robot's joints."""
     return tuple(each for each in body.devices if each.driver != SIMULATED and body.joint(each.name) is not None)
 
 
 @contextmanager
 def loose(body: Body) -> Iterator[Callable[[], dict[str, float]]]:
-    """The servos of a body without torque, and what reads where they are; at the end they hold there.
+    """Yield a body's servos without torque, and a reader of their positions; at the end they hold there.
 
-    Raises MissionError (BT071) where one can't be used. What reads raises DeviceError for one that is silent, and
-    ValueError for one that was moved beyond the limits of its joint.
+    Raises MissionError (BT071) if one can't be used. The reader raises DeviceError for a silent servo, and ValueError
+    for one that was moved beyond the limits of its joint.
     """
     servos = _Servos(body)
     try:
@@ -54,7 +54,7 @@ def loose(body: Body) -> Iterator[Callable[[], dict[str, float]]]:
 
 
 class _Servos:
-    """A thread repeats their commands, as their loop requires."""
+    """Servos, and a thread that repeats their commands, as their loop requires."""
 
     def __init__(self, body: Body) -> None:
         self._body = body
@@ -67,7 +67,7 @@ class _Servos:
         self._thread = threading.Thread(target=self._keep, name="loose joints", daemon=True)
 
     def let_go(self) -> None:
-        """Raises DeviceError where one is silent."""
+        """Take their torque away. Raises DeviceError if one is silent."""
         self.devices.start()
         self._thread.start()
         for name in self._until(lambda name: self._state(name).loose):
@@ -75,7 +75,7 @@ class _Servos:
             raise DeviceError(f"the {name} doesn't let go")
 
     def hold(self) -> None:
-        """Where they are; says which of them are silent, and so stay as they are."""
+        """Hold the servos where they are; report the silent ones, which stay as they are."""
         self._done.set()
         if self._thread.ident is not None:
             self._thread.join()
@@ -85,7 +85,7 @@ class _Servos:
             self.devices.readers[name].write(name, JointTarget())
 
     def pose(self) -> dict[str, float]:
-        """Where they are. See `loose`."""
+        """Return the positions of the servos; see `loose`."""
         self._until(lambda name: bool(self._state(name)))  # one may be silent for a moment
         return {name: self._angle(name) for name in self._names}
 
@@ -113,7 +113,7 @@ class _Servos:
         return not state.loose
 
     def _until(self, reached: Callable[[str], bool]) -> list[str]:
-        """Asks again and again for those that haven't reached something; gives those that don't."""
+        """Ask again and again for servos that haven't reached something; return those that don't."""
         left, end = self._names, time.monotonic() + _WAITS
         while left and time.monotonic() < end:
             left = [name for name in left if not _is_so(reached, name)]
@@ -130,7 +130,7 @@ def _is_so(reached: Callable[[str], bool], name: str) -> bool:
 
 
 def _ignore(kind: str, data: Mapping[str, object]) -> None:
-    """Of devices that fall silent: reading says so."""
+    """Ignore that devices fall silent: reading reports it."""
 
 
 Pose = dict[str, float]
@@ -141,10 +141,10 @@ _TYPED = "Type joints with their angles, such as: head tilt = -15, head turn = 2
 
 
 def record(name: str, path: str, body: Body, over: str) -> int:
-    """Takes poses from standard input until it ends, and writes the gesture; returns the exit code.
+    """Take poses from standard input until it ends, and write the gesture; return the exit code.
 
-    Where the robot has servos, they are loose meanwhile. Ctrl-C writes nothing. Raises MissionError (BT071 for devices
-    that can't be used, BT076 for poses that can't make a gesture).
+    Servos of the robot are loose meanwhile. Ctrl-C writes nothing. Raises MissionError (BT071 for devices that can't be
+    used, BT076 for poses that can't make a gesture).
     """
     if over != "devices" or not servos_of(body):
         show(f"The robot runs {over}, so nobody can move it by hand. {_TYPED}", sys.stderr)
@@ -156,7 +156,7 @@ def record(name: str, path: str, body: Body, over: str) -> int:
 
 
 def poses_of(lines: Iterable[str], body: Body, read: Callable[[], Pose] | None) -> Iterator[Pose]:
-    """The pose of each line that has one; what is wrong with a line is said."""
+    """Yield the pose of each line that has one; report what is wrong with a line."""
     for line in lines:
         if line.strip() == "end":
             return
@@ -175,7 +175,7 @@ def poses_of(lines: Iterable[str], body: Body, read: Callable[[], Pose] | None) 
 
 
 def text_of(name: str, body: Body, poses: Iterable[Pose]) -> str:
-    """The file of a gesture: one key frame for each pose, as far apart as the joints need."""
+    """Return the file of a gesture: one key frame for each pose, as far apart as the joints need."""
     at, last = 0.0, {joint.name: joint.rest for joint in body.joints}
     text = f"name = {toml_value(name)}\n"
     for pose in poses:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 def summary(world: World) -> Iterator[str]:
-    """A line for its size and the start, and one for each kind of things with their names."""
+    """Return a line for the size and the start of a world, and one for each kind of things with their names."""
     points = [point for wall in world.walls for point in wall]
     points += [edge[:2] for box in world.boxes for edge in box.edges()]
     if points:
@@ -84,7 +84,7 @@ _TAKES = {"": {"picture"}, "check": set[str](), "import": {"out", "start"}, "exp
 
 
 def serve(options: argparse.Namespace) -> int:
-    """Does the verb `world`; returns the exit code. Raises MissionError."""
+    """Do the verb `world`; return the exit code. Raises MissionError."""
     words = options.words or [DEFAULT_WORLD]
     act, files = ("", words) if words[0] not in ACTS else (words[0], words[1:])
     _check_words(options, act, files)
@@ -116,7 +116,7 @@ def _on_terminal(world: World) -> object:
 
 
 def _check_words(options: argparse.Namespace, act: str, files: list[str]) -> None:
-    """Ends with a usage error where options and files don't fit the act."""
+    """Exit with a usage error if options and files don't fit the act."""
     for name, option in _GIVEN.items():
         if getattr(options, name) is not None and name not in _TAKES[act]:
             options.refuse(f"{option} isn't for {act or 'a world alone'}")

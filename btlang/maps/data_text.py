@@ -27,15 +27,15 @@ _MOST_YAML = 1_000_000  # characters; reading so many takes seconds
 
 
 class ForeignFileError(DataFileError):
-    """A file of another program that no world can be made from."""
+    """The reason why no world can be made from a file of another program."""
 
     code = "BT075"
 
 
 def read_data(source: Source) -> Any:
-    """What a text in JSON or YAML holds; of several documents in one a list of them.
+    """Return the data in JSON or YAML; of several documents a list of them.
 
-    Raises ForeignFileError for what isn't such a text, MissionError (BT087) where PyYAML isn't installed.
+    Raises ForeignFileError for any other text, MissionError (BT087) if PyYAML isn't installed.
     """
     try:
         return load_json(source.text)
@@ -73,7 +73,7 @@ def _read_yaml(source: Source) -> Any:
 
 
 def yaml_module() -> ModuleType:
-    """PyYAML. Raises MissionError (BT087) where it isn't installed."""
+    """Import PyYAML. Raises MissionError (BT087) if it isn't installed."""
     try:
         import yaml
     except ImportError:
@@ -83,7 +83,7 @@ def yaml_module() -> ModuleType:
 
 
 def missing(what: str, package: str) -> MissionError:
-    """What to raise where a package of the extra `maps` isn't there."""
+    """Return the error that a package of the extra `maps` isn't installed."""
     return MissionError([diagnostic("BT087", NOWHERE, what=what, package=package)])
 
 
@@ -91,14 +91,14 @@ _LONGEST = 40  # characters of a value in a message
 
 
 def shown(value: object) -> str:
-    """A value in a message, cut short."""
+    """Return a value in a message, cut short."""
     # a long number has no text, and that of a large list takes long to make
     text = repr(value) if isinstance(value, str | float | bool | None) else f"a {type(value).__name__}"
     return text if len(text) <= _LONGEST else text[:_LONGEST] + "..."
 
 
 def number(value: Any, what: str, low: float | None = None, high: float | None = None) -> float:
-    """A finite number of at most a million, within the bounds. Raises Problem."""
+    """Return a finite number of at most a million, within the bounds. Raises Problem."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise Problem(f"{what} must be a number, not {shown(value)}")
     if not is_coordinate(value):
@@ -110,14 +110,14 @@ def number(value: Any, what: str, low: float | None = None, high: float | None =
 
 
 def numbers(value: Any, what: str, *counts: int) -> list[float]:
-    """A list of so many numbers. Raises Problem."""
+    """Return a list of so many numbers. Raises Problem."""
     if not isinstance(value, list) or len(value) not in counts:
         raise Problem(f"{what} must be a list of {joined([*map(str, counts)], 'or')} numbers")
     return [number(each, what) for each in value]
 
 
 def yaw(what: str, x: float, y: float, z: float, w: float) -> float:
-    """The direction in degrees, (-180, 180], of a quaternion of any length but 0. Raises Problem."""
+    """Return the direction in degrees, (-180, 180], of a quaternion of any length but 0. Raises Problem."""
     length = x * x + y * y + z * z + w * w
     if length < 1e-9:
         raise Problem(f"{what} must be a quaternion, and this one has the length 0")
@@ -128,7 +128,7 @@ _KEY = "world"
 
 
 def notation(world: World, to: str) -> str:
-    """The world as text in "json" or "yaml". Raises MissionError (BT087) where PyYAML isn't installed."""
+    """Return the world as text in "json" or "yaml". Raises MissionError (BT087) if PyYAML isn't installed."""
     data = {_KEY: as_data(world)}
     if to == "json":
         return json.dumps(data, indent=1) + "\n"
@@ -137,12 +137,12 @@ def notation(world: World, to: str) -> str:
 
 
 def is_world(data: object) -> bool:
-    """Whether the data of a file are those of a world."""
+    """Return whether the data of a file are a world."""
     return isinstance(data, dict) and data.keys() == {_KEY} and isinstance(data[_KEY], dict) and "start" in data[_KEY]
 
 
 def read_world_data(data: Any, path: str) -> World:
-    """The world of such data. Raises WorldError, and Problem for keys that no file can have."""
+    """Return the world in such data. Raises WorldError, and Problem for unknown keys."""
     try:
         tables = json.loads(json.dumps(data[_KEY], default=str))  # YAML has dates, and keys that are numbers
     except TypeError:

@@ -25,7 +25,7 @@ _MOST_CHECKS = 5_000_000  # of a place with a piece of wall: as many as a world 
 
 
 def import_world(paths: Sequence[str], radius: float, start: Pose | None = None) -> tuple[World, list[str]]:
-    """The world of all files together, and a line for each place that was moved, renamed or left out.
+    """Return the world of all files together, and a line for each place that was moved, renamed or left out.
 
     It starts at `start`, by default at the first way point, and leaves room for a robot of that radius. Raises
     MissionError with what is wrong in all files.
@@ -42,7 +42,7 @@ def import_world(paths: Sequence[str], radius: float, start: Pose | None = None)
 
 
 def _read(path: str) -> World | list[Place] | tuple[tuple[Point, ...], ...]:
-    """A world, way points, or walls."""
+    """Read a file: a world, way points, or walls."""
     source = read_source(path)
     try:
         data = read_data(source)
@@ -89,7 +89,7 @@ def _unusable(reason: str) -> MissionError:
 
 
 def _with_room(world: World, more: Sequence[Place], radius: float) -> tuple[World, list[str]]:
-    """The world with further places where the robot has room, and its start too, with a line for each change."""
+    """Return the world with places and a start where the robot has room, with a line for each change."""
     segments, notes = world.segments(), list[str]()
     if len(segments) * (len(more) + len(world.places) + 1) > _MOST_CHECKS:
         raise _unusable(f"{len(segments):,} pieces of wall are too many for {len(more):,} way points")
@@ -126,7 +126,9 @@ def _beyond(places: Iterable[Place], wall: Sequence[Point] | None) -> Iterator[P
 
 
 def _free(name: str, known: dict[str, int]) -> str:
-    """The name, or the first of "name 2", "name 3" ... that isn't known, and now is; `known` has the last number."""
+    """Return the name, or the first of "name 2", "name 3" ... that isn't known, and make it known; `known` has the last
+    number.
+    """
     free = name
     while free.lower() in known:
         known[name.lower()] += 1
@@ -136,7 +138,7 @@ def _free(name: str, known: dict[str, int]) -> str:
 
 
 def _room_near(world: World, point: Point, radius: float, segments: Sequence[Segment]) -> Point | None:
-    """The nearest point with room for the robot, at most half a metre away; None where there isn't any."""
+    """Return the nearest point with room for the robot, at most half a metre away; None if there isn't any."""
     if has_room(world, point, radius, segments):
         return point
     x, y = point
@@ -153,7 +155,7 @@ def _room_near(world: World, point: Point, radius: float, segments: Sequence[Seg
 
 
 def _touches(segment: Segment, area: tuple[float, float, float, float]) -> bool:
-    """Whether the rectangle around a segment overlaps one."""
+    """Return whether the rectangle around a segment overlaps one."""
     ax, ay, bx, by = segment
     left, low, right, high = area
     return min(ax, bx) <= right and max(ax, bx) >= left and min(ay, by) <= high and max(ay, by) >= low

@@ -22,14 +22,14 @@ _MARGIN = 10.5  # cells around everything; the half puts walls at round coordina
 
 
 class GridTooLarge(ValueError):
-    """A world that has too many cells."""
+    """The error that a world has too many cells."""
 
 
 class CellGrid:
     """Cells with sides of `resolution` metres that cover a world; the first one is in the south-west at `origin`."""
 
     def __init__(self, world: World, resolution: float) -> None:
-        """Raises GridTooLarge."""
+        """Make the grid. Raises GridTooLarge."""
         points = [segment[at : at + 2] for segment in world.segments() for at in (0, 2)]
         points += [door_end for door in world.doors for door_end in (door.start, door.end)]
         points += [point for zone in world.zones for point in zone.points]
@@ -44,15 +44,15 @@ class CellGrid:
             raise GridTooLarge(message)
 
     def empty(self) -> Cells:
-        """No cell, a row from the south for each first index."""
+        """Return an array without set cells, with a row from the south for each first index."""
         return np.zeros((self.height, self.width), dtype=bool)
 
     def cell(self, point: Point) -> tuple[int, int]:
-        """The column and the row of a point."""
+        """Return the column and the row of a point."""
         return tuple(int((point[axis] - self.origin[axis]) / self.resolution) for axis in (0, 1))  # type: ignore[return-value]
 
     def draw(self, cells: Cells, segments: Iterable[Segment]) -> None:
-        """Adds the cells that segments run through."""
+        """Add the cells that segments run through."""
         for ax, ay, bx, by in segments:
             steps = ceil(max(abs(bx - ax), abs(by - ay)) / self.resolution * 4) + 1
             columns = (np.linspace(ax, bx, steps) - self.origin[0]) / self.resolution
@@ -60,12 +60,12 @@ class CellGrid:
             cells[rows.astype(int), columns.astype(int)] = True
 
     def fill(self, cells: Cells, polygon: Sequence[Point]) -> None:
-        """Adds the cells of a polygon: those whose middle is inside, and those that its sides run through."""
+        """Add the cells of a polygon: those whose middle is inside, and those that its sides run through."""
         self.draw(cells, ((*polygon[at - 1], *polygon[at]) for at in range(len(polygon))))
         cells |= self.inside(polygon)
 
     def inside(self, polygon: Sequence[Point]) -> Cells:
-        """The cells whose middle is in a polygon, by the even-odd rule."""
+        """Return the cells whose middle is in a polygon, by the even-odd rule."""
         found = self.empty()
         columns = self.origin[0] + (np.arange(self.width) + 0.5) * self.resolution
         rows = self.origin[1] + (np.arange(self.height) + 0.5) * self.resolution
@@ -78,7 +78,7 @@ class CellGrid:
 
 
 def walls_in(grid: CellGrid, world: World) -> Cells:
-    """The cells of walls, furniture and closed doors."""
+    """Return the cells of walls, furniture and closed doors."""
     cells = grid.empty()
     grid.draw(cells, world.wall_segments())
     grid.draw(cells, ((*door.start, *door.end) for door in world.doors if not door.open))
@@ -127,7 +127,9 @@ speed_costmap_filter_info_server:
 
 
 def nav2_files(world: World, resolution: float, full_speed: float) -> dict[str, bytes]:
-    """The files by their names. `full_speed` (m/s) is what slow zones are a share of. Raises GridTooLarge."""
+    """Return the files by their names. The speed of slow zones is a share of `full_speed`
+    (m/s). Raises GridTooLarge.
+    """
     grid = CellGrid(world, resolution)
     keep_out, slow = grid.empty(), np.zeros((grid.height, grid.width), dtype=np.uint8)
     for zone in world.zones:
@@ -150,7 +152,7 @@ def nav2_files(world: World, resolution: float, full_speed: float) -> dict[str, 
 
 
 def _map_of(grid: CellGrid, world: World) -> npt.NDArray[np.uint8]:
-    """White inside the outer wall, grey outside, black where something is in the way."""
+    """Return a map: white inside the outer wall, grey outside, black if something is in the way."""
     wall = outer_wall(world)
     inside = np.ones((grid.height, grid.width), dtype=bool) if wall is None else grid.inside(wall)
     return np.where(walls_in(grid, world), _OCCUPIED, np.where(inside, _FREE, _UNKNOWN)).astype(np.uint8)
@@ -164,7 +166,7 @@ def _image(grid: CellGrid, name: str, cells: npt.NDArray[np.uint8], mode: str) -
 
 
 def _way_points(world: World) -> str:
-    """As RViz saves and loads them: orientations are w, x, y, z."""
+    """Return way points as RViz saves and loads them: orientations are w, x, y, z."""
     lines = ["waypoints:\n"]
     for place in world.places:
         half = radians(place.facing or 0.0) / 2
@@ -175,6 +177,6 @@ def _way_points(world: World) -> str:
 
 
 def _quoted(text: str) -> str:
-    """A text as YAML that any reader takes."""
+    """Return a text as YAML that any reader takes."""
     plain = (c if " " <= c <= "~" and c not in '"\\' else f"\\U{ord(c):08x}" for c in text)
     return f'"{"".join(plain)}"'

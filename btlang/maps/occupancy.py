@@ -41,7 +41,7 @@ class MapImage(Record):
 
 
 def read_image(path: str) -> MapImage:
-    """A PGM, PNG or BMP file. Raises Problem, OSError, and MissionError (BT087) where it takes Pillow."""
+    """Read a PGM, PNG or BMP file. Raises Problem, OSError, and MissionError (BT087) if it needs Pillow."""
     with open(path, "rb") as file:
         data = file.read(_MOST_BYTES + 1)
     if len(data) > _MOST_BYTES:
@@ -119,15 +119,15 @@ class OccupancyMap(Record):
 
 
 def is_map(data: object) -> bool:
-    """Whether the data of a file are those of a map."""
+    """Return whether the data of a file are a map."""
     return isinstance(data, Mapping) and "image" in data and "resolution" in data
 
 
 def read_map(data: Mapping[str, Any], folder: str) -> OccupancyMap:
-    """A map whose image is in the folder of its YAML file. Cells are what nav2_map_server takes them for; of "raw"
-    images a cell is occupied as in "scale": above `occupied_thresh`.
+    """Return a map whose image is in the folder of its YAML file.
 
-    Raises Problem, and MissionError (BT087).
+    Cells are interpreted as nav2_map_server does it; in "raw" images a cell is occupied as in "scale": above
+    `occupied_thresh`. Raises Problem, and MissionError (BT087).
     """
     resolution = number(data["resolution"], '"resolution"', 0.001, 1000.0)
     x, y, angle = numbers(data.get("origin", [0.0, 0.0, 0.0]), '"origin"', 3)
@@ -176,7 +176,7 @@ _RIGHT, _AHEAD, _LEFT = 3, 0, 1  # quarters of a turn to the left
 
 
 def walls_of(occupancy: OccupancyMap) -> tuple[tuple[Point, ...], ...]:
-    """The walls around the occupied cells, at most one cell from their outlines. Raises Problem for too many."""
+    """Return the walls around the occupied cells, at most one cell from their outlines. Raises Problem for too many."""
     return tuple(
         tuple(_metres(corner, occupancy) for corner in simplified(loop).tolist())
         for loop in outlines(occupancy.occupied)
@@ -191,7 +191,7 @@ def _metres(corner: list[int], occupancy: OccupancyMap) -> Point:
 
 
 def outlines(occupied: npt.NDArray[np.bool_]) -> list[Corners]:
-    """The closed outlines of what is occupied, as the corners (column, row) where they turn.
+    """Return the closed outlines of occupied cells, as the corners (column, row) where they turn.
 
     They go around occupied cells counter-clockwise; cells that touch at a corner are one thing. Raises Problem.
     """
@@ -219,7 +219,7 @@ def outlines(occupied: npt.NDArray[np.bool_]) -> list[Corners]:
 
 
 def _sides(occupied: npt.NDArray[np.bool_]) -> list[int]:
-    """The sides between occupied cells and others, each as four times its first corner plus its direction.
+    """Return the sides between occupied cells and others, each as four times its first corner plus its direction.
 
     Directions count from east in quarters of a turn; the occupied cell is on the left.
     """
@@ -239,7 +239,7 @@ def _sides(occupied: npt.NDArray[np.bool_]) -> list[int]:
 
 
 def simplified(loop: Corners) -> Corners:
-    """A closed outline in few pieces (Ramer-Douglas-Peucker), each corner at most one cell from them.
+    """Return a closed outline in few pieces (Ramer-Douglas-Peucker), each corner at most one cell from them.
 
     It ends where it begins; what is as thin as a cell becomes one line.
     """
@@ -262,7 +262,7 @@ def simplified(loop: Corners) -> Corners:
 
 
 def _distances(points: Corners, start: Corners, end: Corners) -> npt.NDArray[np.float64]:
-    """Of points from the piece between two."""
+    """Return the distances of points from the piece between two of them."""
     along = (end - start).astype(np.float64)
     length = float(along @ along)
     if not length:

@@ -17,7 +17,7 @@ USUAL_RESOLUTION = 0.05
 
 
 def add_world_options(parser: argparse.ArgumentParser) -> None:
-    """Those of `btc world`."""
+    """Add the options of `btc world`."""
     parser.usage = (
         "btc world [FILE] [--picture OUT]\n       btc world check FILE ...\n"
         "       btc world import FILE ... -o OUT [--start X,Y[,FACING]]\n"

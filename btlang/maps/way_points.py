@@ -23,7 +23,7 @@ _YAWS = ("yaw", "theta", "heading")  # radians, as everywhere in ROS
 
 
 def way_points(data: Any) -> list[Place]:
-    """All way points in the order of the file. Those without a name are called "point 1" and so on.
+    """Return all way points in the order of the file. Those without a name are called "point 1" and so on.
 
     A point is [x, y], [x, y, yaw], a table with x and y, or one with a position (or pose) and perhaps an orientation.
     Angles are in radians; orientations are quaternions: tables with x, y, z, w, lists [w, x, y, z] beside a list "pose"
@@ -41,7 +41,7 @@ def way_points(data: Any) -> list[Place]:
 
 
 def _listed(data: Any, what: str) -> Iterator[tuple[str, str, Any]]:
-    """What each point is called in messages, its name where it is a key, and the point."""
+    """Return for each point its name in messages, its own name if it is a key, and the point."""
     if isinstance(data, list):
         for index, value in enumerate(data):
             yield f"{what or 'the list'}[{index}]", "", value
@@ -72,7 +72,7 @@ def _name(value: Any) -> str:
 
 
 def _pose(value: Any, what: str) -> tuple[float, float, float | None]:
-    """x and y in metres, and the direction in degrees where there is one."""
+    """Return x and y in metres, and the direction in degrees if there is one."""
     for _ in range(3):  # PoseStamped has a pose in a pose
         if isinstance(value, dict) and isinstance(value.get("pose"), dict):
             value = value["pose"]
@@ -94,7 +94,7 @@ def _pose(value: Any, what: str) -> tuple[float, float, float | None]:
 
 
 def _pose_list(value: list[Any], what: str) -> tuple[float, float, float | None]:
-    """[x, y], [x, y, yaw], or [x, y, z, then a quaternion x, y, z, w]."""
+    """Return the pose in [x, y], [x, y, yaw], or [x, y, z, then a quaternion x, y, z, w]."""
     x, y, *more = numbers(value, what, 2, 3, 7)
     if len(more) == 5:
         return x, y, yaw(what, *more[1:])

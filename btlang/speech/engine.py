@@ -13,17 +13,17 @@ if TYPE_CHECKING:
     from typing import Protocol
 
     class SpeechEngine(Protocol):
-        """Speaks texts. Made with Settings. The same text always gives the same utterance."""
+        """An engine that speaks texts, made with Settings. The same text always gives the same utterance."""
 
         def speak(self, text: str) -> Utterance:
-            """The text as sound and times; for any thread. Raises SpeechError."""
+            """Return the text as sound and times; for any thread. Raises SpeechError."""
 
 
 WORD = re.compile(r"\S+")
 
 
 class SpeechError(Exception):
-    """An engine can't be used, or can't speak a text."""
+    """The reason why an engine can't be used, or can't speak a text."""
 
 
 class Settings(Record):
@@ -68,19 +68,20 @@ class Utterance(Record):
     rate: int = 0
 
     def time_of(self, index: int) -> float:
-        """When the first word begins that is at an index of the text or behind it; after the last one the end."""
+        """Return when the first word at or after an index of the text begins; after the last word, the end."""
         return next((word.time for word in self.words if word.start >= index), self.seconds)
 
     def word_at(self, time: float) -> Word | None:
-        """The word that is spoken at a time, or was last; the first one before that, None where there is no word."""
+        """Return the word that is spoken at a time, or was last; the first one before that, None without words."""
         at = bisect_right(self.words, time, key=lambda word: word.time)
         return self.words[max(0, at - 1)] if self.words else None
 
 
 def words_at(text: str, starts: Sequence[tuple[int, float]], seconds: float) -> tuple[Word, ...]:
-    """The words of a text. `starts` are indices and times at which something is spoken, in order.
+    """Return the words of a text.
 
-    A word without a start begins with the next one.
+    `starts` are indices and times at which something is spoken, in order. A word without a start begins with the next
+    one.
     """
     found, at = [], 0
     for match in WORD.finditer(text):
@@ -105,25 +106,25 @@ _LETTERS = {
 
 
 def shape_of(phoneme: str) -> str:
-    """A name in SHAPES for a phoneme: "rest" for "", a pause."""
+    """Return the shape of a phoneme, a name in SHAPES: "rest" for "", a pause."""
     letter = phoneme.lstrip("',%=_|")[:1]
     return _LETTERS.get(letter, "narrow") if letter else "rest"
 
 
 def shape_at(utterance: Utterance, time: float) -> str:
-    """The shape at a time of an utterance; "rest" before and after it."""
+    """Return the shape at a time of an utterance; "rest" before and after it."""
     at = bisect_right(utterance.phonemes, time, key=lambda phoneme: phoneme.time)
     return shape_of(utterance.phonemes[at - 1].name) if at and time < utterance.seconds else "rest"
 
 
 class Estimate:
-    """See btlang.speech.engine.SpeechEngine. Letters stand for their phonemes."""
+    """An engine without sound, which estimates times. Letters stand for their phonemes."""
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
 
     def speak(self, text: str) -> Utterance:
-        """At once."""
+        """Return the text with times that are shared out by letters, at once."""
         begin, each = self._settings.text, self._settings.character
         seconds = begin + each * len(text)
         starts = [(match.start(), begin + each * match.start()) for match in WORD.finditer(text)]

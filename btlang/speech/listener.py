@@ -19,14 +19,17 @@ _AWAKE = 8.0  # seconds in which something may follow the wake word
 
 
 class Attention:
-    """`wake` is the wake word, "" without one; `push`, whether there is a button. `now` is in seconds of any clock."""
+    """The attention to speech. `wake` is the wake word, "" for none; `push` is whether there is a button.
+
+    `now` is in seconds of any clock.
+    """
 
     def __init__(self, wake: str, push: bool) -> None:
         self._wake, self._push = spoken(wake), push
         self._until = -math.inf
 
     def expected(self, wanted: Expected, answering: bool, now: float) -> Expected:
-        """What to listen for. No wake word is needed for `answering`, when the robot has asked."""
+        """Return what to listen for. No wake word is needed for `answering`, when the robot has asked."""
         if self._push:
             return wanted.replace(mode="pushed")  # type: ignore[no-any-return]
         if not self._wake or not wanted:
@@ -39,7 +42,7 @@ class Attention:
         return Expected((self._wake, *phrases), wanted.names, mode="wake", others=others)
 
     def meant(self, understood: RecognisedSpeech, now: float) -> RecognisedSpeech | None:
-        """What was said to the robot, without the wake word; None where that is all. It is awake from then on."""
+        """Return what was said to the robot, without the wake word; None if that is all. It is awake from then on."""
         if not self._wake or not f"{spoken(understood.text)} ".startswith(f"{self._wake} "):
             return understood
         rest = " ".join(understood.text.split()[len(self._wake.split()) :])
@@ -55,7 +58,7 @@ _PIECE = RATE // 5  # bytes that are decoded at once: the tick never waits longe
 
 
 class Listener:
-    """From its making to `close`. All methods are for any thread, and return at once."""
+    """A recogniser in a thread, from its creation to `close`. All methods are for any thread, and return at once."""
 
     def __init__(self, recogniser: Recogniser) -> None:
         self._recogniser = recogniser
@@ -73,11 +76,11 @@ class Listener:
         return self._broken or ("five seconds of sound wait for it: it is too slow, or hangs" if self._is_late else "")
 
     def expect(self, expected: Expected) -> None:
-        """What is listened for from now on."""
+        """Set what is listened for from now on."""
         self._put(lambda: self._recogniser.expect(expected))
 
     def hear(self, samples: bytes) -> None:
-        """The next samples; they are lost where five seconds of sound wait already."""
+        """Take the next samples; they are lost if five seconds of sound wait already."""
         with self._lock:
             self._is_late = self._waiting + len(samples) > _LONGEST
             if self._is_late:
@@ -86,19 +89,19 @@ class Listener:
         self._put(lambda: self._hear(samples))
 
     def end(self) -> None:
-        """Whoever speaks has let go of the button."""
+        """End a sentence: the speaker has released the button."""
         self._put(lambda: self._found.extend(self._recogniser.end()))
 
     def forget(self) -> None:
-        """What was heard so far belongs to nothing that follows."""
+        """Drop what was heard so far."""
         self._put(self._recogniser.forget)
 
     def understood(self) -> RecognisedSpeech | None:
-        """The next sentence that was said, each once; None if there is none."""
+        """Return the next sentence, each once; None if there is none."""
         return self._found.popleft() if self._found else None
 
     def close(self) -> None:
-        """Ends it. May be called twice."""
+        """End the thread. May be called twice."""
         self._calls.put(None)
         self._thread.join(2.0)
 

@@ -19,7 +19,10 @@ class GestureMark(Record):
 
 
 def read_marks(text: str) -> tuple[str, tuple[GestureMark, ...]]:
-    r"""The text without its marks, and these. `\<` is a plain `<`, as is one before a blank or digit or not closed."""
+    r"""Return the text without its marks, and the marks.
+
+    `\<` is a plain `<`, as is one before a blank or digit or one that isn't closed.
+    """
     plain, marks, at = "", list[GestureMark](), 0
     for match in _MARK.finditer(text):
         plain += text[at : match.start()]
@@ -37,10 +40,10 @@ def read_marks(text: str) -> tuple[str, tuple[GestureMark, ...]]:
 
 
 def without_marks(text: str) -> str:
-    """What is heard of a text."""
+    """Return the text without its marks."""
     return read_marks(text)[0]
 
 
 def sentence_start(text: str, index: int) -> int:
-    """Where the sentence begins that an index of the text is in."""
+    """Return where the sentence at an index of the text begins."""
     return max((match.end() for match in _SENTENCE_ENDS.finditer(text) if match.end() <= index), default=0)

@@ -30,7 +30,7 @@ _BRITISH = ((re.compile(r"\bOW\b"), "AH UW"), (re.compile(r"\bER$"), "AH"))
 
 
 def guessed(word: str) -> str:
-    """The phones of a word that no dictionary has, by its letters; "" for one without any."""
+    """Return the phones of a word that no dictionary has, by its letters; "" for one without any."""
     letters = re.sub(r"(.)\1+", lambda match: match[0] if match[1] in "eo" else match[1], word.replace("'", ""))
     end = ""
     if len(letters) > 2 and letters[-1] == "e" and letters[-2] not in _VOWEL:
@@ -44,7 +44,7 @@ def guessed(word: str) -> str:
 
 
 def accents(phones: str) -> list[str]:
-    """How else the phones of American English are said: "no" and "never" in the south of England."""
+    """Return other pronunciations of phones of American English: "no" and "never" in the south of England."""
     other = phones
     for pattern, said in _BRITISH:
         other = pattern.sub(said, other)
@@ -85,7 +85,6 @@ class PocketSphinx:
         self._expected, self._grammar = Expected(), Grammar(Expected())
 
     def expect(self, expected: Expected) -> None:
-        """See Recogniser."""
         spoken = bytes(self._spoken)
         self._stop()
         self._expected, self._grammar = expected, Grammar(expected)
@@ -98,7 +97,6 @@ class PocketSphinx:
             self._decode(spoken)
 
     def hear(self, samples: bytes) -> Sequence[RecognisedSpeech]:
-        """See Recogniser."""
         if not self._expected:
             self.forget()
             return []
@@ -120,7 +118,6 @@ class PocketSphinx:
         return found
 
     def end(self) -> Sequence[RecognisedSpeech]:
-        """See Recogniser."""
         if not self._spoken:
             return []
         self._stop()
@@ -130,13 +127,12 @@ class PocketSphinx:
         return [RecognisedSpeech(text, False)] if text else []
 
     def forget(self) -> None:
-        """See Recogniser."""
         self._stop()
         self._waiting, self._endpointer = b"", self._new_endpointer()
 
     @property
     def confidence(self) -> float:
-        """How sure it is that the sentence it found was said: about 0 where that is as likely as not."""
+        """How sure it is that the sentence it found was said: about 0 if that is as likely as not."""
         sentence, phones = self._sentences.hyp(), self._phones.hyp()
         said = [each for each in self._sentences.seg() if each.word[0].isalpha()]
         frames = sum(each.end_frame - each.start_frame + 1 for each in said)
@@ -162,7 +158,7 @@ class PocketSphinx:
         return (self._sentences.lookup_word(word) or "").split()
 
     def _learn(self, word: str) -> None:
-        """How a word is pronounced: one that the dictionary lacks by its letters."""
+        """Add the pronunciation of a word that the dictionary lacks, by its letters."""
         if word in self._known:
             return
         phones = self._sentences.lookup_word(word)
@@ -205,7 +201,7 @@ def _text(decoder: Any) -> str:
 
 
 def _likeness(one: Sequence[str], other: Sequence[str]) -> float:
-    """From 0 to 1 for the same phones in the same order."""
+    """Return the likeness of phones, from 0 to 1 for the same phones in the same order."""
     from rapidfuzz.distance import Levenshtein
 
     return float(Levenshtein.normalized_similarity(one, other))

@@ -14,22 +14,22 @@ if TYPE_CHECKING:
     from typing import Protocol
 
     class Recogniser(Protocol):
-        """Hears one microphone. Made with RecogniserSettings, and used by one thread apart from the tick.
+        """A recogniser of speech from one microphone, made with RecogniserSettings, for one thread apart from the tick.
 
-        No call may take longer than a few hundredths of a second. Raises RecogniserError where it can't be used.
+        No call may take longer than a few hundredths of a second. Raises RecogniserError if it can't be used.
         """
 
         def expect(self, expected: Expected) -> None:
-            """What is listened for from now on, in a sentence under way too."""
+            """Set what is listened for from now on, also within a sentence."""
 
         def hear(self, samples: bytes) -> Sequence[RecognisedSpeech]:
-            """The next samples, 16 bits signed, mono, 16 kHz. Returns the sentences that have ended in them."""
+            """Take the next samples, 16 bits signed, mono, 16 kHz; return the sentences that have ended in them."""
 
         def end(self) -> Sequence[RecognisedSpeech]:
-            """Nothing follows the samples so far: whoever speaks has let go of the button."""
+            """End a sentence after the samples so far: the speaker has released the button."""
 
         def forget(self) -> None:
-            """What was heard so far belongs to nothing that follows."""
+            """Drop what was heard so far."""
 
 
 Mode = Literal["open", "wake", "addressed", "pushed"]
@@ -38,11 +38,11 @@ RATE = 16_000
 
 
 class RecogniserError(Exception):
-    """A recogniser can't be used."""
+    """The reason why a recogniser can't be used."""
 
 
 class RecogniserSettings(Record):
-    """A `language` such as "en". With `push`, a button says when somebody speaks, else the recogniser finds out."""
+    """A `language` such as "en". With `push`, a button shows when somebody speaks, else the recogniser finds out."""
 
     language: str = "en"
     push: bool = False
@@ -52,10 +52,8 @@ class Expected(Record):
     """What is listened for: `phrases` and their `names` as in this module, and with `anything` all else too.
 
     Recognisers that always find the nearest phrase know `others` too, which aren't heard: what could be taken for the
-    contrary of a phrase.
-
-    In the `mode` "open" anybody may say anything, in "wake" all phrases begin with the wake word, and in "addressed"
-    whoever speaks has woken the robot or was asked, and in "pushed" holds its button.
+    contrary of a phrase. In the `mode` "open" anybody may say anything, in "wake" all phrases begin with the wake word,
+    in "addressed" the speaker has woken the robot or was asked, and in "pushed" the speaker holds its button.
     """
 
     phrases: tuple[str, ...] = ()
@@ -68,7 +66,7 @@ class Expected(Record):
         return bool(self.phrases) or self.anything
 
     def __or__(self, other: Expected) -> Expected:
-        """Both."""
+        """Return both together."""
         phrases, names = tuple(dict.fromkeys(self.phrases + other.phrases)), {**self.names, **other.names}
         others = tuple(dict.fromkeys(self.others + other.others))
         return Expected(phrases, names, self.anything or other.anything, self.mode, others)
@@ -92,9 +90,9 @@ _NOTHING = "<VOID>"
 
 
 def spoken(text: str) -> str:
-    """The words that are said for a text: small letters without accents, numbers as words. "" where there are none.
+    """Return the words that are said for a text: lower case without accents, numbers as words.
 
-    As a phrase of a grammar they mean only themselves.
+    "" for a text without words. As a phrase of a grammar they mean only themselves.
     """
     plain = unicodedata.normalize("NFKD", text.lower().replace("\u2019", "'")).encode("ascii", "ignore").decode()
     return " ".join(_number(word) if word.isdigit() else word for word in _WORD.findall(plain))
@@ -117,23 +115,23 @@ class Grammar:
 
     @property
     def words(self) -> list[str]:
-        """Each word once, in the order of the alphabet."""
+        """Each word once, in alphabetical order."""
         said = (word for tokens in self._phrases for token in tokens for word in self._said(token))
         return sorted({each for word in said for each in word.split()})
 
     @property
     def jsgf(self) -> str:
-        """In the JSpeech Grammar Format."""
+        """The grammar in the JSpeech Grammar Format."""
         rules = [f"<{kind}> = {' | '.join(names) or _NOTHING};" for kind, names in self._names.items()]
         sentences = " | ".join(" ".join(map(self._rule, tokens)) for tokens in self._phrases) or _NOTHING
         return "\n".join(("#JSGF V1.0;", "grammar expected;", *rules, f"public <sentence> = {sentences};", ""))
 
     def holds(self, text: str) -> bool:
-        """Whether a text, as it is spoken, is one whole sentence of it, and none of the others."""
+        """Return whether a text, as it is spoken, is one whole sentence of the grammar, and none of the others."""
         return self._pattern.fullmatch(f"{spoken(text)} ") is not None
 
     def written(self, text: str) -> str:
-        """A spoken sentence with names as they are written."""
+        """Return a spoken sentence with names as they are written."""
         return self._written.sub(lambda match: self._by_name[match[0]], text)
 
     def _tokens(self, phrase: str) -> list[str]:

@@ -20,11 +20,11 @@ _JUMP = 1.0  # metres
 
 
 class DeviceBase:
-    """See btlang.robots.parts.BasePart. `drive` and `brake` may be called from any thread.
+    """A base over devices, as a BasePart. `drive` and `brake` may be called from any thread.
 
-    `wheels`, `imu` and `bumpers` are names of devices. The heading is that of the inertial unit where there is one.
-    Without news of the wheels it commands them to stand, and the pose is not known. `locate` says where it really is,
-    if anything knows that better than the wheels; `advance` lets simulated devices live.
+    `wheels`, `imu` and `bumpers` are names of devices. The heading is that of the inertial unit if there is one.
+    Without readings of the wheels it commands them to stand, and the pose isn't known. `locate` returns where it really
+    is, if anything knows that better than the wheels; `advance` steps simulated devices.
     """
 
     grips = (1.0, 1.0)
@@ -59,17 +59,17 @@ class DeviceBase:
 
     @property
     def pose(self) -> Pose:
-        """Where it is, or was when it was known last."""
+        """The pose, or the last one that was known."""
         return self._pose
 
     @property
     def velocity(self) -> tuple[float, float]:
-        """Measured metres and degrees a second, 0 where nobody knows."""
+        """The measured metres and degrees a second, 0 if nobody knows."""
         return self._velocity or (0.0, 0.0)
 
     @property
     def silent(self) -> str | None:
-        """Why it isn't known where it is and how it moves, None where that is known."""
+        """Why its pose and motion aren't known, None if they are."""
         try:
             self._read()
         except DeviceError as problem:
@@ -78,38 +78,38 @@ class DeviceBase:
 
     @property
     def bumped(self) -> bool:
-        """True while a bumper is pressed, and until it has moved away from there."""
+        """Whether a bumper is pressed, or was and it hasn't moved away yet."""
         return bool(self._pressed) or self._contact is not None
 
     @property
     def stuck(self) -> bool:
-        """True when it was commanded to move for a second and does not."""
+        """Whether it has been commanded to move for a second and doesn't."""
         return self._idle >= _STUCK_AFTER
 
     @property
     def rolling(self) -> bool:
-        """True until it is at rest; also while nobody knows."""
+        """Whether it isn't at rest yet; True also if nobody knows."""
         return self._velocity is None or self._velocity != (0.0, 0.0)
 
     def drive(self, linear: float, angular: float) -> None:
-        """Sets the wanted velocity, within the limits."""
+        """Set the wanted velocity, within the limits."""
         driving, turning = self.body.driving, self.body.turning
         self.wanted = clipped_speed(linear, driving.top_speed), clipped_speed(angular, turning.top_speed)
         if self.wanted == (0.0, 0.0):
             self._idle = 0.0
 
     def brake(self) -> None:
-        """Commands the wheels to stand at once."""
+        """Command the wheels to stand at once."""
         self.wanted = self._speeds = (0.0, 0.0)
         self._idle = 0.0
         self._write(WheelSpeeds())
 
     def put(self, pose: Pose) -> None:
-        """It stands there from now on, as somebody says who knows."""
+        """Set the pose, from somebody who knows it."""
         self._pose, self._contact = pose, None
 
     def step(self, dt: float) -> None:
-        """Commands the wheels for the next `dt` seconds, and looks how far they have rolled."""
+        """Command the wheels for the next `dt` seconds, and read how far they have rolled."""
         self._command(dt)
         self._advance(dt)
         try:
@@ -148,7 +148,9 @@ class DeviceBase:
         return wheels
 
     def _check_jump(self, wheels: Wheels, dt: float) -> None:
-        """Raises DeviceSilent where the wheels have rolled farther than any can, as where their board has restarted."""
+        """Raise DeviceSilent if the wheels have rolled farther than any can, for example because their board has
+        restarted.
+        """
         before = self._seen or wheels
         way = max(abs(wheels.left - before.left), abs(wheels.right - before.right))
         self._jump = f"the {self._drive} jumps by {way:.3g} m" if way > _JUMP + FASTEST * dt else ""
@@ -175,7 +177,7 @@ class DeviceBase:
         self._velocity = (0.0, 0.0) if still else (speed, spin)
 
     def _turn(self, by_wheels: float) -> float:
-        """Degrees since the last step, by the inertial unit if it measures a heading."""
+        """Return the degrees since the last step, by the inertial unit if it measures a heading."""
         if not self._imu:
             return by_wheels
         try:

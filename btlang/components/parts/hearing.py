@@ -28,12 +28,11 @@ _PATIENCE = 8.0  # seconds in which "Did you say ...?" has to be answered
 
 
 class Hearing:
-    """The ears of a robot, from its first microphone. `step` is for the thread of the robot.
+    """The hearing of a robot, with its first microphone. `step` is for the thread of the robot.
 
-    `report` gets an event when they fail: see btlang.run.events.PartChanged. `clock` counts seconds for any thread.
-
-    Raises RecogniserError where the body names a recogniser that can't be used. A body without a microphone hears
-    nothing.
+    `report` gets an event when the microphone or the recogniser fails: see btlang.run.events.PartChanged. `clock`
+    returns seconds for any thread. Raises RecogniserError if the body names a recogniser that can't be used. A body
+    without a microphone hears nothing.
     """
 
     def __init__(
@@ -63,17 +62,17 @@ class Hearing:
                 devices.follow(name, self._press)
 
     def push(self, pushed: bool) -> None:
-        """Somebody holds the button, or lets go of it; from any thread."""
+        """Press or release the talk button; from any thread."""
         self._is_pushed = pushed
         self._look_at_button()
 
     def talk(self, held: bool) -> None:
-        """As `push`, for a button elsewhere: it has to be called again within 2 s while somebody holds it."""
+        """Press or release a remote talk button: while it's pressed, this has to be called again within 2 s."""
         self._held_until = self._clock() + _HELD if held else -math.inf
         self._look_at_button()
 
     def step(self) -> None:
-        """Looks at what was said, and at what is listened for now."""
+        """Take what was said, and set what is listened for now."""
         if self._listener is None:
             return
         now = self._robot.time
@@ -94,7 +93,7 @@ class Hearing:
             self._listener.expect(expected)
 
     def close(self) -> None:
-        """Ends it. May be called twice."""
+        """Stop listening. May be called twice."""
         if self._listener is not None:
             self._listener.close()
 
@@ -113,7 +112,7 @@ class Hearing:
             self._report_event("part", {"kind": "ears", "name": self._engine, "state": state, "text": text})
 
     def _listen_to_others(self, listener: Listener, now: float) -> None:
-        """It does not hear itself."""
+        """Ignore sound while the robot itself speaks."""
         if self._robot.speaking:
             self._deaf_until = now + _ECHO
             if self._doubtful:
@@ -142,7 +141,7 @@ class Hearing:
         self._doubtful, self._asked_until = text, now + _PATIENCE
 
     def _take(self, reading: Reading) -> None:
-        """In the thread of the device."""
+        """Take sound, in the thread of the device."""
         assert isinstance(reading, Sound)
         if self._listener is None or self._is_deaf or (self._push and not self._look_at_button()):
             return

@@ -37,9 +37,9 @@ def device_parts(
     advance: Callable[[float], object],
     locate: Callable[[], Pose] | None = None,
 ) -> Parts:
-    """What the body has, over devices by kind; hands, joints and bumpers by name. A part that has none is silent.
+    """Return the parts of a body over its devices: by kind; hands, joints and bumpers by name.
 
-    `advance` and `locate` are those of DeviceBase.
+    A part without a device is silent. `advance` and `locate` are those of DeviceBase.
     """
     readers = devices.readers
     bumpers = tuple(name for name, device in devices.devices.items() if device.kind == "button" and BUMPER in name)
@@ -64,7 +64,7 @@ def device_parts(
 
 
 class DevicePower:
-    """See btlang.robots.parts.PowerPart: what a battery reports."""
+    """A battery, as a PowerPart."""
 
     def __init__(self, name: str, devices: Mapping[str, Reads]) -> None:
         self._name, self._devices = name, devices
@@ -72,12 +72,12 @@ class DevicePower:
 
     @property
     def level(self) -> float:
-        """Percent. Raises DeviceSilent."""
+        """The percentage. Raises DeviceSilent."""
         return self._charge().percent
 
     @property
     def empty(self) -> bool:
-        """At 0 percent; False also where it is silent."""
+        """Whether the battery is at 0 percent; False also if it is silent."""
         try:
             return self._charge().percent <= 0.0
         except DeviceError:
@@ -85,15 +85,15 @@ class DevicePower:
 
     @property
     def charging(self) -> bool:
-        """Whether it says so. Raises DeviceSilent."""
+        """Whether the battery reports that it is charged. Raises DeviceSilent."""
         return bool(self._charge().charging)
 
     def set_level(self, percent: float) -> None:
-        """Raises RobotError: nobody can."""
+        """Raise RobotError: nobody can set the level of a real battery."""
         raise RobotError("the battery of this robot can't be set")
 
     def connect(self, pose: Pose, fails: Callable[[str], bool]) -> None:
-        """Raises RobotError where it doesn't charge, or `fails`."""
+        """Raise RobotError if it doesn't charge, or `fails`."""
         if fails("dock"):
             raise RobotError(NO_CONTACT)
         if not (self.charging or self.level >= _FULL):
@@ -101,7 +101,7 @@ class DevicePower:
         self.docked = True
 
     def step(self, dt: float, metres: float, pose: Pose) -> bool:
-        """Whether it has just left its dock."""
+        """Return whether it has just left its dock."""
         try:
             charge = self._charge()
         except DeviceError:
@@ -117,7 +117,7 @@ class DevicePower:
 
 
 def joints_over(body: Body, devices: Mapping[str, Reads]) -> JointsPart:
-    """Joints over servos, whose movements are planned where they are smooth."""
+    """Return joints over servos, whose movements are planned if they are smooth."""
     if not body.is_smooth:
         return DeviceJoints(body, devices)
     from btlang.components.parts.servo_joints import ServoJoints  # brings numpy and ruckig
@@ -126,7 +126,7 @@ def joints_over(body: Body, devices: Mapping[str, Reads]) -> JointsPart:
 
 
 class DeviceJoints:
-    """See btlang.robots.parts.JointsPart: a servo for each joint, of the same name. Each step commands them again."""
+    """Joints over servos of the same names, as a JointsPart. Each step commands them again."""
 
     def __init__(self, body: Body, devices: Mapping[str, Reads]) -> None:
         self._body, self._devices = body, devices
@@ -136,18 +136,18 @@ class DeviceJoints:
 
     @property
     def moving(self) -> bool:
-        """True while any joint is on its way, as far as that is known."""
+        """Whether any joint is on its way, as far as that is known."""
         try:
             return any(abs(self._left(name)) > joint_of(self._body, name).close_enough for name in tuple(self._targets))
         except DeviceError:
             return False
 
     def angle(self, name: str) -> float:
-        """Raises RobotError for an unknown joint, and DeviceSilent."""
+        """Return the angle of a joint. Raises RobotError for an unknown one, and DeviceSilent."""
         return servo_angle(self._body, self._devices, name)
 
     def move(self, targets: Mapping[str, float]) -> None:
-        """Sets off towards the targets, clipped to the joints' limits. Raises RobotError."""
+        """Move towards targets, clipped to the joints' limits. Raises RobotError."""
         wanted = clipped(self._body, targets)
         for name in wanted:
             self.angle(name)
@@ -156,17 +156,17 @@ class DeviceJoints:
         self.step(0.0)
 
     def at_target(self, names: tuple[str, ...]) -> bool:
-        """True when none of them is on its way. Raises DeviceSilent, and RobotError where one of them is stuck."""
+        """Return whether none of these joints is on its way. Raises DeviceSilent, and RobotError if one is stuck."""
         return all(self._progress.has_arrived(name, self._left(name)) for name in names if name in self._targets)
 
     def freeze(self, names: tuple[str, ...] | None = None) -> None:
-        """They stay where they are; None: all of them."""
+        """Hold these joints, or all for None, where they are."""
         for name in tuple(self._targets) if names is None else names:
             if self._targets.pop(name, None) is not None:
                 self._devices[name].write(name, JointTarget())
 
     def step(self, dt: float) -> None:
-        """Commands them again; a joint that has arrived holds its place by itself."""
+        """Command the joints again; one that has arrived holds its position by itself."""
         self._time += dt
         for name, target in tuple(self._targets.items()):
             self._devices[name].write(name, JointTarget(target, joint_of(self._body, name).speed))
@@ -176,7 +176,7 @@ class DeviceJoints:
 
 
 class Gripping:
-    """See btlang.robots.robot.Operation: a hand closes or opens. `report` gets whether something is in it."""
+    """A hand that closes or opens, as an Operation. `report` gets whether something is in it."""
 
     def __init__(self, name: str, device: Reads, closes: bool, report: Callable[[bool], object]) -> None:
         self._name, self._device, self._closes, self._report = name, device, closes, report
@@ -185,13 +185,13 @@ class Gripping:
         self._passed = 0.0
 
     def cancel(self, failure: str | None = None) -> None:
-        """The hand stays as it is, at once. For any thread."""
+        """Hold the hand as it is, at once. For any thread."""
         if not self.done:
             self._end(failure)
             self._device.write(self._name, GripTarget())
 
     def step(self, dt: float) -> None:
-        """Looks how far it is."""
+        """Check how far the hand is."""
         if self.done:
             return
         self._device.write(self._name, GripTarget(float(self._closes)))
@@ -211,9 +211,9 @@ class Gripping:
 
 
 class DeviceHands:
-    """See btlang.robots.parts.HandsPart: hands by the names "left hand" and "right hand".
+    """Hands over the devices "left hand" and "right hand", as a HandsPart.
 
-    What is in one is what was nearest to it, as far as the robot knows where things are.
+    A hand holds what was nearest to it, as far as the robot knows where things are.
     """
 
     def __init__(self, body: Body, devices: Mapping[str, Reads], known: SimulatedHands) -> None:
@@ -222,7 +222,7 @@ class DeviceHands:
         self._grippings: dict[Hand, Gripping] = {}
 
     def grasp(self, hand: Hand, name: str | None, pose: Pose, now: float) -> Operation:
-        """Begins to close it. Raises RobotError where it holds something."""
+        """Begin to close a hand. Raises RobotError if it holds something."""
         if hand in self.held:
             raise RobotError(f"the {hand} hand already holds {said(self.held[hand])}")
         try:
@@ -232,19 +232,19 @@ class DeviceHands:
         return self._begin(hand, True, lambda holds: self.held.update({hand: found} if holds else {}))
 
     def release(self, hand: Hand, pose: Pose) -> Operation:
-        """Begins to open it."""
+        """Begin to open a hand."""
         return self._begin(hand, False, lambda holds: None if holds else self.held.pop(hand, None))
 
     def hand_over(self, hand: Hand) -> Operation:
-        """Begins to open it: somebody takes what is in it."""
+        """Begin to open a hand: somebody takes what is in it."""
         return self._begin(hand, False, lambda holds: None if holds else self.held.pop(hand, None))
 
     def drop(self, hand: Hand, pose: Pose) -> str | None:
-        """What was in it is gone."""
+        """Note that a hand has lost what was in it."""
         return self.held.pop(hand, None)
 
     def held_for(self, hand: Hand, now: float) -> float:
-        """0 while it holds something, inf if the hand reports that it is gone."""
+        """Return 0 while a hand holds something, inf if it reports that it doesn't any more."""
         return inf if self._is_empty(hand) else 0.0
 
     def _is_empty(self, hand: Hand) -> bool:
@@ -259,12 +259,12 @@ class DeviceHands:
         return isinstance(reading, Grip) and reading.holds is False
 
     def stop(self) -> None:
-        """They stay as they are."""
+        """Hold all hands as they are."""
         for gripping in tuple(self._grippings.values()):
             gripping.cancel("the robot was stopped")
 
     def step(self, dt: float) -> None:
-        """Moves on by `dt` seconds."""
+        """Move on by `dt` seconds."""
         for gripping in self._grippings.values():
             gripping.step(dt)
 
@@ -277,7 +277,7 @@ class DeviceHands:
 
 
 class DeviceVoice(TimedVoice):
-    """The voice as it is simulated, with a speaker that plays it, and displays that show what is printed."""
+    """The simulated voice, with a speaker that plays it, and displays that show printed texts."""
 
     def __init__(
         self, body: Body, devices: Mapping[str, Reads], speaker: str, displays: Sequence[str], joints: JointsPart
@@ -288,12 +288,12 @@ class DeviceVoice(TimedVoice):
         self._playing: Play | None = None
 
     def silence(self) -> None:
-        """The speaker, too, is silent at once; from any thread."""
+        """End speech and silence the speaker at once; from any thread."""
         super().silence()
         self._play(None)
 
     def step(self, dt: float) -> None:
-        """Commands the speaker again, as its loop needs it."""
+        """Command the speaker again, since its loop needs that."""
         super().step(dt)
         self._play_on()
 
@@ -309,11 +309,11 @@ class DeviceVoice(TimedVoice):
         self._playing = sound
 
     def show(self, shape: str) -> None:
-        """On the display that is its face."""
+        """Show the mouth on the display of the face."""
         if self._face:
             self._devices[self._face].write(self._face, Shown(shape))
 
     def print(self, text: str) -> None:
-        """All displays show it."""
+        """Show a text on all displays."""
         for name in self._displays:
             self._devices[name].write(name, Shown(text))

@@ -31,11 +31,11 @@ class DeviceSensors:
         self._seen: tuple[Scan, Array, float, float] | None = None
 
     def scan(self) -> Array:
-        """The distances around the centre; see btlang.robots.robot.Sensors. Raises DeviceSilent."""
+        """Return the distances around the centre, as Sensors does. Raises DeviceSilent."""
         return self._look()[0]
 
     def readings(self, now: float) -> list[ObstacleReading]:
-        """What the guard lets the base drive by."""
+        """Return the readings for the guard."""
         found = [self._reading(device.name, device.angle, now) for device in self._near]
         if self._lidar:
             view, angle = self._scanner.view, self._scanner.angle
@@ -80,7 +80,9 @@ class DeviceSensors:
 
 
 def servo_angle(body: Body, devices: Mapping[str, Reads], name: str) -> float:
-    """Where a joint is, as its servo measures it. Raises RobotError for an unknown joint, and DeviceSilent."""
+    """Return the angle of a joint, as its servo measures it. Raises RobotError for an unknown
+    joint, and DeviceSilent.
+    """
     reading = reader(devices, joint_of(body, name).name, name).read(name)
     assert isinstance(reading, JointState)
     return reading.position

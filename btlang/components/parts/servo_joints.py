@@ -29,7 +29,7 @@ _LATE = 3 * PERIOD
 
 
 class ServoJoints:
-    """See btlang.robots.parts.JointsPart: a servo for each joint, of the same name.
+    """Planned joints over servos of the same names, as a JointsPart.
 
     A thread writes to real servos while anything moves. If it hangs, the loop of their devices brings them to rest.
     `step` commands simulated ones.
@@ -47,24 +47,22 @@ class ServoJoints:
 
     @property
     def moving(self) -> bool:
-        """True while any joint is on its way, as far as that is known."""
+        """Whether any joint is on its way, as far as that is known."""
         try:
             return self._smooth.moving or not self._have_reached(self._commanded)
         except DeviceError:
             return False
 
     def angle(self, name: str) -> float:
-        """As its servo measures it. Raises RobotError for an unknown joint, and DeviceSilent."""
+        """Return the measured angle of a joint. Raises RobotError for an unknown one, and DeviceSilent."""
         return servo_angle(self._body, self._devices, name)
 
     def move(self, targets: Mapping[str, float]) -> None:
-        """See SmoothJoints."""
         self._begin(targets)
         self._smooth.move(targets)
         self._go_on()
 
     def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[Operation, float]:
-        """See SmoothJoints."""
         self._begin(joints_of(wanted))
         made = self._smooth.play(wanted, room)
         self._go_on()
@@ -72,11 +70,10 @@ class ServoJoints:
 
     @property
     def planned(self) -> SmoothJoints:
-        """See btlang.robots.parts.IdlePart."""
         return self._smooth
 
     def idle(self, targets: Mapping[str, float], least: float) -> bool:
-        """See SmoothJoints; not where a servo is silent."""
+        """Move idle joints, as SmoothJoints does; not if a servo is silent."""
         try:
             if not (self._commanded.issuperset(targets) and self._have_reached(targets)):
                 self._begin(targets)
@@ -88,11 +85,10 @@ class ServoJoints:
         return found
 
     def lead(self, wanted: Gesture | Sequence[Mapping[str, float]]) -> float:
-        """See SmoothJoints."""
         return self._smooth.lead(wanted)
 
     def at_target(self, names: tuple[str, ...]) -> bool:
-        """True when none of them is on its way. Raises DeviceSilent, and RobotError where one of them is stuck."""
+        """Return whether none of these joints is on its way. Raises DeviceSilent, and RobotError if one is stuck."""
         if not self._smooth.at_target(names):
             self._progress.start(names)  # where it stands by then counts from the end of its movement on
             return False
@@ -101,12 +97,12 @@ class ServoJoints:
         return all(self._progress.has_arrived(name, planned[name] - self.angle(name)) for name in own)
 
     def freeze(self, names: tuple[str, ...] | None = None) -> None:
-        """They come to rest, and stay there; None: all of them, which takes no lock."""
+        """Brake these joints to rest, where they stay; None: all of them, which takes no lock."""
         self._smooth.freeze(names)
         self._lets_go = self._lets_go or names is None
 
     def step(self, dt: float) -> None:
-        """Commands them again; a joint that has arrived holds its place by itself."""
+        """Command the joints again; one that has arrived holds its position by itself."""
         self._time += dt
         if self._smooth.timeline.rests():
             self._write()
@@ -121,7 +117,7 @@ class ServoJoints:
             self._write()
 
     def _begin(self, names: Iterable[str]) -> None:
-        """Raises DeviceSilent where one of them is. From rest, they begin where their servos are."""
+        """Begin where the servos are, if they rest. Raises DeviceSilent."""
         wanted = frozenset(names)
         for name in wanted:
             self.angle(name)
@@ -162,6 +158,6 @@ class ServoJoints:
             self._commanded, self._lets_go = frozenset(), False
 
     def _have_reached(self, names: Iterable[str]) -> bool:
-        """Raises DeviceSilent where one of them is."""
+        """Return whether servos are at their targets. Raises DeviceSilent."""
         planned = self._smooth.angles
         return all(abs(self.angle(name) - planned[name]) <= joint_of(self._body, name).close_enough for name in names)

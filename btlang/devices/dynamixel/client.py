@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class LineLost(DeviceError):
-    """A port that can't be opened, or can't be read or written any more."""
+    """The error that a port can't be opened, or can't be read or written any more."""
 
 
 class SerialLine:
@@ -43,7 +43,7 @@ class SerialLine:
         self._serial: Serial | None = None
 
     def open(self) -> None:
-        """Opens it for this process alone. Raises LineLost where that can't be done."""
+        """Open it for this process alone. Raises LineLost if that can't be done."""
         try:
             import serial
         except ImportError:
@@ -57,18 +57,18 @@ class SerialLine:
             self._serial.set_low_latency_mode(True)
 
     def close(self) -> None:
-        """Lets go of it. May be called twice."""
+        """Close the port. May be called twice."""
         if self._serial is not None:
             with suppress(OSError):
                 self._serial.close()
             self._serial = None
 
     def seconds(self, count: int) -> float:
-        """How long as many bytes take on the line."""
+        """Return how long as many bytes take on the line."""
         return count * 10 / self.baud
 
     def send(self, data: bytes) -> None:
-        """Sends bytes. What has come before is forgotten: it answers something else."""
+        """Send bytes, and forget what has come before: it answers something else."""
         try:
             file = self._file()
             while select.select((file,), (), (), 0)[0]:
@@ -84,7 +84,7 @@ class SerialLine:
             raise self._lost(problem) from None
 
     def receive(self, until: float) -> bytes:
-        """What comes next, as soon as something does; nothing, if nothing does until then (of time.monotonic())."""
+        """Return the next bytes as soon as there are some; none if nothing comes until then (of time.monotonic())."""
         try:
             file = self._file()
             wait = max(until - time.monotonic(), 0.0)
@@ -132,13 +132,13 @@ class ServoClient:
         self._written: dict[int, tuple[Mapping[int, bytes], bytes]] = {}  # the latest to each address, and its packet
 
     def ping(self, id: int) -> tuple[int, int] | None:
-        """The model number and firmware of a servo, None if it doesn't answer."""
+        """Return the model number and firmware of a servo, None if it doesn't answer."""
         found = self._ask(Packet(id, PING), (id,), 3)
         data = found.get(id)
         return None if data is None else (int.from_bytes(data[1:3], "little"), data[3])
 
     def read(self, id: int, address: int, length: int) -> bytes:
-        """Bytes from an address on, with several tries. Raises DeviceSilent if the servo never answers."""
+        """Read bytes from an address on, with several tries. Raises DeviceSilent if the servo never answers."""
         for _ in range(_TRIES):
             found = self._ask(read_packet(id, address, length), (id,), length)
             if found:
@@ -146,7 +146,7 @@ class ServoClient:
         raise DeviceSilent(f"servo {id} on {self.line.port} doesn't answer")
 
     def write(self, id: int, address: int, data: bytes) -> None:
-        """Writes bytes, in several tries. Raises DeviceSilent if the servo is silent, DeviceError if it refuses."""
+        """Write bytes, in several tries. Raises DeviceSilent if the servo is silent, DeviceError if it refuses."""
         for _ in range(_TRIES):
             found = self._ask(write_packet(id, address, data), (id,), 0)
             if not found:
@@ -159,7 +159,7 @@ class ServoClient:
         raise DeviceSilent(f"servo {id} on {self.line.port} doesn't answer")
 
     def sync_write(self, address: int, values: Mapping[int, bytes]) -> None:
-        """Writes to several servos at once, with the next question or `flush`. Nothing says whether it arrived."""
+        """Write to several servos at once, with the next question or `flush`. Nothing reports whether it arrived."""
         if not values:
             return
         latest, data = self._written.get(address, ({}, b""))
@@ -169,21 +169,24 @@ class ServoClient:
         self._pending += data
 
     def flush(self) -> None:
-        """Sends what waits for the next question."""
+        """Send what waits for the next question."""
         data, self._pending = self._pending, b""
         if data:
             self.line.send(data)
 
     def sync_read(self, address: int, length: int, ids: Sequence[int], fast: bool = False) -> dict[int, bytes]:
-        """The same bytes of several servos, by id. Who doesn't answer is left out, and so is an answer that comes twice
-        or out of order: somebody answers with another's id."""
+        """Return the same bytes of several servos, by id.
+
+        A servo that doesn't answer is left out, and so is an answer that comes twice or out of order: then somebody
+        answers with another's id.
+        """
         if not ids:
             return {}
         found = self._ask(sync_read_packet(address, length, ids, fast), ids, length, fast)
         return {id: parameters[1:] for id, parameters in found.items()}
 
     def _ask(self, packet: Packet, ids: Sequence[int], length: int, fast: bool = False) -> dict[int, bytes]:
-        """The parameters of the status packets of these servos, as far as they came in time."""
+        """Return the parameters of the status packets of these servos, as far as they came in time."""
         self._pending += packet.encode()
         self.flush()
         answer = self.line.seconds((length + (SEGMENT_OVERHEAD if fast else OVERHEAD)) * len(ids))

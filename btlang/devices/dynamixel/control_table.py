@@ -48,7 +48,7 @@ HARDWARE_ERRORS = {
 
 
 class Model(Record):
-    """A make of servo: where its indirect data begin, and the raw load that is 100 percent."""
+    """A model of servo: where its indirect data begin, and the raw load that is 100 percent."""
 
     name: str
     indirect_data: int

@@ -29,8 +29,11 @@ class _Asked:
 
 
 class Polling:
-    """Which servos are asked, and how. Servos that can answer with one common packet do; those whose answer is missing
-    are asked last, since in a chain of answers each waits for the one before."""
+    """Which servos are asked, and how.
+
+    Servos that can answer with one common packet do; those whose answer is missing are asked last, since in a chain of
+    answers each waits for the one before.
+    """
 
     def __init__(self, client: ServoClient) -> None:
         self._client = client
@@ -39,18 +42,18 @@ class Polling:
         self._plain_until, self._extra = 0.0, 0
 
     def add(self, id: int, address: int) -> None:
-        """Asks a servo from now on, whose state begins at this address. It is tried whether it knows the fast way."""
+        """Ask a servo from now on, whose state begins at this address, and try whether it knows the fast way."""
         fast = any(self._client.sync_read(address, STATE.size, (id,), fast=True) for _ in range(2))
         self._asked[id] = _Asked(address, fast, time.monotonic())
         self._groups = None
 
     def remove(self, id: int) -> None:
-        """Asks a servo no more."""
+        """Stop asking a servo."""
         self._asked.pop(id, None)
         self._groups = None
 
     def read(self) -> Mapping[int, bytes]:
-        """One cycle: the states of the servos that answered, and perhaps some bytes more."""
+        """Do one cycle: return the states of the servos that answered, perhaps with some bytes more."""
         if self._groups is None or 0 < self._plain_until < time.monotonic():
             self._groups = self._grouped()
         found: dict[int, bytes] = {}
@@ -59,7 +62,9 @@ class Polling:
         return found
 
     def _grouped(self) -> dict[tuple[int, bool], list[int]]:
-        """The servos that are asked together, by the address of their state and whether they answer in one packet."""
+        """Return the servos that are asked together, by the address of their state and whether they answer in one
+        packet.
+        """
         if self._plain_until < time.monotonic():
             self._plain_until = 0.0
         groups: dict[tuple[int, bool], list[int]] = {}
@@ -68,7 +73,7 @@ class Polling:
         return groups
 
     def silent(self) -> list[int]:
-        """The servos that have not answered for so long that they only hold up the others."""
+        """Return the servos that haven't answered for so long that they only hold up the others."""
         now = time.monotonic()
         return [id for id, asked in self._asked.items() if asked.blames >= _BLAMES and now - asked.answered > _SILENCE]
 
@@ -95,7 +100,7 @@ _PACKET = 14  # bytes of a packet to all servos, beside those of each
 
 
 class _Absent(Record):
-    """Why a servo can't be used, when it is tried again, and how often it was."""
+    """A servo that can't be used: why, when it is tried again, and how often it was."""
 
     reason: DeviceError
     due: float
@@ -103,7 +108,7 @@ class _Absent(Record):
 
 
 class DynamixelDriver:
-    """Servos on a port. Raises DeviceError for options that it can't use.
+    """Servos on a port. Raises DeviceError for unusable options.
 
     A servo that can't be used is named in each cycle and tried again from time to time; the others go on.
     """
@@ -122,7 +127,7 @@ class DynamixelDriver:
         self._absent: dict[int, _Absent] = {}
 
     def open(self) -> None:
-        """Finds the servos. Raises DeviceError if none can be used now."""
+        """Find the servos. Raises DeviceError if none can be used now."""
         self._line.open()
         self._client = ServoClient(self._line)
         self._polling = Polling(self._client)
@@ -138,7 +143,7 @@ class DynamixelDriver:
         self.rate = min(_RATE, 1 / self._cycle_seconds())
 
     def exchange(self, commands: Mapping[str, Command]) -> Mapping[str, Reading | DeviceError]:
-        """One cycle: goals to all servos, the state from all, and a try with one that could not be used."""
+        """Do one cycle: send goals to all servos, read all states, and try one that couldn't be used."""
         self._try_one()
         orders = {}
         for id, servo in self._servos.items():  # one that doesn't answer may hear: it rests
@@ -162,7 +167,7 @@ class DynamixelDriver:
         return readings
 
     def close(self) -> None:
-        """Joints hold where they are or let go, as their option `at_end` says; the port is free then."""
+        """Hold or release the joints, as their option `at_end` says, and close the port."""
         with suppress(DeviceError):
             self._rest()
         self._line.close()
@@ -225,7 +230,7 @@ class DynamixelDriver:
                 continue
 
     def _cycle_seconds(self) -> float:
-        """How long all bytes of a cycle take on the line, and the servos to begin their answers."""
+        """Return how long all bytes of a cycle, and the delays of the servos, take on the line."""
         count = len(self._servos)
         sent = 2 * _PACKET + count * (1 + table.GOAL.size + 1)
         answers = count * (table.STATE.size + OVERHEAD)

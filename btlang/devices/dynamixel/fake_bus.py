@@ -40,10 +40,10 @@ _SIZE = 300
 
 
 class FakeServo:
-    """A servo with the settings of a new one, but for the delay of its answers. Times are of time.monotonic().
+    """A servo with the settings of a new one, apart from the delay of its answers. Times are of time.monotonic().
 
-    The attributes are faults that may be set at any time: it is `silent`; answers with the id `answers_as`; `late` by
-    some seconds; it has a fast way of reading only if it `is_fast`.
+    The attributes are faults that may be set at any time: it is `silent`; answers with the id `answers_as`; is `late`
+    by some seconds; and it has a fast way of reading only if it `is_fast`.
     """
 
     def __init__(self, id: int, model: int = 1060, firmware: int = 46, is_fast: bool = True) -> None:
@@ -62,7 +62,7 @@ class FakeServo:
         self.reboot()
 
     def reboot(self) -> None:
-        """As after its power was off: torque and watchdog are off, and it has forgotten its indirect addresses."""
+        """Restart as after a loss of power: torque and watchdog are off, and indirect addresses are forgotten."""
         self.memory[_EEPROM_END:] = bytes(_SIZE - _EEPROM_END)
         data = table.MODELS[self.model].indirect_data if self.model in table.MODELS else 224
         pack_into(f"<{_INDIRECT_COUNT}H", self.memory, table.INDIRECT_ADDRESS, *range(data, data + _INDIRECT_COUNT))
@@ -72,7 +72,7 @@ class FakeServo:
 
     @property
     def temperature(self) -> int:
-        """Degrees Celsius."""
+        """The temperature in degrees Celsius."""
         return self._temperature
 
     @temperature.setter
@@ -86,29 +86,29 @@ class FakeServo:
 
     @property
     def position(self) -> float:
-        """Where its shaft is, in ticks, at the last instruction on the line."""
+        """The position of its shaft, in ticks, at the last instruction on the line."""
         return self._exact
 
     @property
     def goal(self) -> int:
-        """In ticks."""
+        """The goal in ticks."""
         goal: int = unpack_from("<i", self.memory, table.GOAL_POSITION)[0]
         return goal
 
     def turn_to(self, ticks: float) -> None:
-        """Turns the shaft by hand."""
+        """Turn the shaft by hand."""
         self._exact = ticks
         pack_into("<ii", self.memory, table.VELOCITY, 0, round(ticks))
         if not self.has_torque:
             pack_into("<i", self.memory, table.GOAL_POSITION, round(ticks))
 
     def fail(self, bits: int) -> None:
-        """A hardware error: it lets go until it is rebooted."""
+        """Set a hardware error: it releases its shaft until it is rebooted."""
         self.memory[table.HARDWARE_ERROR] = bits
         self.memory[table.TORQUE] = 0
 
     def hear(self, now: float) -> None:
-        """An instruction for anybody was on the line."""
+        """Note that an instruction for any servo was on the line."""
         period = self.memory[table.WATCHDOG] * table.WATCHDOG_UNIT
         if self.has_torque and 0 < period < 127 * table.WATCHDOG_UNIT and now - self._heard > period:
             self._move(self._heard + period)
@@ -117,11 +117,11 @@ class FakeServo:
         self._heard = now
 
     def read(self, address: int, length: int) -> bytes:
-        """Bytes of its control table."""
+        """Read bytes of its control table."""
         return bytes(self.memory[self._at(a)] for a in range(address, address + length))
 
     def write(self, address: int, data: bytes) -> int:
-        """Writes to its control table, or returns the error why not."""
+        """Write to its control table, or return the error why not."""
         cells = [self._at(a) for a in range(address, address + len(data))]
         error = self._error(cells, data)
         if not error:
@@ -169,11 +169,11 @@ _UNKNOWN = 2
 
 
 class FakeBus:
-    """Servos by their ids on a port of this machine, from `start` to `close`; usable as a context.
+    """Servos by their ids on a port of this machine, from `start` to `close`; also a context manager.
 
     Faults that may be set at any time: `damage` is the share of bytes that arrive flipped in both directions, with
-    `echo` what is sent comes back too, and `baud` paces both directions like a line. As on a real line, who is behind
-    a silent servo in a common answer waits for it in vain.
+    `echo` what is sent comes back too, and `baud` paces both directions like a line. As on a real line, a servo behind
+    a silent one in a common answer waits for it in vain.
     """
 
     def __init__(self, servos: Iterable[FakeServo], seed: int = 0) -> None:
@@ -190,12 +190,12 @@ class FakeBus:
         self._thread = threading.Thread(target=self._serve, name="fake Dynamixel bus", daemon=True)
 
     def start(self) -> FakeBus:
-        """Begins to answer."""
+        """Begin to answer."""
         self._thread.start()
         return self
 
     def unplug(self) -> None:
-        """The cable is pulled. No other terminal of this machine gets the path before `close`."""
+        """Pull the cable. No other terminal of this machine gets the path before `close`."""
         if self._file < 0:
             return
         os.write(self._woken, b"x")
@@ -206,7 +206,7 @@ class FakeBus:
         self._file = -1
 
     def close(self) -> None:
-        """The port is gone. May be called twice."""
+        """Remove the port. May be called twice."""
         self.unplug()
         if self._other >= 0:
             os.close(self._other)
@@ -253,7 +253,7 @@ class FakeBus:
                         self.servos[id].write(address, data)
 
     def _do(self, servo: FakeServo, packet: Packet) -> tuple[int, bytes]:
-        """What a servo does with an instruction: the error and the data of its answer."""
+        """Do an instruction on a servo; return the error and the data of its answer."""
         if packet.instruction == PING:
             return 0, servo.read(0, 2) + servo.read(6, 1)
         if packet.instruction == READ:
@@ -296,7 +296,7 @@ class FakeBus:
             os.write(self._file, self._damaged(data))
 
     def _wait(self, servo: FakeServo) -> None:
-        """What is sent while a servo is late collides with its answer, and nobody hears it."""
+        """Wait for a late servo: what is sent meanwhile collides with its answer, and nobody hears it."""
         if servo.late:
             time.sleep(servo.late)
             while select.select((self._file,), (), (), 0)[0]:
@@ -322,7 +322,7 @@ def _words(parameters: bytes) -> tuple[int, int]:
 
 
 def main() -> None:
-    """Serves a bus until Ctrl-C."""
+    """Serve a bus until Ctrl-C."""
     options = argparse.ArgumentParser(description="Simulated Dynamixel servos on a pseudo terminal.")
     options.add_argument("ids", type=int, nargs="*", default=[1], metavar="ID", help="ids of the servos")
     given = options.parse_args()

@@ -16,8 +16,10 @@ _HIGHEST_BAUD = 4_500_000
 
 
 class ServoOptions(Record):
-    """`hottest` is in degrees Celsius, `low` and `high` are limits in true degrees; None leaves them to the servo.
-    `baud` is that of the port: all servos on it have the same."""
+    """The options of a servo. `hottest` is in degrees Celsius, `low` and `high` are limits in true degrees.
+
+    None leaves them to the servo. `baud` is that of the port: all servos on it have the same.
+    """
 
     id: int
     reverse: bool = False
@@ -29,7 +31,7 @@ class ServoOptions(Record):
 
 
 def read_options(device: Device) -> ServoOptions:
-    """Those of one servo. Raises DeviceError for one that can't be used."""
+    """Read the options of one servo. Raises DeviceError for ones that can't be used."""
     options = dict(device.options)
     names = ServoOptions.fields
     unknown = sorted(map(str, options.keys() - set(names)))
@@ -55,7 +57,7 @@ def read_options(device: Device) -> ServoOptions:
 
 
 def read_all(devices: Sequence[Device]) -> list[ServoOptions]:
-    """Those of the servos on a port. Raises DeviceError where they contradict each other."""
+    """Read the options of the servos on a port. Raises DeviceError if they contradict each other."""
     read = [read_options(device) for device in devices]
     users: dict[int, str] = {}
     for device, options in zip(devices, read, strict=True):
@@ -83,11 +85,11 @@ _DEGREES = 360 / table.TICKS
 
 
 class Restarted(DeviceSilent):
-    """A servo has lost its settings: it was without power, or somebody else wrote to it."""
+    """The error that a servo has lost its settings: it was without power, or somebody else wrote to it."""
 
 
 class Orders(Record):
-    """What a servo is sent in a cycle; None: nothing. `watchdog`: its watchdog stopped it and is set again."""
+    """What to send to a servo in a cycle; None for nothing. `watchdog`: its watchdog stopped it and is set again."""
 
     goal: bytes | None = None
     torque: bool | None = None
@@ -95,7 +97,7 @@ class Orders(Record):
 
 
 class Servo:
-    """A joint on a port. Until `make_ready` has succeeded, nothing else of it may be used."""
+    """A joint on a port. Only `make_ready` may be used until it has succeeded."""
 
     def __init__(self, device: Device, options: ServoOptions) -> None:
         self.name, self.id, self.options = device.name, options.id, options
@@ -116,11 +118,11 @@ class Servo:
 
     @property
     def state_address(self) -> int:
-        """Where its state is read."""
+        """The address of its state."""
         return self._model.indirect_data
 
     def make_ready(self, client: ServoClient) -> None:
-        """Finds the servo, checks its settings and sets its watchdog. If its torque is on, it stops where it is.
+        """Find the servo, check its settings and set its watchdog. If its torque is on, it stops where it is.
 
         Raises DeviceSilent if it doesn't answer, DeviceError if it can't be used.
         """
@@ -151,7 +153,7 @@ class Servo:
         self._is_steady = False
 
     def orders(self, target: JointTarget | None) -> Orders:
-        """What to send for a target; None: nothing is known of what it should do."""
+        """Return what to send for a target; None means that nobody knows what it should do."""
         if target is self._target and self._is_steady:
             return self._orders
         self._refused, self._target = None, target
@@ -178,8 +180,11 @@ class Servo:
         return Orders(table.GOAL.pack(fastest, goal), None if self._has_torque else True, self._is_tripped)
 
     def reading(self, state: bytes) -> JointState:
-        """What its state means. Raises Restarted if it has to be made ready again, DeviceError if it is at fault or its
-        commanded goal isn't finite."""
+        """Return the reading in its state.
+
+        Raises Restarted if it has to be made ready again, DeviceError if it is at fault or its commanded goal isn't
+        finite.
+        """
         torque, error, watchdog, load, velocity, position, temperature = table.STATE.unpack_from(state)
         if torque > 1 or watchdog not in (WATCHDOG_SET, table.WATCHDOG_TRIPPED):
             self._has_torque = self._is_steady = False  # as far as is known; the position is none either
@@ -211,7 +216,7 @@ class Servo:
         return None
 
     def _goal(self, target: JointTarget) -> tuple[int | None, int]:
-        """In ticks, within the limits, and the highest speed in units of the servo."""
+        """Return the goal in ticks, within the limits, and the highest speed in units of the servo."""
         position, speed = target.position, target.speed
         if not math.isfinite(position or 0.0) or not math.isfinite(speed or 0.0):
             self._refused = DeviceError(f"the {self.name} can't go to {position} at a speed of {speed}")
@@ -241,7 +246,7 @@ class Servo:
         self._hottest = hottest if self.options.hottest is None else min(self.options.hottest, hottest)
 
     def _asked_range(self, low: int, high: int) -> list[int]:
-        """The limits of the robot file in ticks, those of the servo where it gives none."""
+        """Return the limits of the robot file in ticks, by default those of the servo."""
         true_low, true_high = self._true_range(low, high)
         given = (
             true_low if self.options.low is None else self.options.low,

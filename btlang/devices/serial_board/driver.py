@@ -32,7 +32,7 @@ _CHANNEL = ("channel", "frozen")
 
 
 class BoardOptions(Record):
-    """The board: its name ("" where any will do), and either a path or that all ports are searched for it."""
+    """The board: its name ("" for any), and either a path or that all ports are searched for it."""
 
     name: str
     path: str
@@ -53,7 +53,10 @@ class ChannelOptions(Record):
 
 
 def read_options(port: str, devices: Sequence[Device]) -> tuple[BoardOptions, Mapping[str, ChannelOptions]]:
-    """The options of a board, which any of its devices may have, and of its devices by name. Raises DeviceError."""
+    """Return the options of a board, which any of its devices may have, and of its devices by name.
+
+    Raises DeviceError.
+    """
     board: dict[str, Any] = {}
     channels: dict[str, ChannelOptions] = {}
     for device in devices:
@@ -144,7 +147,7 @@ class SerialBoard:
         self._begin((), 0.0)
 
     def open(self) -> None:
-        """See Driver. The port is a path, or `board NAME`: then all serial ports are asked for it."""
+        """Implement Driver. The port is a path, or `board NAME`: then all serial ports are asked for it."""
         wanted = self._board
         self._line = find_board(wanted.name, wanted.baud) if wanted.searched else BoardLine(wanted.path, wanted.baud)
         hello = begin_session(self._line)
@@ -171,7 +174,6 @@ class SerialBoard:
         self._patience = _PATIENCE
 
     def exchange(self, commands: Mapping[str, Command]) -> Mapping[str, Reading | DeviceError]:
-        """See Driver."""
         line = self._line
         if line is None:
             raise DeviceError("the port is not open")
@@ -191,14 +193,13 @@ class SerialBoard:
                 return readings | refused
 
     def close(self) -> None:
-        """See Driver."""
         line, self._line = self._line, None
         if line is not None:
             line.stop()
             line.close()
 
     def _begin(self, channels: tuple[BoardChannel, ...], now: float) -> None:
-        """All that belongs to one session."""
+        """Reset everything that belongs to one session."""
         self._sent: dict[int, _Sent] = {}
         self._kept: dict[str, bytes] = {}
         self._known: dict[str, _Known] = {}
@@ -218,7 +219,10 @@ class SerialBoard:
         self._users = {self._options[name].channel: name for name in users}
 
     def _send(self, line: BoardLine, commands: Mapping[str, Command]) -> dict[str, DeviceError]:
-        """Returns the devices that can't be used now. What moves rests unless an answer is sure to have come lately."""
+        """Send the commands; return the devices that can't be used now.
+
+        What moves rests unless an answer is sure to have come lately.
+        """
         now = time.monotonic()
         blind = now + self._patience - self._answered > SILENCE
         kinds: list[str] = []
@@ -246,7 +250,7 @@ class SerialBoard:
         return refused
 
     def _take(self, message: bytes) -> dict[str, Reading | DeviceError]:
-        """The readings in an answer; none if the answer can't be used."""
+        """Return the readings in an answer; none if the answer can't be used."""
         answer, now = read_answer(message), time.monotonic()
         if answer is None:
             return {}

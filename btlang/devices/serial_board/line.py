@@ -27,12 +27,12 @@ FRAMING = 4
 
 
 def crc16(data: bytes) -> int:
-    """CRC-16/CCITT-FALSE: polynomial 0x1021, begins with 0xFFFF, nothing reflected."""
+    """Return the CRC-16/CCITT-FALSE: polynomial 0x1021, begins with 0xFFFF, nothing reflected."""
     return crc_hqx(data, 0xFFFF)
 
 
 def encode_frame(message: bytes) -> bytes:
-    """The frame of a message. Raises ValueError where it is too long."""
+    """Return the frame of a message. Raises ValueError if it is too long."""
     checked = message + crc16(message).to_bytes(2, "little")
     if len(checked) > MOST:
         raise ValueError(f"a message of {len(message)} bytes; at most {MOST_MESSAGE} fit in a frame")
@@ -40,7 +40,7 @@ def encode_frame(message: bytes) -> bytes:
 
 
 def decode_frame(frame: bytes) -> bytes | None:
-    """The message of a frame, given without the zero at its end; None where it isn't one, or was damaged."""
+    """Return the message of a frame, given without the zero at its end; None if it isn't one, or was damaged."""
     if len(frame) > MOST + 1:
         return None
     blocks, at = [], 0
@@ -65,7 +65,7 @@ class FrameReader:
         """Frames that couldn't be read so far."""
 
     def feed(self, data: bytes) -> list[bytes]:
-        """The messages that end in these bytes."""
+        """Return the messages that end in these bytes."""
         *frames, rest = (self._rest + data).split(b"\0")
         self._rest = rest[: MOST + 2]  # what is too long by now is still so at its end
         messages = [decode_frame(frame) for frame in frames if frame]
@@ -86,7 +86,7 @@ _MISSING = (
 
 
 class BoardLine:
-    """An open serial port. Raises DeviceError where it can't be opened or is lost."""
+    """An open serial port. Raises DeviceError if it can't be opened or is lost."""
 
     def __init__(self, path: str, baud: int) -> None:
         try:
@@ -99,13 +99,13 @@ class BoardLine:
             self._port: serial.Serial = Serial(path, baud, timeout=_LOOK, write_timeout=_ASKED_EVERY, exclusive=True)
 
     def send(self, message: bytes) -> None:
-        """Sends a message as a frame."""
+        """Send a message as a frame."""
         self._sent, self._received = message, 0
         with self._named():
             self._port.write(encode_frame(message))
 
     def receive(self, until: float) -> list[bytes]:
-        """Waits for messages until a time of the monotonic clock. Raises DeviceError where bytes flood in."""
+        """Wait for messages until a time of the monotonic clock. Raises DeviceError if bytes flood in."""
         while True:
             with self._named():
                 data = self._port.read(self._port.in_waiting or 1)
@@ -118,7 +118,7 @@ class BoardLine:
                 return messages
 
     def silence(self) -> str:
-        """What came in place of a hello."""
+        """Return what came in place of a hello."""
         if self._echoes:
             return "only an echo of what is sent comes back"
         if self._reader.damaged or self._received:
@@ -126,13 +126,13 @@ class BoardLine:
         return "nothing answers"
 
     def stop(self) -> None:
-        """Commands a board to bring everything to rest, as far as it can be reached."""
+        """Command a board to bring everything to rest, as far as it can be reached."""
         with suppress(DeviceError):
             for _ in range(3):  # one may be damaged on its way
                 self.send(bytes([STOP]))
 
     def close(self) -> None:
-        """Lets go of the port."""
+        """Close the port."""
         with suppress(OSError):
             self._port.close()
 
@@ -151,7 +151,7 @@ class BoardLine:
 
 
 def serial_ports() -> list[str]:
-    """The paths of all serial ports of this computer."""
+    """Return the paths of all serial ports of this computer."""
     try:
         from serial.tools.list_ports import comports
     except ImportError:
@@ -160,7 +160,7 @@ def serial_ports() -> list[str]:
 
 
 def begin_session(line: BoardLine) -> Hello:
-    """Begins a session with the board of a line. Raises DeviceError where there's none, or of another version."""
+    """Begin a session with the board of a line. Raises DeviceError if there's none, or for another version."""
     session = randrange(1, 2**16)
     hello = _ask([line], session).get(line)
     if hello is None:
@@ -175,7 +175,7 @@ def begin_session(line: BoardLine) -> Hello:
 
 
 def find_board(name: str, baud: int) -> BoardLine:
-    """The line of the board of that name. Raises DeviceError where there's none, or more than one."""
+    """Return the line of the board of that name. Raises DeviceError if there's none, or more than one."""
     lines, locked = [], []
     for path in serial_ports():
         try:
@@ -203,7 +203,9 @@ def find_board(name: str, baud: int) -> BoardLine:
 
 
 def _ask(lines: Sequence[BoardLine], session: int) -> dict[BoardLine, Hello]:
-    """Who answers at these lines. It waits for all of them: a second board of one name may need longer."""
+    """Return the boards that answer at these lines. Waits for all of them: a second board of
+    one name may need longer.
+    """
     found: dict[BoardLine, Hello] = {}
     pending = list(lines)
     due = time.monotonic()

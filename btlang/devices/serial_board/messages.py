@@ -36,22 +36,23 @@ _UNKNOWN = 2  # whether a battery is charging
 
 
 class Tally:
-    """A 32-bit counter of a board without its jumps: it goes on past the end of the bits, and where the board started
-    again it goes on from where it was."""
+    """A 32-bit counter of a board without its jumps: it goes on beyond the last bit, and after
+    a restart of the board.
+    """
 
     def __init__(self) -> None:
         self._total = 0
         self._last: int | None = None
 
     def count(self, value: int) -> int:
-        """What was counted since the first value."""
+        """Return what was counted since the first value."""
         if self._last is not None:
             self._total += (value - self._last + 2**31) % 2**32 - 2**31
         self._last = value
         return self._total
 
     def restart(self) -> None:
-        """The next value is the first of a board that started again."""
+        """Restart: the next value is the first of a board that started again."""
         self._last = None
 
 
@@ -67,7 +68,7 @@ class ReadingFormat(Record):
 
 
 class CommandFormat(Record):
-    """How a kind's commands are written. Packing raises DeviceError for what isn't a number."""
+    """How a kind's commands are written. Packing raises DeviceError for values that aren't numbers."""
 
     layout: Struct
     pack: Callable[[Any], bytes]
@@ -239,8 +240,10 @@ class BoardChannel(Record):
 
 
 class Hello(Record):
-    """Who a board is. `session` is that of the computer which it obeys, `before` the one before that; 0: none since it
-    was started."""
+    """Who a board is.
+
+    `session` is that of the computer which it obeys, `before` the one before that; 0: none since it was started.
+    """
 
     version: int
     name: str
@@ -259,8 +262,10 @@ class BoardSample(Record):
 
 
 class BoardAnswer(Record):
-    """A board's samples of all channels that measure something. `sequence` is that of the message it answers,
-    `milliseconds` the time since it was started, in 32 bits."""
+    """A board's samples of all channels that measure something.
+
+    `sequence` is that of the message it answers, `milliseconds` the time since it was started, in 32 bits.
+    """
 
     session: int
     sequence: int
@@ -277,12 +282,12 @@ class BoardCommands(Record):
 
 
 def ask_hello(session: int) -> bytes:
-    """Asks a board who it is, and begins a session with it; 0 only asks."""
+    """Return a message that asks a board who it is, and begins a session with it; 0 only asks."""
     return _ASK_HELLO.pack(ASK_HELLO, VERSION, session)
 
 
 def read_ask_hello(message: bytes) -> tuple[int, int] | None:
-    """Version and session."""
+    """Return the version and the session in such a message."""
     if len(message) != _ASK_HELLO.size:
         return None
     _, version, session = _ASK_HELLO.unpack(message)
@@ -290,7 +295,7 @@ def read_ask_hello(message: bytes) -> tuple[int, int] | None:
 
 
 def hello_message(hello: Hello) -> bytes:
-    """A board says who it is."""
+    """Return the message in which a board says who it is."""
     name = hello.name.encode()
     channels = b"".join(
         _CHANNEL.pack(channel.number, KIND_NUMBERS[channel.kind], round(channel.interval * 1000))
@@ -301,7 +306,9 @@ def hello_message(hello: Hello) -> bytes:
 
 
 def read_hello(message: bytes) -> Hello | None:
-    """None where it is none. Of another version of the protocol it reads version and name alone."""
+    """Return the hello in a message, None if it isn't one. For another version of the protocol, only version and name
+    are read.
+    """
     if len(message) < 3 or message[0] != HELLO or len(message) < 3 + message[2]:
         return None
     version, at = message[1], 3 + message[2]
@@ -319,13 +326,13 @@ def read_hello(message: bytes) -> Hello | None:
 
 
 def command_message(message: BoardCommands) -> bytes:
-    """The message with commands to a board; without any it is a heartbeat."""
+    """Return the message with commands to a board; without any it is a heartbeat."""
     commands = b"".join(_COMMAND.pack(number, KIND_NUMBERS[kind]) + data for number, kind, data in message.commands)
     return _TELL.pack(TELL, message.session, message.sequence) + commands
 
 
 def read_command_head(message: bytes) -> tuple[int, int] | None:
-    """Session and sequence."""
+    """Return the session and the sequence of a message with commands."""
     if len(message) < _TELL.size:
         return None
     _, session, sequence = _TELL.unpack_from(message)
@@ -333,7 +340,7 @@ def read_command_head(message: bytes) -> tuple[int, int] | None:
 
 
 def read_commands(message: bytes) -> tuple[tuple[int, str, bytes], ...] | None:
-    """None where they can't be read to their end."""
+    """Return the commands in a message, None if they can't be read to their end."""
     commands, at = [], _TELL.size
     while at < len(message):
         kind = KINDS_BY_NUMBER.get(message[at + 1], "") if at + 1 < len(message) else ""
@@ -348,7 +355,7 @@ def read_commands(message: bytes) -> tuple[tuple[int, str, bytes], ...] | None:
 
 
 def answer_message(answer: BoardAnswer) -> bytes:
-    """The message with a board's samples."""
+    """Return the message with a board's samples."""
     samples = b"".join(
         _READING.pack(sample.number, KIND_NUMBERS[sample.kind], sample.count)
         + READINGS[sample.kind].layout.pack(*sample.integers)
@@ -358,7 +365,7 @@ def answer_message(answer: BoardAnswer) -> bytes:
 
 
 def read_answer(message: bytes) -> BoardAnswer | None:
-    """None where it is none, or can't be read to its end."""
+    """Return the answer in a message, None if it isn't one, or can't be read to its end."""
     if len(message) < _ANSWER.size or message[0] != ANSWER:
         return None
     _, session, sequence, milliseconds = _ANSWER.unpack_from(message)
@@ -376,11 +383,11 @@ def read_answer(message: bytes) -> BoardAnswer | None:
 
 
 def command_size(kinds: Sequence[str]) -> int:
-    """Bytes of a message with commands for channels of these kinds."""
+    """Return the bytes of a message with commands for channels of these kinds."""
     return _TELL.size + sum(_COMMAND.size + COMMANDS[kind].layout.size for kind in kinds)
 
 
 def answer_size(channels: Sequence[BoardChannel]) -> int:
-    """Bytes of an answer of these channels."""
+    """Return the bytes of an answer of these channels."""
     sizes = [_READING.size + READINGS[channel.kind].layout.size for channel in channels if channel.kind in READINGS]
     return _ANSWER.size + sum(sizes)

@@ -53,28 +53,29 @@ _BITS = 10
 
 
 class BoardModel(Protocol):
-    """What is at the end of a line; times are seconds of one clock."""
+    """The board at the end of a line; times are seconds of one clock."""
 
     def receive(self, data: bytes, now: float) -> bytes:
-        """What it answers to bytes."""
+        """Return the answer to bytes."""
 
     def turn(self, now: float) -> None:
-        """Time has passed."""
+        """Go on to a time."""
 
     def reset(self, now: float) -> None:
-        """It is started again."""
+        """Restart the board."""
 
     @property
     def speeds(self) -> tuple[float, float]:
-        """Metres a second of its wheels."""
+        """The metres a second of its wheels."""
 
 
 class SimulatedLine:
-    """A board on a pty at `path`, while it is entered. Its faults can be changed at any time:
+    """A board on a pty at `path`, as a context manager.
 
-    `flipped`: the share of bytes that change on their way; `baud`: bits a second that it carries (0: no limit); `echo`:
-    what is sent comes back too; `cut`: the share of answers that are cut in half; `deaf`: nothing reaches the
-    board; `noise`: what comes besides, at each turn; `still_since`: when the wheels came to rest, None while they turn.
+    Its faults can be changed at any time: `flipped`: the share of bytes that change on their way; `baud`: bits a second
+    that it carries (0: no limit); `echo`: what is sent comes back too; `cut`: the share of answers that are cut in
+    half; `deaf`: nothing reaches the board; `noise`: what comes in addition, at each turn; `still_since`: when the
+    wheels came to rest, None while they turn.
     """
 
     def __init__(self, board: BoardModel, seed: int = 0) -> None:
@@ -105,7 +106,7 @@ class SimulatedLine:
         os.close(self._slave)
 
     def plug(self) -> None:
-        """The cable is connected, and gets another path than before."""
+        """Connect the cable, which gets another path than before."""
         master, slave = pty.openpty()
         tty.setraw(slave)
         os.set_blocking(master, False)
@@ -116,7 +117,7 @@ class SimulatedLine:
             os.close(before)
 
     def unplug(self) -> None:
-        """The cable is pulled; the board goes on. No other terminal of this machine gets its path before `plug`."""
+        """Pull the cable; the board goes on. No other terminal of this machine gets its path before `plug`."""
         with self._lock:
             master, self._master = self._master, -1
         if master >= 0:
@@ -128,7 +129,7 @@ class SimulatedLine:
         return self._master >= 0
 
     def reset(self) -> None:
-        """The board is started again."""
+        """Restart the board."""
         with self._lock:
             self.board.reset(time.monotonic())
 
@@ -206,10 +207,10 @@ _JOINT_SPEED = 90.0  # degrees a second
 
 
 class SimulatedBoard:
-    """A board of these channels. Its sensors measure `readings`; it obeys `commands`; both are by number.
+    """A board with these channels. Its sensors measure `readings`; it obeys `commands`; both are by number.
 
-    Faults: the channels in `frozen` measure nothing new; those in `claims` answer with another number; `ahead` are
-    seconds that its clock is ahead.
+    Faults: the channels in `frozen` measure nothing new; those in `claims` answer with another number; `ahead` is how
+    many seconds its clock is ahead.
     """
 
     def __init__(self, name: str, channels: Iterable[BoardChannel] = CHANNELS, version: int = VERSION) -> None:
@@ -220,7 +221,7 @@ class SimulatedBoard:
         self.reset(0.0)
 
     def reset(self, now: float) -> None:
-        """It is started again: all counters begin at 0, and nothing moves."""
+        """Restart: all counters begin at 0, and nothing moves."""
         self.readings = {c.number: _FIRST[c.kind] for c in self.channels if c.kind in READINGS}
         self.commands: dict[int, Command] = {
             c.number: command() for c in self.channels if (command := KINDS[c.kind].command)
@@ -235,19 +236,19 @@ class SimulatedBoard:
 
     @property
     def speeds(self) -> tuple[float, float]:
-        """Metres a second of the wheels of its first drive."""
+        """The metres a second of the wheels of its first drive."""
         drives = (command for command in self.commands.values() if isinstance(command, WheelSpeeds))
         command = next(drives, WheelSpeeds())
         return command.left, command.right
 
     def receive(self, data: bytes, now: float) -> bytes:
-        """What it answers to bytes of the line."""
+        """Return the answer to bytes of the line."""
         return b"".join(
             encode_frame(answer) for message in self._reader.feed(data) for answer in self._do(message, now)
         )
 
     def turn(self, now: float) -> None:
-        """Time has passed: moves, measures, and brings to rest every channel whose command is too old."""
+        """Go on to a time: move, measure, and bring to rest every channel whose command is too old."""
         for number, commanded in list(self._command_times.items()):
             if now - commanded >= SILENCE:
                 self._rest(number)
@@ -330,7 +331,7 @@ def _moved(reading: Reading, command: Command, seconds: float) -> Reading:
 
 
 def main(name: str) -> None:
-    """Shows a board with one channel of each kind until Ctrl-C."""
+    """Show a board with one channel of each kind until Ctrl-C."""
     with suppress(KeyboardInterrupt), SimulatedLine(SimulatedBoard(name)) as line:
         show(line.path)
         while True:
