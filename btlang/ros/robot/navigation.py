@@ -11,7 +11,6 @@ from typing import Any
 
 from action_msgs.msg import GoalStatus
 from action_msgs.srv import CancelGoal
-from nav2_msgs.action import NavigateToPose
 from rclpy.action import ActionClient
 from rclpy.node import Node
 from unique_identifier_msgs.msg import UUID
@@ -318,8 +317,11 @@ class RosNavigation(ServerGoals):
         localized: Callable[[], bool] = lambda: True,
         tolerance: float = TOLERANCE,
     ) -> None:
+        from nav2_msgs.action import NavigateToPose  # a robot may have no Nav2
+
         super().__init__(node, executor, where, now, localized)
         self._tolerance = tolerance
+        self._type = NavigateToPose
         self._client = ActionClient(node, NavigateToPose, ACTION)
         self._server = node.resolve_service_name(ACTION)
 
@@ -329,7 +331,7 @@ class RosNavigation(ServerGoals):
         goal = said(name)
         nouns = f"the navigation to {goal}", f"navigate to {goal}", f" on the way to {goal}"
         task = GoalTask("navigation", name, *nouns, goal=pose, tolerance=self._tolerance)
-        request = NavigateToPose.Goal(pose=stamped_pose(pose, self._node.get_clock().now().to_msg()))
+        request = self._type.Goal(pose=stamped_pose(pose, self._node.get_clock().now().to_msg()))
         return self.begin(task, self._client, self._server, request)
 
 

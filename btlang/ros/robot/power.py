@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 
-from nav2_msgs.action import DockRobot, UndockRobot
 from rclpy.action import ActionClient
 from rclpy.node import Node
 from sensor_msgs.msg import BatteryState
@@ -35,12 +34,18 @@ _UNDOCKING = {**_REASONS, 905: "the robot couldn't be driven out of the dock", 9
 
 
 class RosDocking(ServerGoals):
-    """The clients of the docking server, and the current goal. Docking drives to the staging pose by itself."""
+    """The clients of the docking server, and the current goal. Docking drives to the staging pose by itself.
+
+    Raises ImportError if nav2_msgs isn't installed or has no docking.
+    """
 
     def __init__(
         self, node: Node, executor: ExecutorThread, where: Callable[[], Pose | None], now: Callable[[], float]
     ) -> None:
+        from nav2_msgs.action import DockRobot, UndockRobot  # a robot may have no Nav2, or one without docking
+
         super().__init__(node, executor, where, now)
+        self._dock_type, self._undock_type = DockRobot, UndockRobot
         self._dock = ActionClient(node, DockRobot, DOCK_ROBOT)
         self._undock = ActionClient(node, UndockRobot, UNDOCK_ROBOT)
 
@@ -52,7 +57,7 @@ class RosDocking(ServerGoals):
     def dock(self, pose: Pose | None) -> ServerGoal:
         """Dock at a pose of the map; with None, at the dock that the server calls "dock"."""
         self.stop("the robot docks instead")
-        request = DockRobot.Goal(use_dock_id=pose is None, dock_id="" if pose is not None else "dock")
+        request = self._dock_type.Goal(use_dock_id=pose is None, dock_id="" if pose is not None else "dock")
         request.navigate_to_staging_pose = True
         if pose is not None:
             request.dock_pose = stamped_pose(pose, self._node.get_clock().now().to_msg())
@@ -64,7 +69,7 @@ class RosDocking(ServerGoals):
         self.stop("the robot undocks instead")
         task = GoalTask("docking", "dock", "undocking", "undock", " on the way out of the dock", _UNDOCKING, False)
         server = self._node.resolve_service_name(UNDOCK_ROBOT)
-        return self.begin(task, self._undock, server, UndockRobot.Goal())
+        return self.begin(task, self._undock, server, self._undock_type.Goal())
 
 
 BATTERY, DOCKED, DOCK, UNDOCK = "battery_state", "docked", "dock", "undock"
@@ -187,11 +192,3 @@ class RosPower:
     def _connected(self, docked: bool) -> None:
         self._docked, self._since = docked, AWAKE.now()  # before the topic reports it
         self._emit("dock" if docked else "undock")
-
-
-def make_docking_clients(
-    node: Node, executor: ExecutorThread, where: Callable[[], Pose | None], now: Callable[[], float]
-) -> RosDocking:
-    """Make the clients of the docking server. Raises ImportError if nav2_msgs isn't installed or has no docking."""
-
-    return RosDocking(node, executor, where, now)

@@ -33,9 +33,9 @@ from btlang.ros.robot.base import RosBase
 from btlang.ros.robot.hands import RosHands
 from btlang.ros.robot.interface import VELOCITY
 from btlang.ros.robot.joints import JointsOverRos, RosJoints
-from btlang.ros.robot.navigation import Pursuit
+from btlang.ros.robot.navigation import Pursuit, RosNavigation, ServerGoal, ServerGoals
 from btlang.ros.robot.places import RosDoors, RosPlaces
-from btlang.ros.robot.power import RosPower, make_docking_clients
+from btlang.ros.robot.power import RosDocking, RosPower
 from btlang.ros.robot.sensors import RosPerception, RosSensors
 from btlang.ros.robot.services import Services
 from btlang.ros.robot.speech import RosEars, RosSpeech
@@ -47,7 +47,6 @@ from btlang.text.time_of_day import DAY, local, weekday_after
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.ros.robot.navigation import RosNavigation, ServerGoal, ServerGoals
     from btlang.speech.engine import Utterance
 
 CALL, FOLLOW = "call", "follow"
@@ -108,7 +107,7 @@ class RosRobot(Guarded):
         self._services.add(_STOP, Trigger)
         self._services.add(_LOCALIZE, Empty)
         self._senses = RosSensors(subscriptions, self._base, self._emit, body)
-        make_docking = partial(make_docking_clients, node, self._executor, self._base.where, now)
+        make_docking = partial(RosDocking, node, self._executor, self._base.where, now)
         self.power = RosPower(node, subscriptions, self._services, self._emit, make_docking)
         self._hands = RosHands(node, subscriptions, self._services, self._places, self._base.where, self._emit, body)
         self._ears = RosEars(node, subscriptions, self._emit)
@@ -134,8 +133,6 @@ class RosRobot(Guarded):
     def prepare_navigation(self) -> None:
         """Make the client of the navigation server, which finds it in a moment. Needs nav2_msgs."""
         if self._navigation is None:
-            from btlang.ros.robot.navigation import RosNavigation
-
             tolerance = self.body.navigation.tolerance if self.body.navigation is not None else TOLERANCE
             self._navigation = RosNavigation(
                 self._node, self._executor, self._base.where, self._now, lambda: self._base.is_localized, tolerance
