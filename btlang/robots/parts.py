@@ -50,17 +50,24 @@ class BasePart(Protocol):
     def step(self, dt: float) -> None: ...
 
 
-class PowerPart(Protocol):
-    """The battery and the dock; see SimulatedPower."""
-
-    docked: bool
+class BatteryPart(Protocol):
+    """A battery and a dock, as a robot reports them. What isn't known raises RobotError."""
 
     @property
     def level(self) -> float: ...
     @property
     def empty(self) -> bool: ...
     @property
+    def docked(self) -> bool: ...
+    @property
     def charging(self) -> bool: ...
+
+
+class PowerPart(BatteryPart, Protocol):
+    """A battery and a dock that the robot connects to; see SimulatedPower."""
+
+    docked: bool
+
     def set_level(self, percent: float) -> None: ...
     def connect(self, pose: Pose, fails: Callable[[str], bool]) -> None: ...
     def step(self, dt: float, metres: float, pose: Pose) -> bool: ...
@@ -112,9 +119,10 @@ class HandsPart(Protocol):
 class VoicePart(Protocol):
     """The voice and the screen; see TimedVoice."""
 
-    said: Utterance | None
-    position: float
-
+    @property
+    def said(self) -> Utterance | None: ...
+    @property
+    def position(self) -> float: ...
     @property
     def speaking(self) -> bool: ...
     @property

@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from functools import cache
 from math import ceil
 from typing import Any
 
+from btlang.robots.assembled import STOPPED, AssembledRobot
 from btlang.robots.bodies.body import Body, Idle
 from btlang.robots.bodies.body_file import standard_body
-from btlang.robots.command_gate import Latch
 from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.motion.gesturing import Gestures, Idling
-from btlang.robots.motion.guard.guard import Guard, Guarded
+from btlang.robots.motion.guard.guard import Guard
 from btlang.robots.motion.guard.readings import ObstacleReading, OdometryReading, ScanReading
-from btlang.robots.parts import BasePart, IdlePart, Parts
+from btlang.robots.parts import BasePart, IdlePart, JointsPart, Parts, PowerPart
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, SensorSilent, Station
 from btlang.robots.simulation.faults import Faults, describe
 from btlang.robots.simulation.navigation import NavigationGoal, Navigator
 from btlang.robots.simulation.parts import simulated_parts, stations
 from btlang.robots.simulation.surroundings import Surroundings
-from btlang.robots.worlds.descriptions import Choices
 from btlang.robots.worlds.obstacles import Obstacles
 from btlang.robots.worlds.world import Place, World, said
 from btlang.robots.zones import Zones
@@ -40,7 +39,7 @@ _CONTROL_PERIOD = 0.05
 _HANDS: tuple[Hand, Hand] = ("left", "right")
 
 
-class SimulatedRobot(Guarded):
+class SimulatedRobot(AssembledRobot):
     """A `btlang.robots.robot.Robot` in a world. The same commands and the same seed give the same run.
 
     `make_parts` makes its parts, which by default act in the world, from the world and its `obstacles`. Unless it
@@ -48,6 +47,8 @@ class SimulatedRobot(Guarded):
     """
 
     moves_by_itself = False
+    power: PowerPart
+    _joints: JointsPart
 
     def __init__(
         self,
@@ -58,17 +59,10 @@ class SimulatedRobot(Guarded):
         obstacles: Obstacles | None = None,
         sees: bool = True,
     ) -> None:
-        self.body = body = body or standard_body()
+        body = body or standard_body()
+        super().__init__(body, on_event)
         self._has = cache(body.has)
-        self.radius = body.radius
-        self.normal_speed, self.max_speed = body.driving.speed, body.driving.top_speed
-        self.normal_turn = body.turning.speed
         self.world = world
-        self.on_event = on_event
-        self.on_step: Callable[[float], object] | None = None
-        """Called at the end of each step with its seconds."""
-        self.time = 0.0
-        self.stops = 0
         self._obstacles = obstacles or Obstacles(world)
         parts = (make_parts or simulated_parts)(world, self._obstacles, body)
         self._base, self.power, self._scan = parts.base, parts.power, parts.scan
@@ -76,7 +70,7 @@ class SimulatedRobot(Guarded):
         self._gestures = Gestures(body, self._joints)
         self.faults = Faults(world.faults)
         self._idling: Idling | None = None  # first: what is around it reports at once what it sees
-        self._surroundings = Surroundings(world, self._obstacles, body, self._joints.angle, self._emit)
+        self._known = self._surroundings = Surroundings(world, self._obstacles, body, self._joints.angle, self._emit)
         if isinstance(self._joints, IdlePart) and body.idle != Idle():
             self._idling = Idling(body, self._joints, self._surroundings.where, lambda: self.pose)
         self._sensors, self._scanned = parts.sensors, 0.0
@@ -85,9 +79,6 @@ class SimulatedRobot(Guarded):
             odometry=self._odometry if sees else lambda: None, pose=lambda: self._base.pose, now=lambda: self.time,
         )  # fmt: skip
         self._navigator = Navigator(world, self._base, self._obstacles, self.faults, self._surroundings, self._guard)
-        self._choices = Choices()
-        self._latch = Latch()
-        self._last_said = ""
         self._bumps_reported, self._stuck_reported = 0, False
         self._began = self._base.pose
         self._begin_faults()
@@ -132,11 +123,6 @@ class SimulatedRobot(Guarded):
         self._rest()
         self._emit("stop")
 
-    def disable(self) -> None:
-        """Stop, and take no command until `enable`. For any thread."""
-        self._latch.shut()
-        self.stop()
-
     def enable(self) -> None:
         """Take commands again."""
         if self._latch.refuses:
@@ -145,13 +131,8 @@ class SimulatedRobot(Guarded):
         if self._idling is not None:
             self._idling.on = True
 
-    @property
-    def refuses(self) -> bool:
-        """Whether it takes no commands, because it was stopped."""
-        return self._latch.refuses
-
     def _rest(self) -> None:
-        self._navigator.cancel("the robot was stopped")
+        self._navigator.cancel(STOPPED)
         self._base.brake()
         if self._idling is not None:
             self._idling.halt()
@@ -279,7 +260,7 @@ class SimulatedRobot(Guarded):
         self._need("navigation")
         goal = self._navigator.start(name, pose)
         if self._latch.refuses:
-            goal.end("the robot was stopped")
+            goal.end(STOPPED)
         if self.power.empty:
             goal.end("the battery is empty")
         self._emit("navigate", name=name)
@@ -296,32 +277,12 @@ class SimulatedRobot(Guarded):
             raise SensorSilent("the laser scanner is silent")
         return self._scan(self.pose)
 
-    def locate(self, name: str) -> Point:
-        """Return where a place, object or person is. Raises RobotError for an unknown name, and
-        if it hasn't been seen.
-        """
-        return self._surroundings.locate(name, self.pose)
-
-    def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
-        """Return a name that is the "nearest", "random" and so on. Raises RobotError if there is none."""
-        return self._surroundings.choose(
-            kind, how, parts, lambda: self.pose, lambda: self.set_out_from, self._choices, self.on_event
-        )
-
-    def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
-        """Return the known objects or people with these parts, nearest first."""
-        return self._surroundings.described(kind, parts, self.pose)
-
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """Begin a run, whose random choices follow from the seed; `made` of them have been made already."""
         self._choices.begin(seed, made)
         self._surroundings.begin(seed)
         self._voice.speak_in()
         self._began, self.pace = self._base.pose, 1.0
-
-    def nearby_people(self, within: float) -> list[str]:
-        """Return the names of the people within so many metres, nearest first."""
-        return self._surroundings.nearby_people(within, self.pose)
 
     def sees(self, name: str) -> bool:
         """Return whether an object or a person is in view. Raises RobotError for an unknown name."""
@@ -382,10 +343,6 @@ class SimulatedRobot(Guarded):
         if self._idling is not None and follow:
             self._idling.attend(known)
 
-    def beside_door(self, name: str) -> list[Pose]:
-        """Return where it can stand to move a door, nearest first. Raises RobotError for an unknown door."""
-        return self._surroundings.beside_door(name, self.pose)
-
     def move_door(self, name: str, is_open: bool) -> Operation:
         """Open or close a door within reach. Raises RobotError."""
         self._surroundings.move_door(name, is_open, self.pose)
@@ -442,25 +399,6 @@ class SimulatedRobot(Guarded):
         self._guard.forget()
 
     # Power
-    @property
-    def battery(self) -> float:
-        """The percentage that is left."""
-        return self.power.level
-
-    @property
-    def battery_empty(self) -> bool:
-        """Whether the wheels have no power any more."""
-        return self.power.empty
-
-    @property
-    def docked(self) -> bool:
-        """Whether it is connected to the dock."""
-        return self.power.docked
-
-    @property
-    def charging(self) -> bool:
-        """Whether it is docked and not full."""
-        return self.power.charging
 
     @property
     def stations(self) -> list[Station]:
@@ -483,41 +421,10 @@ class SimulatedRobot(Guarded):
         return CompletedOperation()
 
     # Arms, hands, head
-    def joint(self, name: str) -> float:
-        """Return the degrees of a joint. Raises RobotError for an unknown name."""
-        return self._joints.angle(name)
-
-    def move_joints(self, targets: Mapping[str, float]) -> None:
-        """Move joints towards angles, clipped to their limits. Raises RobotError for an unknown name."""
-        if not self._latch.refuses:
-            self._joints.move(targets)
-            self._emit("joint", targets=dict(targets))
-
-    def joints_at_target(self, *names: str) -> bool:
-        """Return whether none of these joints is on its way."""
-        return self._joints.at_target(names)
-
-    def freeze_joints(self, *names: str) -> None:
-        """Hold these joints where they are."""
-        self._joints.freeze(names)
-
-    def gesture(self, name: str, *, aim: Point | None = None, stroke_at: float | None = None) -> Operation:
-        """Implement Gesturing. Raises RobotError."""
-        if self._latch.refuses:
-            raise RobotError("the robot was stopped")
-        room = None if stroke_at is None else stroke_at - self.time
-        started, slower = self._gestures.start(name, lambda: self.pose, aim, room)
-        self._emit("gesture", name=name, slower=round(slower, 2))
-        return started
-
-    def lead(self, name: str, aim: Point | None = None) -> float:
-        """Implement Gesturing. Raises RobotError."""
-        return self._gestures.lead(name, lambda: self.pose, aim)
 
     def grasp(self, hand: Hand, name: str | None = None) -> Operation:
         """Close a hand on the named or the nearest object. Raises RobotError."""
-        if self._latch.refuses:
-            raise RobotError("the robot was stopped")
+        self._check_stop()
         if name is not None:
             self._surroundings.check_movable(name)
         found = self._hands.grasp(hand, None if name is None else self._surroundings.known(name), self.pose, self.time)
@@ -537,8 +444,7 @@ class SimulatedRobot(Guarded):
         name = self._hands.held.get(hand)
         if name is None:
             raise RobotError(f"the {hand} hand is empty")
-        if self._latch.refuses:
-            raise RobotError("the robot was stopped")
+        self._check_stop()
         self._surroundings.check_taker(name, person, self.pose)
         found = self._hands.hand_over(hand)
         self._surroundings.give(name, person)
@@ -557,11 +463,6 @@ class SimulatedRobot(Guarded):
             self._last_said = text
             self._emit("say", text=text)
 
-    @property
-    def language(self) -> str:
-        """The language in which it speaks; "" without a voice."""
-        return self._voice.language
-
     def speak_in(self, language: str) -> None:
         """Speak in a language until the end of the run. Raises RobotError if it can't."""
         self._need("voice")
@@ -573,25 +474,6 @@ class SimulatedRobot(Guarded):
         """Return the sound and the times of a text. Raises RobotError."""
         self._need("voice")
         return self._voice.utterance(text)
-
-    @property
-    def said(self) -> Utterance | None:
-        """The current or the last utterance."""
-        return self._voice.said
-
-    @property
-    def said_at(self) -> float:
-        """The second of `time` at which that utterance begins."""
-        return self.time - self._voice.position
-
-    @property
-    def speaking(self) -> bool:
-        """Whether it speaks."""
-        return self._voice.speaking
-
-    def silence(self) -> None:
-        """End speech at once."""
-        self._voice.silence()
 
     def print(self, text: str) -> None:
         """Show a text at once."""
@@ -646,5 +528,4 @@ class SimulatedRobot(Guarded):
     def _emit(self, event: str, **data: Any) -> None:
         if self._idling is not None and event in ("hear", "ask"):
             self._idling.attend(data["who"])
-        if self.on_event is not None:
-            self.on_event(event, data)
+        super()._emit(event, **data)

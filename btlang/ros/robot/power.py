@@ -112,7 +112,7 @@ class RosPower:
         services.add(UNDOCK, Trigger)
 
     @property
-    def battery(self) -> float:
+    def level(self) -> float:
         """The percentage that is left."""
         return 100.0 * float(self._subscriptions.get(BATTERY, _SILENT).percentage)
 
@@ -120,7 +120,7 @@ class RosPower:
     def empty(self) -> bool:
         """Whether the robot reports an empty battery."""
         try:
-            return self.battery <= 0.0
+            return self.level <= 0.0
         except RobotError:
             return False
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from functools import partial
 from math import inf
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,16 +13,15 @@ from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import Empty, Trigger
 
+from btlang.robots.assembled import STOPPED, AssembledRobot
 from btlang.robots.bodies.body import TOLERANCE, Body
 from btlang.robots.bodies.body_file import standard_body
-from btlang.robots.command_gate import Latch
 from btlang.robots.ears import Ears
-from btlang.robots.geometry import Point, Pose
+from btlang.robots.geometry import Pose
 from btlang.robots.motion.gesturing import Gestures
-from btlang.robots.motion.guard.guard import Cause, Guard, Guarded, Verdict
+from btlang.robots.motion.guard.guard import Cause, Guard, Verdict
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, Station
 from btlang.robots.voice import Synthesizer
-from btlang.robots.worlds.descriptions import Choices
 from btlang.robots.worlds.world import Place, World, said
 from btlang.robots.zones import Zones
 from btlang.ros.available import optional_interface
@@ -57,14 +55,13 @@ _OPTIONAL = {
     FOLLOW: "btlang_interfaces/srv/Follow",
     **dict.fromkeys(_COSTMAPS, "nav2_msgs/srv/ClearEntireCostmap"),
 }
-_STOPPED = "the robot was stopped"
 _STOPPING = 5.0  # seconds for which a robot that was stopped gets zero velocity
 _ANSWERED = 1.0  # seconds that its own stop gets to answer before a mission begins
 _HEARTBEAT = 3.5  # seconds in which DDS learns for sure what has arrived
 _LAST_WORDS = 2.0  # seconds that servers get to answer at the end
 
 
-class RosRobot(Guarded):
+class RosRobot(AssembledRobot):
     """A `btlang.robots.robot.Robot` over ROS 2, whose pose is on the map of the world file.
 
     A silent sensor is a RobotError for who asks for it, never a wait. Another thread has to spin the node, whose
@@ -72,6 +69,9 @@ class RosRobot(Guarded):
     """
 
     moves_by_itself = True
+    power: RosPower
+    _joints: JointsOverRos
+    _voice: RosSpeech
 
     def __init__(
         self,
@@ -81,22 +81,14 @@ class RosRobot(Guarded):
         now: Callable[[], float] = AWAKE.now,
         body: Body | None = None,
     ) -> None:
-        self.body = body = body or standard_body()
-        self.radius = body.radius
-        self.normal_speed, self.max_speed = body.driving.speed, body.driving.top_speed
-        self.normal_turn = body.turning.speed
-        self.on_event = on_event
-        self.on_step: Callable[[float], object] | None = None
-        self.stops = 0
-        self.time = 0.0
+        body = body or standard_body()
+        super().__init__(body, on_event)
         self.subscriptions = subscriptions = SubscriptionCache(node, now)
         self._node, self._now = node, now
         self._world_began = world.clock
         self._naps = AWAKE.naps
         self._executor = ExecutorThread(node)
-        self._places = RosPlaces(world, body, lambda name: self._emit("see", name=name))
-        self._choices = Choices()
-        self._latch = Latch()
+        self._known = self._places = RosPlaces(world, body, lambda name: self._emit("see", name=name))
         self._base = RosBase(
             node, subscriptions, body.radius, (body.driving.top_speed, body.turning.top_speed), self._latch
         )
@@ -120,7 +112,6 @@ class RosRobot(Guarded):
         self._doors = RosDoors(node, subscriptions, self._services, self._places, world, self._emit)
         self._calls = node.create_publisher(String, CALL, 10)
         self._optional = [name for name, kind in _OPTIONAL.items() if self._offer(name, kind)]
-        self._last_said = ""
         self._began: Pose | None = None
         self._pursuit: Pursuit | None = None
         self._navigation: RosNavigation | None = None
@@ -181,11 +172,6 @@ class RosRobot(Guarded):
             self.on_step(dt)
 
     @property
-    def refuses(self) -> bool:
-        """Whether it takes no commands, because it was stopped."""
-        return self._latch.refuses
-
-    @property
     def time_of_day(self) -> float:
         """The time of this computer in its time zone; in simulated time, that of the world, which began at 0."""
         seconds, is_simulated = self._moment()
@@ -216,11 +202,6 @@ class RosRobot(Guarded):
             self._services.fire(_STOP)
             self._emit("stop")
 
-    def disable(self) -> None:
-        """Stop, and take no command until `enable`; from any thread."""
-        self._latch.shut()
-        self.stop()
-
     def enable(self) -> None:
         """Take commands again, once the robot's own stop has answered: a later answer would end the first command."""
         self._services.confirm(_ANSWERED)
@@ -248,8 +229,8 @@ class RosRobot(Guarded):
     def _rest(self) -> None:
         self._base.halt()
         for servers in self._servers:
-            servers.stop(_STOPPED)
-        self._services.stop(_STOPPED)
+            servers.stop(STOPPED)
+        self._services.stop(STOPPED)
         self._gestures.stop()
         self._joints.freeze()
         self._voice.silence()
@@ -377,7 +358,7 @@ class RosRobot(Guarded):
             self._base.halt()
         operation = self._navigation.start(known, goal)
         if self._latch.refuses:
-            operation.end(_STOPPED)  # `stop` came in between from another thread
+            operation.end(STOPPED)  # `stop` came in between from another thread
         return operation
 
     @property
@@ -412,20 +393,6 @@ class RosRobot(Guarded):
         """The world as far as the robot knows it."""
         return self._places.world
 
-    def locate(self, name: str) -> Point:
-        """Return where a name is by the world file, the mission and sightings. Raises RobotError if it isn't known."""
-        return self._places.locate(name, self.pose)
-
-    def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
-        """Return a name of the world file, the mission, or of somebody seen. Raises RobotError if there is none."""
-        return self._places.choose(
-            kind, how, parts, lambda: self.pose, lambda: self.set_out_from, self._choices, self.on_event
-        )
-
-    def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
-        """Return the known objects or people with these parts, nearest first."""
-        return self._places.described(kind, parts, self.pose)
-
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """Begin a run, whose random choices follow from the seed; `made` of them have been made already."""
         self._choices.begin(seed, made)
@@ -433,10 +400,6 @@ class RosRobot(Guarded):
         self._zones.begin()
         self._ears.begin()
         self._voice.speak_in()
-
-    def nearby_people(self, within: float) -> list[str]:
-        """Return the names of people within so many metres, nearest first: of those who walk, the ones in view."""
-        return self._places.nearby_people(within, self.pose)
 
     def name_places(self, places: Iterable[Place]) -> None:
         """Set the places of a mission, in addition to those of the world."""
@@ -491,10 +454,6 @@ class RosRobot(Guarded):
             if name in self._optional:
                 self._services.fire(name)
 
-    def beside_door(self, name: str) -> list[Pose]:
-        """Return where the robot can stand to move a door, nearest first. Raises RobotError for an unknown door."""
-        return self._places.beside_door(name, self.pose)
-
     def move_door(self, name: str, is_open: bool) -> Operation:
         """Open or close a door, or fail with the reason. Raises RobotError without a service for it."""
         self._check_stop()
@@ -522,25 +481,6 @@ class RosRobot(Guarded):
         return [*self._doors.awaited(), *self._perception.awaited(), *self._hands.awaited(), *missing]
 
     # Power
-    @property
-    def battery(self) -> float:
-        """The percentage that is left. Raises RobotError if nothing reports it."""
-        return self.power.battery
-
-    @property
-    def battery_empty(self) -> bool:
-        """Whether the robot reports an empty battery."""
-        return self.power.empty
-
-    @property
-    def docked(self) -> bool:
-        """Whether it is connected to the dock. Raises RobotError if nothing reports it."""
-        return self.power.docked
-
-    @property
-    def charging(self) -> bool:
-        """Whether the battery is being charged. Raises RobotError if nothing reports it."""
-        return self.power.charging
 
     @property
     def stations(self) -> list[Station] | None:
@@ -558,39 +498,6 @@ class RosRobot(Guarded):
         return self.power.undock()
 
     # Arms, hands, head
-    def joint(self, name: str) -> float:
-        """Return the degrees of a joint. Raises RobotError for an unknown joint, and if nothing reports it."""
-        return self._joints.angle(name)
-
-    def move_joints(self, targets: Mapping[str, float]) -> None:
-        """Move joints towards angles. Raises RobotError as `joint` does."""
-        if not self._latch.refuses:
-            self._joints.move(targets)
-            if self._latch.refuses:
-                self._joints.freeze()  # `stop` came in between from another thread
-            self._emit("joint", targets=dict(targets))
-
-    def joints_at_target(self, *names: str) -> bool:
-        """Return whether none of these joints is on its way. Raises RobotError if one is stuck or silent."""
-        return self._joints.at_target(names)
-
-    def freeze_joints(self, *names: str) -> None:
-        """Hold these joints where they are."""
-        self._joints.freeze(names)
-
-    def gesture(self, name: str, *, aim: Point | None = None, stroke_at: float | None = None) -> Operation:
-        """Implement Gesturing. Raises RobotError."""
-        self._check_stop()
-        room = None if stroke_at is None else stroke_at - self.time
-        started, slower = self._gestures.start(name, lambda: self.pose, aim, room)
-        if self._latch.refuses:
-            self._joints.freeze()  # `stop` came in between from another thread
-        self._emit("gesture", name=name, slower=round(slower, 2))
-        return started
-
-    def lead(self, name: str, aim: Point | None = None) -> float:
-        """Implement Gesturing. Raises RobotError."""
-        return self._gestures.lead(name, lambda: self.pose, aim)
 
     def grasp(self, hand: Hand, name: str | None = None) -> Operation:
         """Close a hand; if it closes on another object than the named one, open it again and fail.
@@ -641,11 +548,6 @@ class RosRobot(Guarded):
             self._last_said = text
             self._emit("say", text=text)
 
-    @property
-    def language(self) -> str:
-        """The language in which it speaks."""
-        return self._voice.language
-
     def speak_in(self, language: str) -> None:
         """Speak in a language until the end of the run. Raises RobotError if it can't."""
         if language != self._voice.language:
@@ -655,25 +557,6 @@ class RosRobot(Guarded):
     def utterance(self, text: str) -> Utterance:
         """Return the sound and the times of a text. Raises RobotError."""
         return self._voice.utterance(text)
-
-    @property
-    def said(self) -> Utterance | None:
-        """The current or the last utterance."""
-        return self._voice.said
-
-    @property
-    def said_at(self) -> float:
-        """The second of `time` at which that utterance begins, as far as it's known."""
-        return self.time - self._voice.position
-
-    @property
-    def speaking(self) -> bool:
-        """Whether it speaks. Raises RobotError if that doesn't come to an end."""
-        return self._voice.speaking
-
-    def silence(self) -> None:
-        """End speech at once."""
-        self._voice.silence()
 
     def print(self, text: str) -> None:
         """Show a text at once. Raises RobotError if nobody listens."""
@@ -686,14 +569,6 @@ class RosRobot(Guarded):
         if found is not None:
             self._services.add(name, found)
         return found is not None
-
-    def _check_stop(self) -> None:
-        if self._latch.refuses:
-            raise RobotError(_STOPPED)
-
-    def _emit(self, event: str, **data: Any) -> None:
-        if self.on_event is not None:
-            self.on_event(event, data)
 
 
 def ros_joints(node: Node, subscriptions: SubscriptionCache, body: Body) -> JointsOverRos:
