@@ -36,7 +36,7 @@ _SHARES = {"slowly": 0.5, "carefully": 0.5, "quietly": 0.4}
 """Of the normal speed. Who goes quickly goes as fast as the robot can."""
 
 
-def paced(robot: Base, manner: str | None, steps: Generator[None, None, None]) -> Generator[None, None, None]:
+def keep_pace(robot: Base, manner: str | None, steps: Generator[None, None, None]) -> Generator[None, None, None]:
     """Do the steps in this manner, without one at the current pace; when halted, halt them."""
     if manner is None:
         yield from steps

@@ -6,7 +6,7 @@ from collections.abc import Generator
 from math import dist, inf
 from typing import Any, Protocol
 
-from btlang.actions.common import Driving, Watch, paced, where
+from btlang.actions.common import Driving, Watch, keep_pace, where
 from btlang.actions.gestures import Aiming, wave
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import go_to, travel
@@ -68,7 +68,7 @@ def _somebody(robot: Meeting, person: str | None) -> str:
 
 def come_to_me(robot: Meeting, manner: str | None = None) -> Steps:
     """Go to the last speaker, else to the nearest person in view."""
-    yield from paced(robot, manner, travel(robot, _somebody(robot, None)))
+    yield from keep_pace(robot, manner, travel(robot, _somebody(robot, None)))
 
 
 def follow(
@@ -86,12 +86,12 @@ def follow(
     """
     name = _somebody(robot, person)
     goal = None if place is None and x is None else where(robot, place, x, y)
-    yield from paced(robot, manner or "quickly", _follow(robot, name, goal, inf))
+    yield from keep_pace(robot, manner or "quickly", _follow(robot, name, goal, inf))
 
 
 def follow_until_still(robot: Following, person: str, duration: float) -> Steps:
     """Follow a person until they stand for so many seconds. Fails as `follow` does."""
-    yield from paced(robot, "quickly", _follow(robot, person, None, duration))
+    yield from keep_pace(robot, "quickly", _follow(robot, person, None, duration))
 
 
 def _follow(robot: Following, person: str, goal: Point | None, stands: float) -> Steps:
@@ -178,7 +178,7 @@ def guide(
     robot.guide(name, True)
     try:
         for _ in range(RETURNS):
-            leads = paced(robot, manner, go_to(robot, place, x, y, facing))
+            leads = keep_pace(robot, manner, go_to(robot, place, x, y, facing))
             if (yield from _lead(robot, name, leads)):
                 return
             yield from _rejoin(robot, name)

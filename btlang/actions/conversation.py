@@ -41,17 +41,17 @@ def ask(robot: Questioning, question: str, person: str | None = None, kept: dict
         robot.locate(person)  # nobody is asked whom the robot hasn't seen
     yield from say(robot, question, kept)
     expected = answers(robot.ears.choices, robot.body)
-    yield from listened(robot, without_marks(question), lambda text: True, expected, person)
+    yield from listen(robot, without_marks(question), lambda text: True, expected, person)
 
 
 def listen_for_yes_or_no(robot: Listening) -> Steps:
     """Wait until somebody says yes or no. Fails after a minute."""
-    yield from listened(robot, "", lambda text: meaning_of(text) in MEANINGS, answers(MEANINGS, robot.body))
+    yield from listen(robot, "", lambda text: meaning_of(text) in MEANINGS, answers(MEANINGS, robot.body))
 
 
 def listen_for(robot: Listening, text: str) -> Steps:
     """Wait until somebody says these words, maybe among others. Fails after a minute."""
-    yield from listened(robot, "", lambda heard: holds(heard, text), answers((text,), robot.body))
+    yield from listen(robot, "", lambda heard: holds(heard, text), answers((text,), robot.body))
 
 
 def answer_is(robot: Listening, text: str) -> bool | Failed:
@@ -159,7 +159,7 @@ def _words(text: str) -> list[str]:
     return "".join(letter if letter.isalnum() or letter == "'" else " " for letter in text.lower()).split()
 
 
-def listened(
+def listen(
     robot: Listening,
     question: str,
     wanted: Callable[[str], bool],
@@ -172,7 +172,7 @@ def listened(
     count, until = ears.count, robot.time + WAITS
     robot.ask(question, person or "")
     try:
-        with ears.awaiting(expected):
+        with ears.expect(expected):
             while True:
                 for heard in ears.since(count):
                     if wanted(heard.text) and (person is None or heard.who in (person, "")):
@@ -204,13 +204,13 @@ def do_what_somebody_says(robot: Obeying) -> Steps:
             act = commands.read(text)
         return act is not None
 
-    yield from listened(robot, "", reads, commands.expected(robot))
+    yield from listen(robot, "", reads, commands.expected(robot))
     assert act is not None
     text = robot.ears.answer
     question = f"Shall I {text.rstrip('.!')}?"
     yield from say(robot, question)
     expected = answers(MEANINGS, robot.body)
-    yield from listened(robot, question, lambda text: meaning_of(text) in MEANINGS, expected)
+    yield from listen(robot, question, lambda text: meaning_of(text) in MEANINGS, expected)
     if meaning_of(robot.ears.answer) == "no":
         raise ActionFailed(f"nobody wants it to {text}")
     steps = act(robot)

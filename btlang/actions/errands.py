@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from typing import Protocol
 
-from btlang.actions.common import Driving, paced
+from btlang.actions.common import Driving, keep_pace
 from btlang.actions.company import Meeting, speaker
 from btlang.actions.joints import take
 from btlang.actions.manipulation import Fetching, hand_with, pick_up, put_down
@@ -24,7 +24,7 @@ class Patrolling(Driving, Navigation, Protocol):
 
 def come_back(robot: Navigation, manner: str | None = None) -> Steps:
     """Drive to where the robot was when the mission began, and face as it did then."""
-    yield from paced(robot, manner, _return(robot))
+    yield from keep_pace(robot, manner, _return(robot))
 
 
 def _return(robot: Navigation) -> Steps:
@@ -33,7 +33,7 @@ def _return(robot: Navigation) -> Steps:
 
 def fetch(robot: Fetching, object: str, manner: str | None = None) -> Steps:
     """Pick up an object and bring it to where the robot is now. Fails as `pick_up` does."""
-    yield from paced(robot, manner, _fetch(robot, object))
+    yield from keep_pace(robot, manner, _fetch(robot, object))
 
 
 def _fetch(robot: Fetching, object: str) -> Steps:
@@ -63,12 +63,12 @@ def carry(
     manner: str | None = None,
 ) -> Steps:
     """Pick up an object unless a hand holds it, drive to a place or a point, and put it down there."""
-    yield from paced(robot, manner, _carry(robot, object, go_to(robot, place, x, y, facing)))
+    yield from keep_pace(robot, manner, _carry(robot, object, go_to(robot, place, x, y, facing)))
 
 
 def put_in(robot: Fetching, object: str, container: str, manner: str | None = None) -> Steps:
     """Pick up an object unless a hand holds it, drive up to another object and put it down there."""
-    yield from paced(robot, manner, _carry(robot, object, travel(robot, container)))
+    yield from keep_pace(robot, manner, _carry(robot, object, travel(robot, container)))
 
 
 def _carry(robot: Fetching, object: str, way: Steps) -> Steps:
@@ -84,7 +84,7 @@ def bring(robot: Bringing, object: str, person: str | None = None, manner: str |
     Without a person it is the last speaker, else the nearest person in view; if there is nobody, the object is put down
     where the mission began. Fails if the person is gone or doesn't want it.
     """
-    yield from paced(robot, manner, _bring(robot, object, person or speaker(robot)))
+    yield from keep_pace(robot, manner, _bring(robot, object, person or speaker(robot)))
 
 
 def _bring(robot: Bringing, object: str, person: str | None) -> Steps:
@@ -115,7 +115,7 @@ def patrol(
     manner: str | None = None,
 ) -> Steps:
     """Drive to a place or a point and turn once around."""
-    yield from paced(robot, manner, go_to(robot, place, x, y))
+    yield from keep_pace(robot, manner, go_to(robot, place, x, y))
     yield from turn(robot, 360.0)
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import dist
 
-from btlang.actions.common import paced, where
+from btlang.actions.common import keep_pace, where
 from btlang.actions.motion import Steps
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Point, Pose, centre_of
 from btlang.robots.robot import Base, Navigation, Operation, RobotError
-from btlang.robots.worlds.descriptions import related_words
+from btlang.robots.worlds.descriptions import describe_relations
 from btlang.robots.worlds.likeness import unseen
 from btlang.robots.worlds.world import said
 
@@ -30,7 +30,7 @@ def go_to(
 ) -> Steps:
     """Drive to a place and face as the place says, or to a point; past those of `via` (`hall; lobby`) first."""
     steps = travel(robot, place) if place is not None else _go_to_point(robot, x, y, facing)
-    yield from paced(
+    yield from keep_pace(
         robot, manner, _past(robot, [name.strip() for name in (via or "").split(";") if name.strip()], steps)
     )
 
@@ -83,12 +83,12 @@ def _go_to_point(robot: Navigation, x: float | None, y: float | None, facing: fl
 
 def go_to_person(robot: Navigation, person: str, manner: str | None = None) -> Steps:
     """Drive to talking distance of a person and faces them."""
-    yield from paced(robot, manner, travel(robot, person))
+    yield from keep_pace(robot, manner, travel(robot, person))
 
 
 def approach(robot: Navigation, object: str, manner: str | None = None) -> Steps:
     """Drive until an object is within arm's reach, and face it."""
-    yield from paced(robot, manner, travel(robot, object))
+    yield from keep_pace(robot, manner, travel(robot, object))
 
 
 def travel(robot: Navigation, name: str) -> Steps:
@@ -115,7 +115,7 @@ def choose_all(robot: Base, type: str, output: Callable[[str], object], count: s
     wanted = {name: text for name, text in parts.items() if text}
     names = robot.described(type, wanted)
     if not names:
-        raise ActionFailed(unseen(type, wanted, related_words(wanted)) if wanted else f"there's no {type}")
+        raise ActionFailed(unseen(type, wanted, describe_relations(wanted)) if wanted else f"there's no {type}")
     if count and len(names) < int(count):
         raise ActionFailed(f"{count} are needed, but there's only {', '.join(names)}")
     output(";".join(names[: int(count)] if count else names))
@@ -153,7 +153,7 @@ def go_to_side(
     """
     name = place or person or object or zone or ""
     inside = place is not None or zone is not None
-    yield from paced(robot, manner, _journey(robot, side, name, inside))
+    yield from keep_pace(robot, manner, _journey(robot, side, name, inside))
 
 
 def _journey(robot: Navigation, side: str, name: str, may_be_region: bool) -> Steps:

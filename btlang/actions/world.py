@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from btlang.actions.common import Driving, paced, where
+from btlang.actions.common import Driving, keep_pace, where
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, over_border, travel
 from btlang.engine.leaves.leaf import ActionFailed
@@ -37,7 +37,7 @@ def close_door(robot: Doorkeeping, door: str) -> Steps:
 
 def go_to_door(robot: Doorkeeping, door: str, manner: str | None = None) -> Steps:
     """Go to a door, on the side from which it can be reached, and face it."""
-    yield from paced(robot, manner, _to_door(robot, door))
+    yield from keep_pace(robot, manner, _to_door(robot, door))
 
 
 def _move_door(robot: Doorkeeping, door: str, is_open: bool) -> Steps:
@@ -99,12 +99,12 @@ def is_switched_off(robot: Handling, object: str) -> bool:
 
 def enter_zone(robot: Cautious, zone: str, manner: str | None = None) -> Steps:
     """Drive into a zone, the nearest way first. Does nothing if the robot is in it."""
-    yield from paced(robot, manner, over_border(robot, zone, inside=True))
+    yield from keep_pace(robot, manner, over_border(robot, zone, inside=True))
 
 
 def leave_zone(robot: Cautious, zone: str, manner: str | None = None) -> Steps:
     """Drive out of a zone, the nearest way first. Does nothing if the robot is outside."""
-    yield from paced(robot, manner, over_border(robot, zone, inside=False))
+    yield from keep_pace(robot, manner, over_border(robot, zone, inside=False))
 
 
 def avoid_zone(robot: Cautious, zone: str) -> None:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
         @property
         def questions(self) -> RobotQuestions: ...
         def send(self, message: dict[str, Any]) -> None: ...
-        def ended(self, number: int, outcome: dict[str, Any]) -> None: ...
+        def report_end(self, number: int, outcome: dict[str, Any]) -> None: ...
 
 
 _RECORDS = {
@@ -43,7 +43,7 @@ _RECORDS = {
 _RECORD, _BYTES = "record", "bytes"
 
 
-def packed(message: object) -> bytes:
+def pack(message: object) -> bytes:
     """Return a message as bytes. Raises TypeError for values that are neither plain data nor a pose, reading or
     command.
     """
@@ -53,18 +53,18 @@ def packed(message: object) -> bytes:
         raise TypeError("a value that is in itself, or nested too deeply, can't be handed to another process") from None
 
 
-def unpacked(data: bytes) -> Any:
+def unpack(data: bytes) -> Any:
     """Return the message in bytes; tuples become lists. Raises ValueError if it isn't a message."""
     return load_json(data, _record)
 
 
-def refused(problem: BaseException) -> dict[str, Any]:
+def pack_error(problem: BaseException) -> dict[str, Any]:
     """Return the answer for an exception; `value_of` raises it on the other side."""
     return {"problem": reason_of(problem), "unknown": isinstance(problem, Unknown)}
 
 
 def value_of(answer: Mapping[str, Any]) -> Any:
-    """Return the value of an answer. Raises ActionFailed, or Unknown, for one that is `refused`."""
+    """Return the value of an answer. Raises ActionFailed, or Unknown, for one that `pack_error` has made."""
     if "problem" in answer:
         raise (Unknown if answer.get("unknown") else ActionFailed)(answer["problem"])
     return answer.get("value")
@@ -146,9 +146,9 @@ class MethodCall(RobotQuestions):
 
     def _work(self) -> None:
         try:
-            self._worker.ended(self.number, {"value": self._result(), "stored": self._stored})
+            self._worker.report_end(self.number, {"value": self._result(), "stored": self._stored})
         except BaseException as problem:
-            self._worker.ended(self.number, refused(problem))
+            self._worker.report_end(self.number, pack_error(problem))
 
     def _result(self) -> object:
         method: Callable[..., Any] = getattr(self._worker.component, self._method)

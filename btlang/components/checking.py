@@ -8,7 +8,7 @@ import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from btlang.components.component import ComponentError, ParameterError
-from btlang.components.location import WRONG_PARAMETERS, located, words_file
+from btlang.components.location import WRONG_PARAMETERS, locate_class, words_file
 from btlang.components.words import check_words
 from btlang.devices.driver import SIMULATED, DeviceError, driver_class, make_driver
 from btlang.devices.kinds import KINDS
@@ -18,7 +18,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.robots.bodies.body import Body, ComponentPart, Device
 from btlang.robots.bodies.body_file import BodyError, load_body
 from btlang.robots.bodies.gesture_words import gesture_words
-from btlang.robots.files import DataFileError, as_mission_error, placed
+from btlang.robots.files import DataFileError, as_mission_error, locate_problems
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem
 from btlang.vocabulary.capabilities import CAPABILITIES
@@ -73,10 +73,10 @@ def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:
     found: list[Diagnostic] = []
     described: dict[str, Mapping[str, Any]] = {}
     problems = (*_devices(body), *_components(body, described))
-    for wrong in placed(problems, source, source.name, BodyError):
+    for wrong in locate_problems(problems, source, source.name, BodyError):
         found += as_mission_error(wrong).diagnostics
     all_loaded = all(part.place in described for part in body.components if part.node is None)
-    methods = {located(place): known["methods"] for place, known in described.items()} if all_loaded else {}
+    methods = {locate_class(place): known["methods"] for place, known in described.items()} if all_loaded else {}
     for path in _words(body):
         found += check_words(path, methods)
     try:
@@ -129,7 +129,7 @@ def _devices(body: Body) -> Iterator[Problem]:
     for (driver, port), members in groups.items():
         yield from _of_driver(body, driver, port, members)
     if body.over == "devices":
-        yield from _lacking(body)
+        yield from _find_missing_devices(body)
 
 
 def _of_driver(body: Body, driver: str, port: str, members: Sequence[tuple[int, Device]]) -> Iterator[Problem]:
@@ -166,7 +166,7 @@ def _of_driver(body: Body, driver: str, port: str, members: Sequence[tuple[int, 
         yield Problem(str(problem), "device", *(named or [index])[:1], "options")
 
 
-def _lacking(body: Body) -> Iterator[Problem]:
+def _find_missing_devices(body: Body) -> Iterator[Problem]:
     """Return the parts of the body without a device, though it runs over devices."""
     kinds, names = {device.kind for device in body.devices}, {device.name for device in body.devices}
     parts = {
@@ -222,7 +222,7 @@ def _words(body: Body) -> list[str]:
         if part.node is not None:
             continue
         try:
-            path = words_file(located(part.place), body.folder)
+            path = words_file(locate_class(part.place), body.folder)
         except ComponentError:
             continue
         if path is not None and path not in found:

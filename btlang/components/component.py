@@ -86,7 +86,7 @@ class Parameter:
     def __get__(self, component: Component | None, owner: type) -> Any:
         return self if component is None else component.__dict__.get(self.name, self.default)
 
-    def checked(self, value: object) -> float | str | bool:
+    def check(self, value: object) -> float | str | bool:
         """Return the value, as the component gets it. Raises ComponentError."""
         if isinstance(self.default, bool) or isinstance(value, bool):
             if not (isinstance(self.default, bool) and isinstance(value, bool)):
@@ -188,7 +188,7 @@ class Component:
                 problems.append(f'unknown parameter "{name}"; the parameters are {", ".join(known) or "none"}')
                 continue
             try:
-                self.__dict__[name] = known[name].checked(value)
+                self.__dict__[name] = known[name].check(value)
             except ComponentError as problem:
                 problems.append(str(problem))
         if problems:

@@ -107,7 +107,9 @@ class ComponentConnection:
         if keeper is None:
             return self._inner.bind(entry, vocabulary)
         self._used.add(keeper.part.name)
-        call = _asking(keeper, method, entry) if entry.sort == "condition" else _leaf_class(keeper, method, entry)
+        call = (
+            _make_condition(keeper, method, entry) if entry.sort == "condition" else _leaf_class(keeper, method, entry)
+        )
         return leaf_binding(entry, vocabulary, call, entry.slots).replace(thread=False)  # type: ignore[no-any-return]
 
     def _bound_to_node(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
@@ -119,7 +121,7 @@ class ComponentConnection:
         if keeper is None or bound is None:
             return bound
         self._used.add(keeper.part.name)
-        return bound.replace(call=_led(keeper, bound.call))  # type: ignore[no-any-return]
+        return bound.replace(call=_guard_leaf(keeper, bound.call))  # type: ignore[no-any-return]
 
     def check(self, tree: Tree, vocabulary: Lexicon) -> None:
         self._inner.check(tree, vocabulary)
@@ -187,24 +189,24 @@ def _is_below(name: str, node: RosNode | None) -> bool:
     return node is not None and name.startswith(f"{node.name}/")
 
 
-def _led(keeper: ComponentKeeper, call: Callable[..., Any]) -> Callable[..., Any]:
+def _guard_leaf(keeper: ComponentKeeper, call: Callable[..., Any]) -> Callable[..., Any]:
     """Return a leaf that fails as soon as its component isn't active."""
     led: Any
 
     def steps(**ports: Any) -> Generator[object, Any, object]:
-        keeper.working()
+        keeper.active_host()
         generator = call(**ports)
         try:
             while True:
                 yield next(generator)
-                keeper.working()
+                keeper.active_host()
         except StopIteration as end:
             return end.value
         finally:
             generator.close()
 
     def once(**ports: Any) -> Any:
-        keeper.working()
+        keeper.active_host()
         return call(**ports)
 
     led = steps if isgeneratorfunction(call) else once
@@ -212,9 +214,9 @@ def _led(keeper: ComponentKeeper, call: Callable[..., Any]) -> Callable[..., Any
     return led  # type: ignore[no-any-return]
 
 
-def _asking(keeper: ComponentKeeper, method: str, entry: Entry) -> Callable[..., Any]:
+def _make_condition(keeper: ComponentKeeper, method: str, entry: Entry) -> Callable[..., Any]:
     def ask(robot: Any, **ports: Any) -> Any:
-        return keeper.working().ask(method, ports, robot)
+        return keeper.active_host().ask(method, ports, robot)
 
     names = ["robot", *(slot.name for slot in entry.slots if slot.name not in (*COMPARISONS, MEASURED))]
     ask.__signature__ = Signature([Parameter(name, Parameter.KEYWORD_ONLY) for name in names])  # type: ignore[attr-defined]
@@ -230,7 +232,7 @@ def _leaf_class(keeper: ComponentKeeper, method: str, entry: Entry) -> type:
             self._leaf: Any = None
 
         def start(self, **ports: Any) -> object:
-            host = keeper.working()
+            host = keeper.active_host()
             self._leaf = host.leaf(method, entry.outputs, self._robot, self._wake, self._beside)
             return self._leaf.start(**ports)
 

@@ -100,12 +100,12 @@ def connect_devices(world: World, *, body: Body, simulate: Sequence[str] = (), *
     Raises MissionError (BT071) for devices that can't be used.
     """
     try:
-        return DeviceSimulation(world, body.replace(devices=simulated_devices(body, simulate)))
+        return DeviceSimulation(world, body.replace(devices=simulate_devices(body, simulate)))
     except DeviceError as problem:
         raise unusable_robot(problem) from None
 
 
-def simulated_devices(body: Body, names: Sequence[str]) -> tuple[Device, ...]:
+def simulate_devices(body: Body, names: Sequence[str]) -> tuple[Device, ...]:
     """Return the devices of a body, some of them simulated. Raises DeviceError for an unknown name."""
     if ALL in names:
         return twins(body)

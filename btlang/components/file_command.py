@@ -29,10 +29,10 @@ def serve_file(act: str, path: str) -> int:
         pass_on(urdf(read_body(source)))
         return 0
     if act == "import":
-        pass_on(_imported(source))
+        pass_on(_import_urdf(source))
         return 0
     if act == "show":
-        show("\n".join(drawn(read_body(source))))
+        show("\n".join(draw_robot(read_body(source))))
         return 0
     problems = check_robot(source)[1]
     if problems:
@@ -41,7 +41,7 @@ def serve_file(act: str, path: str) -> int:
     return 0
 
 
-def _imported(source: Source) -> str:
+def _import_urdf(source: Source) -> str:
     from btlang.robots.bodies.urdf import read_urdf  # brings numpy
 
     try:
@@ -50,7 +50,7 @@ def _imported(source: Source) -> str:
         raise as_mission_error(problem) from None
 
 
-def drawn(body: Body) -> Iterator[str]:
+def draw_robot(body: Body) -> Iterator[str]:
     """Return the robot as lines: its body, its components in starting order, and its devices by their port."""
     yield f"{one_line(body.name)}, over {body.over}"
     yield from _tree([(part, []) for part in _parts(body)])

@@ -21,7 +21,7 @@ ENTRY_POINTS = "btlang.components"
 WRONG_PARAMETERS = 3
 
 
-def located(place: str) -> str:
+def locate_class(place: str) -> str:
     """Return the `module:Class` of a name among the entry points; a `module:Class` stays. Raises ComponentError."""
     if ":" in place:
         return place
@@ -36,7 +36,7 @@ def words_file(place: str, folder: str) -> str | None:
     """Return the keyword file of a component, `coffee.toml` next to `coffee.py`; None without one. Imports no
     component.
     """
-    module = located(place).partition(":")[0]
+    module = locate_class(place).partition(":")[0]
     if folder and "." not in module:
         path = os.path.join(folder, f"{module}.toml")
         if os.path.exists(os.path.join(folder, f"{module}.py")):
@@ -53,7 +53,7 @@ def words_file(place: str, folder: str) -> str | None:
 
 def load_class(place: str, folder: str) -> type[Component]:
     """Return the class, from the folder of its robot file or from installed packages. Raises ComponentError."""
-    module, _, name = located(place).partition(":")
+    module, _, name = locate_class(place).partition(":")
     try:
         found: Any = module_of(module, folder)
         for part in name.split("."):

@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from btlang.components.component import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, ComponentAbsent, ComponentError
-from btlang.components.location import located
+from btlang.components.location import locate_class
 from btlang.engine.leaves.leaf import ActionFailed, NotThere, described
 from btlang.record import Record
 from btlang.robots.bodies.body import ComponentPart
@@ -175,7 +175,7 @@ def class_of(part: ComponentPart) -> str | None:
     """Return the `module:Class` of a part; None for a ROS 2 node. Raises ComponentError for
     one that isn't installed.
     """
-    return located(part.place) if part.node is None else None
+    return locate_class(part.place) if part.node is None else None
 
 
 class ComponentKeeper:
@@ -237,7 +237,7 @@ class ComponentKeeper:
             part.parameters,
         )  # fmt: skip
 
-    def working(self) -> Host:
+    def active_host(self) -> Host:
         """Return the current host. Raises ActionFailed if the component isn't active."""
         host = self.host
         if host is None or self.state != ACTIVE or host.state != ACTIVE:
@@ -268,9 +268,9 @@ class ComponentKeeper:
         return self._manager.closing or self.next is None
 
     def _may_begin(self) -> bool:
-        return not self._given_up and time.monotonic() >= self._due and self._has(self.part.needs)
+        return not self._given_up and time.monotonic() >= self._due and self._has_needs(self.part.needs)
 
-    def _has(self, needs: Iterable[str]) -> bool:
+    def _has_needs(self, needs: Iterable[str]) -> bool:
         """Return whether all that it needs is active; if not, note what it waits for. Called with the lock."""
         missing = self._manager.needs_met(needs)
         if missing is not None:
@@ -288,7 +288,7 @@ class ComponentKeeper:
             self.version, self.needs = known["version"], tuple({*self.part.needs, *known["needs"]})
             host.transition("configure")
             self._change(INACTIVE, "")
-            while not self._leaves():
+            while not self._must_end():
                 if self._wait_for_needs():
                     host.transition("activate")
                     self._active_since = time.monotonic()
@@ -306,14 +306,14 @@ class ComponentKeeper:
         finally:
             host.close()
 
-    def _leaves(self) -> bool:
+    def _must_end(self) -> bool:
         """Return whether the component is to end or to be replaced, and may."""
         self.leaving = (self._over() or self._asked) and self._manager.is_free(self.part.name)
         return self.leaving
 
     def _wait_for_needs(self) -> bool:
         with self._manager.changed:
-            if self._has(self.needs):
+            if self._has_needs(self.needs):
                 return True
             self._manager.changed.wait(_LOOK)
         self._look()
@@ -326,7 +326,7 @@ class ComponentKeeper:
             self._look()
             with manager.changed:
                 missing = manager.needs_met(self.needs)
-                if missing is not None or (self._leaves() and not manager.is_needed(self.part.name)):
+                if missing is not None or (self._must_end() and not manager.is_needed(self.part.name)):
                     break
                 manager.changed.wait(_LOOK)
         self._change(INACTIVE, f"waits for the {missing}" if missing is not None else "")

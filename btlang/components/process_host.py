@@ -16,7 +16,7 @@ from contextlib import suppress
 from hashlib import sha256
 from multiprocessing.connection import Connection
 
-from btlang.components.calls import packed, refused, unpacked
+from btlang.components.calls import pack, pack_error, unpack
 from btlang.components.component import ACTIVE, SHARED, UNCONFIGURED, ComponentError
 from btlang.components.remote_leaf import RemoteLeaf, WorkerRequest
 from btlang.devices.driver import DeviceError
@@ -72,7 +72,7 @@ class ProcessHost:
             return self._peer
         return self._process.pid if self._process is not None and self._process.poll() is None else None
 
-    def _own(self) -> socket.socket:
+    def _connect_own(self) -> socket.socket:
         """Return a socket to a new process of its own."""
         ours, its = socket.socketpair()
         with its:
@@ -80,7 +80,7 @@ class ProcessHost:
             self._process = _begin(words, pass_fds=[its.fileno()])
         return ours
 
-    def _shared(self) -> socket.socket:
+    def _connect_shared(self) -> socket.socket:
         """Return a socket to the process that other robots of this user share; start it if there is none."""
         path = os.path.join(socket_folder(), f"component-{sha256(self._part.shared.encode()).hexdigest()[:16]}.sock")
         link, until = socket.socket(socket.AF_UNIX), time.monotonic() + _LOADING
@@ -99,7 +99,7 @@ class ProcessHost:
         return link
 
     def load(self) -> Mapping[str, Any]:
-        link = self._own() if not self._part.shared else self._shared()
+        link = self._connect_own() if not self._part.shared else self._connect_shared()
         link.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, _SEND)
         self._connection = Connection(link.detach())
         self._reader = threading.Thread(target=self._read, name="btlang component", daemon=True)
@@ -124,7 +124,7 @@ class ProcessHost:
             now = time.monotonic()
             if now - self._heard > self._part.silence:
                 self._hangs = True
-                self._lose(f"hasn't answered for {now - self._heard:.1f} s")
+                self._disconnect(f"hasn't answered for {now - self._heard:.1f} s")
             elif now - self._beaten >= _BEAT:
                 self._beaten = now
                 done = [number for number, request in tuple(self._requests.items()) if request.done.is_set()]
@@ -164,7 +164,7 @@ class ProcessHost:
         """Answer a question of a call."""
         message = {"answer": asked["ask"], "call": request.number, **answer}
         try:
-            packed(message)
+            pack(message)
         except TypeError as problem:
             message = {"answer": asked["ask"], "call": request.number, "problem": str(problem)}
         if asked["ask"] == request.latest:
@@ -176,7 +176,7 @@ class ProcessHost:
         started.
         """
         patience = 0.0 if self._lost is not None else _END
-        self._lose("is being shut down")
+        self._disconnect("is being shut down")
         connection, self._connection = self._connection, None
         process = self._process
         if connection is not None:
@@ -218,7 +218,7 @@ class ProcessHost:
         while not request.done.wait(_BEAT):
             self.look()
             if time.monotonic() > until:
-                self._lose(f"did not {what} within {limit:g} s")
+                self._disconnect(f"did not {what} within {limit:g} s")
         if self._lost is not None:
             raise ComponentError(self._lost)
         try:
@@ -228,7 +228,7 @@ class ProcessHost:
 
     def _send(self, message: dict[str, Any]) -> None:
         try:
-            data = packed(message)
+            data = pack(message)
         except TypeError as problem:
             raise ActionFailed(str(problem)) from None
         connection = self._connection
@@ -238,7 +238,7 @@ class ProcessHost:
                     connection.send_bytes(data)
             except BlockingIOError:
                 self._hangs = True
-                self._lose("doesn't read its messages")
+                self._disconnect("doesn't read its messages")
             except (OSError, ValueError):
                 pass  # it is gone, which the reader notices too
 
@@ -246,15 +246,15 @@ class ProcessHost:
         connection = self._connection
         while connection is not None:
             try:
-                self._take(unpacked(connection.recv_bytes(_LONGEST)))
+                self._take(unpack(connection.recv_bytes(_LONGEST)))
             except (EOFError, OSError) as problem:
                 if "bad message length" in str(problem):
-                    self._lose(f"says what can't be understood: a message of more than {_LONGEST >> 20} MB")
+                    self._disconnect(f"says what can't be understood: a message of more than {_LONGEST >> 20} MB")
                 break
             except Exception as problem:  # whatever it says, and whoever hears it
-                self._lose(f"says what can't be understood: {described(problem)}")
+                self._disconnect(f"says what can't be understood: {described(problem)}")
                 break
-        self._lose(self._ending())
+        self._disconnect(self._ending())
 
     def _take(self, message: dict[str, Any]) -> None:
         self._heard = time.monotonic()
@@ -264,7 +264,7 @@ class ProcessHost:
                 request = self._requests.get(int(number))
                 if request is not None:
                     request.end(outcome if isinstance(outcome, dict) else {"problem": "its outcome makes no sense"})
-            self._tidy({*message["known"], *map(int, message["ended"])})
+            self._forget_ended({*message["known"], *map(int, message["ended"])})
             if self.problem:
                 self._changed()
         elif "ask" in message:
@@ -294,9 +294,9 @@ class ProcessHost:
         try:
             return {"value": self._devices[name].read(name)}
         except ActionFailed as problem:
-            return {**refused(problem), "unknown": True}
+            return {**pack_error(problem), "unknown": True}
 
-    def _tidy(self, known: set[int]) -> None:
+    def _forget_ended(self, known: set[int]) -> None:
         """Forget requests that are over on both sides; send again what the component doesn't know."""
         now = time.monotonic()
         for number, request in tuple(self._requests.items()):
@@ -308,7 +308,7 @@ class ProcessHost:
                 request.sent = now
                 self._send({**request.message, "again": True})
 
-    def _lose(self, reason: str) -> None:
+    def _disconnect(self, reason: str) -> None:
         """Close the link; everything that waits for an answer fails with this reason."""
         if self._lost is None:
             self._lost = reason

@@ -7,7 +7,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-from btlang.components.calls import refused, value_of
+from btlang.components.calls import pack_error, value_of
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.command_gate import RobotProxy
 
@@ -121,7 +121,7 @@ class RemoteLeaf:
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
-            return refused(problem)
+            return pack_error(problem)
         if hasattr(value, "cancel"):
             self._operations.append(value)
             return {"value": {"operation": len(self._operations) - 1}}

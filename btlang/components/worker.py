@@ -19,7 +19,7 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from queue import Empty, SimpleQueue
 
-from btlang.components.calls import MethodCall, RemoteDevice, RobotQuestions, packed, refused, unpacked
+from btlang.components.calls import MethodCall, RemoteDevice, RobotQuestions, pack, pack_error, unpack
 from btlang.components.component import (
     ACTIVE,
     FINALIZED,
@@ -72,7 +72,7 @@ class Worker:
         """Serve the robot until it is gone."""
         while True:
             try:
-                message = unpacked(self._connection.recv_bytes())
+                message = unpack(self._connection.recv_bytes())
             except (EOFError, OSError):
                 break
             self._take(message)
@@ -82,15 +82,15 @@ class Worker:
 
     def send(self, message: dict[str, Any]) -> None:
         """Send a message to the robot, if it still exists. Raises TypeError for values that can't be sent."""
-        data = packed(message)
+        data = pack(message)
         if not self._gone:
             with self._sending, suppress(OSError):  # the robot is gone, which `run` notices too
                 self._connection.send_bytes(data)
 
-    def ended(self, number: int, outcome: dict[str, Any]) -> None:
+    def report_end(self, number: int, outcome: dict[str, Any]) -> None:
         """Note that a request is done; its outcome is sent until the robot confirms it."""
         try:
-            packed(outcome)
+            pack(outcome)
         except TypeError as problem:
             outcome = {"problem": str(problem)}
         self._ended[number] = outcome
@@ -167,9 +167,9 @@ class Life:
             try:
                 value = self._load(worker, message) if message["do"] == "load" else self._go(worker, message["do"])
                 due = last = time.monotonic()
-                worker.ended(message["id"], {"value": value})
+                worker.report_end(message["id"], {"value": value})
             except BaseException as problem:
-                worker.ended(message["id"], refused(problem))
+                worker.report_end(message["id"], pack_error(problem))
 
     def _load(self, worker: Worker, message: dict[str, Any]) -> object:
         if self._loaded is None:

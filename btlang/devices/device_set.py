@@ -59,7 +59,7 @@ class DeviceSet:
             else:
                 ports.setdefault((device.driver, device.port), []).append(device)
         for (driver, port), devices in ports.items():
-            loop = DeviceLoop(make_driver(driver, body.folder, port, devices), tuple(devices), self._changed)
+            loop = DeviceLoop(make_driver(driver, body.folder, port, devices), tuple(devices), self._on_change)
             self.loops.append(loop)
             self._reads.update(dict.fromkeys(loop.devices, loop))
 
@@ -100,7 +100,7 @@ class DeviceSet:
         """Return all devices, with the reason why each is silent."""
         return [(device, self._reads[name].silent(name)) for name, device in self.devices.items()]
 
-    def _changed(self, name: str, reason: str | None) -> None:
+    def _on_change(self, name: str, reason: str | None) -> None:
         state = "works" if reason is None else "silent"
         text = f"the {name} works" if reason is None else f"the {name} is silent: {reason}"
         self._report("part", {"kind": "device", "name": name, "state": state, "text": text})

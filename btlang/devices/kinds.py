@@ -171,7 +171,7 @@ class Shown(Command):
     text: str = ""
 
 
-class Kind(Record):
+class DeviceKind(Record):
     """A kind of device: its readings and its commands, None if it has none.
 
     `moves`: it is brought to rest as soon as either side is silent. A calibration scales the fields named in `scaled`,
@@ -194,20 +194,20 @@ class Kind(Record):
 KINDS = {
     kind.name: kind
     for kind in (
-        Kind("range", Distance, shifted=("distance",)),
-        Kind("lidar", Scan),
-        Kind("drive", Wheels, WheelSpeeds, moves=True, scaled=("left", "right", "left_speed", "right_speed")),
-        Kind("imu", Motion, shifted=("turning",)),
-        Kind("battery", Charge, shifted=("percent",)),
-        Kind("joint", JointState, JointTarget, moves=True, scaled=("speed",), shifted=("position",)),
-        Kind("hand", Grip, GripTarget, moves=True),
-        Kind("camera", Image),
-        Kind("microphone", Sound),
-        Kind("speaker", Playing, Play),
-        Kind("button", Pressed),
-        Kind("gauge", Measured, shifted=("value",)),
-        Kind("light", None, Colour),
-        Kind("display", None, Shown),
+        DeviceKind("range", Distance, shifted=("distance",)),
+        DeviceKind("lidar", Scan),
+        DeviceKind("drive", Wheels, WheelSpeeds, moves=True, scaled=("left", "right", "left_speed", "right_speed")),
+        DeviceKind("imu", Motion, shifted=("turning",)),
+        DeviceKind("battery", Charge, shifted=("percent",)),
+        DeviceKind("joint", JointState, JointTarget, moves=True, scaled=("speed",), shifted=("position",)),
+        DeviceKind("hand", Grip, GripTarget, moves=True),
+        DeviceKind("camera", Image),
+        DeviceKind("microphone", Sound),
+        DeviceKind("speaker", Playing, Play),
+        DeviceKind("button", Pressed),
+        DeviceKind("gauge", Measured, shifted=("value",)),
+        DeviceKind("light", None, Colour),
+        DeviceKind("display", None, Shown),
     )
 }
 """By name."""

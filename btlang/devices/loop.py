@@ -199,7 +199,7 @@ class DeviceLoop:
             self._readings.pop(name, None)
             self._set_wrong(name, wrong)
         else:
-            calibrated = _calibrated(reading, self.devices[name])
+            calibrated = _calibrate(reading, self.devices[name])
             if isinstance(calibrated, Charge) and not self._charges[name].believes(calibrated.percent, now):
                 before = self._readings.get(name)
                 if before is not None and self._charges[name].is_recent(now):
@@ -234,7 +234,7 @@ def _untrue(reading: Reading, device: Device) -> str:
     return f"its {wrong[0]} is {wrong[1]}" if wrong else wrong_content(reading)
 
 
-def _calibrated(reading: Reading, device: Device) -> Reading:
+def _calibrate(reading: Reading, device: Device) -> Reading:
     if (device.scale, device.offset) == (1.0, 0.0):
         return reading
     kind, scale, offset = KINDS[device.kind], device.scale, device.offset

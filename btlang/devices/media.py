@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _JOIN = 1.0  # seconds that a camera gets to give the picture that it is about to give
 
 
-def missing(extra: str) -> DeviceError:
+def missing_av(extra: str) -> DeviceError:
     """Return the error that PyAV isn't installed."""
     return DeviceError(f"it needs the Python package av, which isn't installed: pip install 'btlang[{extra}]'")
 
@@ -122,7 +122,7 @@ class Camera:
 
     def open(self) -> None:
         if find_spec("av") is None:
-            raise missing("camera")
+            raise missing_av("camera")
         options, wanted = self._device.options, {}
         is_device = self._port.startswith("/dev/")
         if is_device and "width" in options and "height" in options:
@@ -181,7 +181,7 @@ class SoundCard:
 
     def open(self) -> None:
         if find_spec("av") is None:
-            raise missing("ears" if self._device.kind == "microphone" else "voice")
+            raise missing_av("ears" if self._device.kind == "microphone" else "voice")
         if self._device.kind == "speaker":
             self._speaker = Speaker(self._port, self._form)
             return
@@ -245,7 +245,7 @@ class Speaker:
         """Begin a command that differs from the last one; return how much of it is left."""
         with self._changing:
             if isinstance(command, Play) and command is not self._command:
-                self._left = _resampled(command)
+                self._left = _resample(command)
             elif command is None and self._command is not None:
                 self._left = b""
             self._command = command
@@ -285,7 +285,7 @@ class Speaker:
             self._container.mux(packet)
 
 
-def _resampled(command: Play) -> bytes:
+def _resample(command: Play) -> bytes:
     """Return the samples at the rate of the speaker."""
     if command.rate == _RATE or not command.samples:
         return command.samples

@@ -9,7 +9,7 @@ from btlang.diagnostics.reading import read_source
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import Gesture
 from btlang.robots.bodies.gesture_file import GestureError, load_gestures
-from btlang.robots.files import as_mission_error, placed
+from btlang.robots.files import as_mission_error, locate_problems
 from btlang.robots.simulation.rehearsal import Rehearsal, rehearse
 from btlang.text.source import Source, Span
 from btlang.text.toml_positions import positions
@@ -38,7 +38,7 @@ def check_gesture(gesture: Gesture, body: Body, source: Source) -> Iterator[Diag
     index = _first(gesture, body, rehearsal)
     if rehearsal.problem:
         says = f"{gesture.name}: {rehearsal.problem}"
-        for error in placed([Problem(says, "frame", index, "at")], source, source.name, GestureError):
+        for error in locate_problems([Problem(says, "frame", index, "at")], source, source.name, GestureError):
             yield from as_mission_error(error).diagnostics
         return
     found = positions(source.text)

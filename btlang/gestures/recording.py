@@ -162,7 +162,7 @@ def poses_of(lines: Iterable[str], body: Body, read: Callable[[], Pose] | None) 
             return
         try:
             if line.strip():
-                pose = _typed(line, body)
+                pose = _read_typed(line, body)
             elif read is None:
                 raise ValueError(_TYPED)
             else:
@@ -206,7 +206,7 @@ def _write(name: str, path: str, body: Body, poses: Iterable[Pose]) -> int:
     return 0
 
 
-def _typed(line: str, body: Body) -> Pose:
+def _read_typed(line: str, body: Body) -> Pose:
     pose: Pose = {}
     for part in line.split(","):
         name, equals, text = (piece.strip() for piece in part.partition("="))

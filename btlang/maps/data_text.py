@@ -77,12 +77,12 @@ def yaml_module() -> ModuleType:
     try:
         import yaml
     except ImportError:
-        raise missing("YAML files", "PyYAML") from None
+        raise missing_package("YAML files", "PyYAML") from None
     module: ModuleType = yaml
     return module
 
 
-def missing(what: str, package: str) -> MissionError:
+def missing_package(what: str, package: str) -> MissionError:
     """Return the error that a package of the extra `maps` isn't installed."""
     return MissionError([diagnostic("BT087", NOWHERE, what=what, package=package)])
 

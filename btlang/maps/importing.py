@@ -98,14 +98,14 @@ def _with_room(world: World, more: Sequence[Place], radius: float) -> tuple[Worl
     if moved is None:
         raise _unusable(f"the start at ({start.x:g}, {start.y:g}) is too near to a wall; give one with --start X,Y")
     if moved != (start.x, start.y):
-        notes.append(_changed("the start", (start.x, start.y), moved))
+        notes.append(_describe_change("the start", (start.x, start.y), moved))
     known = {name.lower(): 1 for names in world.names.by_type.values() for name in names}
     added: list[Place] = []
     for place in more:
         at = (place.x, place.y)
         spot = _room_near(world, at, radius, segments)
         if spot is None or spot != at:
-            notes.append(_changed(f'the place "{place.name}"', at, spot))
+            notes.append(_describe_change(f'the place "{place.name}"', at, spot))
         if spot is not None:
             name = _free(place.name, known)
             if name != place.name:
@@ -161,7 +161,7 @@ def _touches(segment: Segment, area: tuple[float, float, float, float]) -> bool:
     return min(ax, bx) <= right and max(ax, bx) >= left and min(ay, by) <= high and max(ay, by) >= low
 
 
-def _changed(what: str, at: Point, to: Point | None) -> str:
+def _describe_change(what: str, at: Point, to: Point | None) -> str:
     x, y = at
     done = "is left out" if to is None else f"is moved to ({to[0]:g}, {to[1]:g})"
     return f"{what} at ({x:g}, {y:g}) is too near to a wall, so it {done}"

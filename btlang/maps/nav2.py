@@ -172,11 +172,11 @@ def _way_points(world: World) -> str:
         half = radians(place.facing or 0.0) / 2
         turned = f"[{cos(half):.6f}, 0.0, 0.0, {sin(half):.6f}]"
         at = f"[{place.x:.4f}, {place.y:.4f}, 0.0]"
-        lines.append(f"  {_quoted(place.name)}:\n    pose: {at}\n    orientation: {turned}\n")
+        lines.append(f"  {_quote(place.name)}:\n    pose: {at}\n    orientation: {turned}\n")
     return "".join(lines)
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     """Return a text as YAML that any reader takes."""
     plain = (c if " " <= c <= "~" and c not in '"\\' else f"\\U{ord(c):08x}" for c in text)
     return f'"{"".join(plain)}"'

@@ -12,7 +12,7 @@ from math import cos, radians, sin
 import numpy as np
 
 from btlang.diagnostics.reading import is_below, real_path, reason_of
-from btlang.maps.data_text import missing, number, numbers, shown
+from btlang.maps.data_text import missing_package, number, numbers, shown
 from btlang.record import Record
 from btlang.robots.geometry import Point, Pose
 from btlang.text.toml_table import Problem
@@ -79,7 +79,7 @@ def _read_other(data: bytes) -> MapImage:
     try:
         from PIL import Image
     except ImportError:
-        raise missing("images that aren't PGM", "Pillow") from None
+        raise missing_package("images that aren't PGM", "Pillow") from None
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of a large image; it is looked at here
@@ -139,7 +139,7 @@ def read_map(data: Mapping[str, Any], folder: str) -> OccupancyMap:
     if negate not in (0, 1):
         raise Problem(f'"negate" must be 0 or 1, not {shown(negate)}')
     image = _image(data["image"], folder)
-    occupied = _occupied(image, str(mode), bool(negate), occupied_above)
+    occupied = _find_occupied(image, str(mode), bool(negate), occupied_above)
     return OccupancyMap(occupied[::-1], resolution, Pose(x, y, float(np.degrees(angle))))
 
 
@@ -157,7 +157,7 @@ def _image(name: Any, folder: str) -> MapImage:
         raise Problem(f"I can't read the image {shown(name)}: {reason_of(error)}") from None
 
 
-def _occupied(image: MapImage, mode: str, negate: bool, above: float) -> npt.NDArray[np.bool_]:
+def _find_occupied(image: MapImage, mode: str, negate: bool, above: float) -> npt.NDArray[np.bool_]:
     shades, alpha = image.shades, image.alpha
     if mode == "raw":
         percent = np.rint(shades * 255)
@@ -178,8 +178,7 @@ _RIGHT, _AHEAD, _LEFT = 3, 0, 1  # quarters of a turn to the left
 def walls_of(occupancy: OccupancyMap) -> tuple[tuple[Point, ...], ...]:
     """Return the walls around the occupied cells, at most one cell from their outlines. Raises Problem for too many."""
     return tuple(
-        tuple(_metres(corner, occupancy) for corner in simplified(loop).tolist())
-        for loop in outlines(occupancy.occupied)
+        tuple(_metres(corner, occupancy) for corner in simplify(loop).tolist()) for loop in outlines(occupancy.occupied)
     )
 
 
@@ -238,7 +237,7 @@ def _sides(occupied: npt.NDArray[np.bool_]) -> list[int]:
     return found
 
 
-def simplified(loop: Corners) -> Corners:
+def simplify(loop: Corners) -> Corners:
     """Return a closed outline in few pieces (Ramer-Douglas-Peucker), each corner at most one cell from them.
 
     It ends where it begins; what is as thin as a cell becomes one line.

@@ -30,7 +30,7 @@ def way_points(data: Any) -> list[Place]:
     as RViz saves them, other lists [x, y, z, w]. Raises Problem for any other form.
     """
     found: list[Place] = []
-    for what, name, value in _listed(data, ""):
+    for what, name, value in _list_points(data, ""):
         if len(found) == MOST:
             raise Problem(f"a file may have at most {MOST:,} way points")
         x, y, facing = _pose(value, what)
@@ -40,7 +40,7 @@ def way_points(data: Any) -> list[Place]:
     return found
 
 
-def _listed(data: Any, what: str) -> Iterator[tuple[str, str, Any]]:
+def _list_points(data: Any, what: str) -> Iterator[tuple[str, str, Any]]:
     """Return for each point its name in messages, its own name if it is a key, and the point."""
     if isinstance(data, list):
         for index, value in enumerate(data):
@@ -51,7 +51,7 @@ def _listed(data: Any, what: str) -> Iterator[tuple[str, str, Any]]:
     lists = [key for key in _LISTS if isinstance(data.get(key), list | dict) and not _is_point(data[key])]
     if lists:
         for key in lists:
-            yield from _listed(data[key], key)
+            yield from _list_points(data[key], key)
     elif _is_point(data):
         yield what or "the way point", "", data
     else:
@@ -81,16 +81,16 @@ def _pose(value: Any, what: str) -> tuple[float, float, float | None]:
     if not _is_point(value):
         raise Problem(f"{what} must be a way point: a table with x and y, or with a position, or [x, y, yaw]")
     if "x" in value:
-        return number(value["x"], f"{what}.x"), number(value.get("y"), f"{what}.y"), _facing(value, what)
+        return number(value["x"], f"{what}.x"), number(value.get("y"), f"{what}.y"), _find_facing(value, what)
     is_rviz = "position" not in value
     position = value["pose" if is_rviz else "position"]
     if isinstance(position, dict):
         x, y = number(position.get("x"), f"{what}.position.x"), number(position.get("y"), f"{what}.position.y")
-        return x, y, _facing(value, what)
+        return x, y, _find_facing(value, what)
     x, y, *_ = numbers(position, f"{what}.{'pose' if is_rviz else 'position'}", 2, 3)
     if is_rviz and "orientation" not in value and len(position) == 3:
         return _pose_list(position, what)
-    return x, y, _facing(value, what, w_first=is_rviz)
+    return x, y, _find_facing(value, what, w_first=is_rviz)
 
 
 def _pose_list(value: list[Any], what: str) -> tuple[float, float, float | None]:
@@ -101,7 +101,7 @@ def _pose_list(value: list[Any], what: str) -> tuple[float, float, float | None]
     return x, y, wrap(degrees(more[0])) if more else None
 
 
-def _facing(value: Mapping[str, Any], what: str, w_first: bool = False) -> float | None:
+def _find_facing(value: Mapping[str, Any], what: str, w_first: bool = False) -> float | None:
     turned = value.get("orientation")
     if turned is None:
         return _angle(value, what)

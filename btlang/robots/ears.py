@@ -74,7 +74,7 @@ class Ears:
         self._count += 1
 
     @contextmanager
-    def awaiting(self, expected: Expected) -> Iterator[None]:
+    def expect(self, expected: Expected) -> Iterator[None]:
         """Listen for this in the meantime."""
         self._awaited = [*self._awaited, expected]
         try:

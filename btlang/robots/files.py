@@ -62,7 +62,7 @@ def load_data(file: str | Source, what: str, make: Callable[[Table], T], error: 
     except tomllib.TOMLDecodeError as problem:
         raise error(f"this isn't TOML: {problem}", path, line_of(problem), source) from None
     except Problem as problem:
-        raise all_of(placed((problem, *problem.more), source, path, error)) from None
+        raise all_of(locate_problems((problem, *problem.more), source, path, error)) from None
 
 
 def make_from(
@@ -82,7 +82,7 @@ def all_of(errors: Iterable[DataFileError]) -> DataFileError:
     return first
 
 
-def placed(
+def locate_problems(
     problems: Iterable[Problem], source: Source, path: str, error: type[DataFileError]
 ) -> Iterator[DataFileError]:
     """Return problems as errors at their lines."""

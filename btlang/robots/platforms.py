@@ -33,20 +33,20 @@ NODES = "btlang.ros.command:component_nodes"
 
 def connection_function(name: str) -> Callable[..., Connection]:
     """Return the function that connects to a robot, by a name in ROBOTS."""
-    return _imported(ROBOTS[name])
+    return _import_function(ROBOTS[name])
 
 
 def component_function() -> Callable[..., Connection]:
     """Return the function that adds components and devices to a connection."""
-    return _imported(COMPONENTS)
+    return _import_function(COMPONENTS)
 
 
 def node_function() -> Callable[..., Any]:
     """Return the function that leads components that are ROS 2 nodes."""
-    return _imported(NODES)
+    return _import_function(NODES)
 
 
-def _imported(place: str) -> Callable[..., Any]:
+def _import_function(place: str) -> Callable[..., Any]:
     module, _, function = place.partition(":")
     made: Callable[..., Any] = getattr(import_module(module), function)
     return made

@@ -41,7 +41,7 @@ def needs_of_tree(tree: Tree, vocabulary: Lexicon) -> tuple[str, ...]:
     return tuple(sorted({need for node in tree.walk() for need in needs_of(node, vocabulary)}))
 
 
-def lacking(body: Body, tree: Tree, vocabulary: Lexicon, but: Collection[str] = ()) -> dict[str, Node]:
+def find_missing_parts(body: Body, tree: Tree, vocabulary: Lexicon, but: Collection[str] = ()) -> dict[str, Node]:
     """Return each part that the body lacks, with the first leaf that needs it; leaves with ids in `but` don't count."""
     found: dict[str, Node] = {}
     for node in tree.walk():
@@ -55,7 +55,7 @@ def lacking(body: Body, tree: Tree, vocabulary: Lexicon, but: Collection[str] = 
 def check_body(body: Body, tree: Tree, vocabulary: Lexicon, but: Collection[str] = ()) -> None:
     """Raise MissionError with all parts that the body lacks, each at the first leaf that needs it (BT072)."""
     by_leaf: dict[int, tuple[Node, list[str]]] = {}
-    for part, node in lacking(body, tree, vocabulary, but).items():
+    for part, node in find_missing_parts(body, tree, vocabulary, but).items():
         by_leaf.setdefault(id(node), (node, []))[1].append(part)
     if by_leaf:
         raise MissionError([lack(body, parts, node) for node, parts in by_leaf.values()])

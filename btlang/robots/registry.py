@@ -42,7 +42,7 @@ def body_of(robot: str | Source) -> Body:
         return read_body(os.path.join(BODIES, f"{robot}.toml"))
     if robot.endswith(".toml") or (os.path.exists(robot) and not os.path.isdir(robot)):
         return read_body(robot)
-    path = installed_robot(robot)
+    path = find_installed_robot(robot)
     if path is None:
         names = " or ".join(map(repr, ROBOTS))
         raise ValueError(
@@ -52,7 +52,7 @@ def body_of(robot: str | Source) -> Body:
     return read_body(path)
 
 
-def installed_robot(name: str) -> str | None:
+def find_installed_robot(name: str) -> str | None:
     """Return the robot file of an installed package, by the name of its entry point; None if there is none."""
     from importlib.metadata import entry_points
 

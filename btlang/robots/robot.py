@@ -470,7 +470,7 @@ def joint_of(body: Body, name: str) -> Joint:
     return joint
 
 
-def clipped(body: Body, targets: Mapping[str, float]) -> dict[str, float]:
+def clip_targets(body: Body, targets: Mapping[str, float]) -> dict[str, float]:
     """Return the targets within the limits of their joints. Raises RobotError for an unknown joint, and for NaN."""
     for name, target in targets.items():
         if isnan(target):

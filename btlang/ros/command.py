@@ -47,7 +47,7 @@ class EndingSignals:
 
 
 @contextmanager
-def ending_signals() -> Iterator[EndingSignals]:
+def keep_ending_signals() -> Iterator[EndingSignals]:
     """Keep Ctrl-C and other ending signals, instead of ending the process at once. Ignored ones stay ignored."""
     came = EndingSignals()
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, *ENDING_SIGNALS)}

@@ -17,7 +17,7 @@ from unique_identifier_msgs.msg import UUID
 from btlang.ros.lease import Leases
 
 
-def unanswered(client: Any, goal_id: UUID) -> ClientGoalHandle:
+def goal_handle(client: Any, goal_id: UUID) -> ClientGoalHandle:
     """Return a handle of a goal that was sent and not answered, to cancel it or to get its result."""
     return ClientGoalHandle(client, goal_id, SimpleNamespace(accepted=True))
 

@@ -92,7 +92,7 @@ def mismatch(node: Any, kind: str, name: str) -> str:
     own = [each.qos_profile for each in (node.subscriptions if heard else node.publishers) if each.topic_name == name]
     infos = (node.get_publishers_info_by_topic if heard else node.get_subscriptions_info_by_topic)(name)
     others = [each.qos_profile for each in infos]
-    lacks = [_lacking(*((other, each) if heard else (each, other))) for each in own for other in others]
+    lacks = [_weaker_policies(*((other, each) if heard else (each, other))) for each in own for other in others]
     if not lacks or not all(lacks):
         return ""
     sent, asked = (
@@ -106,7 +106,7 @@ def mismatch(node: Any, kind: str, name: str) -> str:
     return f"{who} asks for {asked}: the quality of service doesn't match"
 
 
-def _lacking(offered: QoSProfile, requested: QoSProfile) -> list[tuple[Any, Any]]:
+def _weaker_policies(offered: QoSProfile, requested: QoSProfile) -> list[tuple[Any, Any]]:
     """Return the policies of a publisher that are too weak, each with what the listener requests."""
     policies = (
         (offered.reliability, requested.reliability, ReliabilityPolicy.BEST_EFFORT, ReliabilityPolicy.RELIABLE),

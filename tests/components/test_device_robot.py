@@ -18,7 +18,7 @@ from btlang.robots.bodies.body import Device
 from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.platforms import ALL
 from btlang.robots.registry import connector
-from btlang.robots.simulation.parts import SimulatedHands, simulated_parts
+from btlang.robots.simulation.parts import SimulatedHands, make_simulated_parts
 from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.robots.worlds.obstacles import Obstacles
 from btlang.robots.worlds.world_file import load_world
@@ -230,7 +230,7 @@ def test_a_stop_holds_a_hand_that_closes() -> None:
 
     body = standard_body()
     known = SimulatedHands(Obstacles(load_world()), (), body)
-    parts = simulated_parts(load_world(), Obstacles(load_world()), body)
+    parts = make_simulated_parts(load_world(), Obstacles(load_world()), body)
     name = body.hands[0].name
     hands = DeviceHands(body, {f"{name} hand": Hand()}, known)
     robot = SimulatedRobot(load_world(), make_parts=lambda world, obstacles, body: parts.replace(hands=hands))

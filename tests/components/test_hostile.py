@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.components.calls import packed
+from btlang.components.calls import pack
 from btlang.components.component import ACTIVE, ComponentError
 from btlang.components.manager import ComponentManager
 from btlang.components.process_host import ProcessHost
@@ -194,7 +194,7 @@ class _Process(ProcessHost):
         """All of these, and ends."""
         with Connection(self.its.detach()) as end:
             for message in messages:
-                end.send_bytes(packed(message))
+                end.send_bytes(pack(message))
         self.listen().join(5.0)
 
 

@@ -163,7 +163,7 @@ def test_a_joint_in_one_of_several_messages() -> None:
     for seconds, name in ((3.0, "elbow"), (1.0, "wrist"), (3.1, "elbow"), (2.0, "wrist")):
         message = JointState(name=[name], position=[seconds])
         message.header.stamp = stamp(seconds)
-        client.arrived(message)
+        client.on_message(message)
         told.append(client.reading())
     assert [type(each) for each in told] == [kinds.JointState] * 4
     assert told[-1].position == pytest.approx(degrees(3.1))

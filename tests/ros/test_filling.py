@@ -16,7 +16,7 @@ from btlang.vocabulary.ros_table import read_ros
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
-from btlang.ros.words.fields import filler, reader
+from btlang.ros.words.fields import make_filler, make_reader
 from btlang.ros.words.word import RosWord
 
 SLOTS = ("length", "angle", "percent", "duration", "count", "text", "place")
@@ -34,7 +34,7 @@ def word(table: dict[str, Any], sort: str = "action") -> RosWord:
 def filled(interface: str, message: dict[str, Any], **values: Any) -> Any:
     """A message of a type."""
     made = word({"publish": interface, "name": "/x", "message": message})
-    return filler(made, made.interface(), made.ros.get("message"), lambda: None)(values)
+    return make_filler(made, made.interface(), made.ros.get("message"), lambda: None)(values)
 
 
 def test_units() -> None:
@@ -112,7 +112,7 @@ def test_what_does_not_fit(interface: str, message: dict[str, Any], code: str) -
 def read(message: Any, interface: str, **options: Any) -> Any:
     """The value that a table names."""
     made = word({"topic": interface, "name": "/x", **options}, "condition")
-    return reader(made, made.interface())(message)
+    return make_reader(made, made.interface())(message)
 
 
 def test_fields_and_reductions() -> None:

@@ -36,9 +36,9 @@ def test_the_last_snapshot_has_the_last_statuses(pause: float, monkeypatch: pyte
         tree = TreeTopic(mission, run, snapshots.append, changes.append)
 
         def reached(news: RunListener) -> None:
-            tree.reached(news, is_last=news.is_last)
+            tree.publish_snapshot(news, is_last=news.is_last)
 
-        topics.append(MissionProgress(run.snapshot, tree.changed, reached))
+        topics.append(MissionProgress(run.snapshot, tree.publish_changes, reached))
         assert run.execute().succeeded
     known: dict[str, str] = {}
     for change in map(json.loads, changes):

@@ -72,7 +72,7 @@ class Room:
             follow=self.follow,
         )
         self._hearing = Hearing(body, self._robot, devices, lambda kind, data: None)
-        self._listens = self._robot.ears.awaiting(everything())
+        self._listens = self._robot.ears.expect(everything())
         self._listens.__enter__()
 
     def follow(self, name: str, take: Any) -> None:

@@ -48,7 +48,7 @@ def test_a_robot_that_does_not_brake_is_noticed(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_a_robot_that_is_too_fast_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.robots.simulation.base.clipped_speed", lambda value, limit: value * 10)
+    monkeypatch.setattr("btlang.robots.simulation.base.clip_speed", lambda value, limit: value * 10)
     assert "faster than its body allows" in run_chaos(mission_test("move forward 2 m"), 0).problem
 
 

@@ -11,7 +11,7 @@ from btlang.devices.kinds import Motion, Pressed, Wheels, WheelSpeeds
 from btlang.robots.bodies.body import Body
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.motion.guard.guard import FASTEST
-from btlang.robots.simulation.base import at_most, clipped_speed, towards
+from btlang.robots.simulation.base import clip_speed, limit_value, step_towards
 
 _STUCK_AFTER = 2.0  # seconds: a faster base the guard stops before, with what the odometry shows
 _REST = 0.002  # metres a second: less is noise of the encoders
@@ -94,7 +94,7 @@ class DeviceBase:
     def drive(self, linear: float, angular: float) -> None:
         """Set the wanted velocity, within the limits."""
         driving, turning = self.body.driving, self.body.turning
-        self.wanted = clipped_speed(linear, driving.top_speed), clipped_speed(angular, turning.top_speed)
+        self.wanted = clip_speed(linear, driving.top_speed), clip_speed(angular, turning.top_speed)
         if self.wanted == (0.0, 0.0):
             self._idle = 0.0
 
@@ -133,9 +133,9 @@ class DeviceBase:
 
     def _command(self, dt: float) -> None:
         driving, turning = self.body.driving, self.body.turning
-        wanted = tuple(at_most(value, most) for value, most in zip(self.wanted, self.limits, strict=True))
-        linear = towards(self._speeds[0], wanted[0], driving.acceleration * dt, driving.brake * dt)
-        angular = towards(self._speeds[1], wanted[1], turning.acceleration * dt, turning.brake * dt)
+        wanted = tuple(limit_value(value, most) for value, most in zip(self.wanted, self.limits, strict=True))
+        linear = step_towards(self._speeds[0], wanted[0], driving.acceleration * dt, driving.brake * dt)
+        angular = step_towards(self._speeds[1], wanted[1], turning.acceleration * dt, turning.brake * dt)
         if self._velocity is None:
             linear = angular = 0.0
         self._speeds = linear, angular

@@ -14,7 +14,7 @@ from btlang.robots.bodies.body import Body
 from btlang.robots.geometry import Pose
 from btlang.robots.motion.guard.tracking import JointProgress
 from btlang.robots.parts import JointsPart, Parts
-from btlang.robots.robot import Hand, RobotError, clipped, joint_of
+from btlang.robots.robot import Hand, RobotError, clip_targets, joint_of
 from btlang.robots.simulation.parts import NO_CONTACT, SimulatedHands
 from btlang.robots.voice import TimedVoice
 from btlang.robots.worlds.obstacles import Obstacles
@@ -148,7 +148,7 @@ class DeviceJoints:
 
     def move(self, targets: Mapping[str, float]) -> None:
         """Move towards targets, clipped to the joints' limits. Raises RobotError."""
-        wanted = clipped(self._body, targets)
+        wanted = clip_targets(self._body, targets)
         for name in wanted:
             self.angle(name)
         self._targets.update(wanted)

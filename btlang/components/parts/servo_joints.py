@@ -123,12 +123,12 @@ class ServoJoints:
             self.angle(name)
         if self._smooth.timeline.rests():
             wanted = frozenset(joint.name for joint in self._body.joints)
-        at = [self._measured(name) if name in wanted else self._smooth.angle(name) for name in self._smooth.angles]
+        at = [self._measure(name) if name in wanted else self._smooth.angle(name) for name in self._smooth.angles]
         self._smooth.timeline.put(np.array(at))
         self._lets_go = False
         self._commanded |= wanted
 
-    def _measured(self, name: str) -> float:
+    def _measure(self, name: str) -> float:
         try:
             return self.angle(name)
         except DeviceError:

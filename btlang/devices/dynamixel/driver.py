@@ -55,13 +55,13 @@ class Polling:
     def read(self) -> Mapping[int, bytes]:
         """Do one cycle: return the states of the servos that answered, perhaps with some bytes more."""
         if self._groups is None or 0 < self._plain_until < time.monotonic():
-            self._groups = self._grouped()
+            self._groups = self._group()
         found: dict[int, bytes] = {}
         for (address, fast), ids in self._groups.items():
             found |= self._ask(address, ids, fast)
         return found
 
-    def _grouped(self) -> dict[tuple[int, bool], list[int]]:
+    def _group(self) -> dict[tuple[int, bool], list[int]]:
         """Return the servos that are asked together, by the address of their state and whether they answer in one
         packet.
         """

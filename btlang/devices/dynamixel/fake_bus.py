@@ -228,7 +228,7 @@ class FakeBus:
             self._pace(len(data))
             if self.echo:
                 self._send(data)
-            for packet in reader.feed(self._damaged(data)):
+            for packet in reader.feed(self._damage_bytes(data)):
                 self._hear(packet)
 
     def _hear(self, packet: Packet) -> None:
@@ -293,7 +293,7 @@ class FakeBus:
     def _send(self, data: bytes) -> None:
         self._pace(len(data))
         with suppress(OSError):
-            os.write(self._file, self._damaged(data))
+            os.write(self._file, self._damage_bytes(data))
 
     def _wait(self, servo: FakeServo) -> None:
         """Wait for a late servo: what is sent meanwhile collides with its answer, and nobody hears it."""
@@ -306,7 +306,7 @@ class FakeBus:
         if self.baud:
             time.sleep(count * 10 / self.baud)
 
-    def _damaged(self, data: bytes) -> bytes:
+    def _damage_bytes(self, data: bytes) -> bytes:
         if not self.damage:
             return data
         flips = (1 << self._random.randrange(8) if self._random.random() < self.damage else 0 for _ in data)

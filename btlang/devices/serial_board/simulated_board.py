@@ -160,23 +160,23 @@ class SimulatedLine:
                 data = os.read(master, 4096)
         if data and self.echo:
             self._send(master, data)
-        data = self._paced(self._damaged(data))
+        data = self._pace_bytes(self._damage_bytes(data))
         answer = b"" if self.deaf else self.board.receive(data, time.monotonic())
         if answer and self._random.random() < self.cut:
             answer = answer[: len(answer) // 2]
-        self._send(master, self._paced(self._damaged(answer)) + self.noise)
+        self._send(master, self._pace_bytes(self._damage_bytes(answer)) + self.noise)
 
     def _send(self, master: int, data: bytes) -> None:
         with suppress(OSError):  # nobody reads: a line keeps nothing
             os.write(master, data)
 
-    def _damaged(self, data: bytes) -> bytes:
+    def _damage_bytes(self, data: bytes) -> bytes:
         if not self.flipped:
             return data
         random, share = self._random, self.flipped
         return bytes(byte ^ random.randint(1, 255) if random.random() < share else byte for byte in data)
 
-    def _paced(self, data: bytes) -> bytes:
+    def _pace_bytes(self, data: bytes) -> bytes:
         if self.baud and data:
             time.sleep(len(data) * _BITS / self.baud)
         return data
@@ -254,7 +254,7 @@ class SimulatedBoard:
                 self._rest(number)
         for number, command in self.commands.items():
             if number in self.readings:
-                self.readings[number] = _moved(self.readings[number], command, now - self._turned)
+                self.readings[number] = _move(self.readings[number], command, now - self._turned)
         self._turned = now
         for channel in self.channels:
             if channel.number in self.readings and now - self._sampled[channel.number] >= channel.interval:
@@ -317,7 +317,7 @@ class SimulatedBoard:
         return round((now - self._started + self.ahead) * 1000) % 2**32
 
 
-def _moved(reading: Reading, command: Command, seconds: float) -> Reading:
+def _move(reading: Reading, command: Command, seconds: float) -> Reading:
     if isinstance(reading, Wheels) and isinstance(command, WheelSpeeds):
         left, right = reading.left + command.left * seconds, reading.right + command.right * seconds
         return Wheels(left, right, command.left, command.right)

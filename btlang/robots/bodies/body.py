@@ -94,7 +94,7 @@ class Joint(Record):
         """The accepted error: a centimetre or a degree."""
         return 0.01 if self.slides else 1.0
 
-    def unhurried(self, way: float) -> float:
+    def rest_to_rest_seconds(self, way: float) -> float:
         """Return the seconds for a distance from rest to rest, on a polynomial of degree five within the limits."""
         by_speed, by_force = 2.4 * way / self.speed, sqrt(6.4 * way / self.acceleration)
         return max(by_speed, by_force, cbrt(66 * way / self.jerk))

@@ -106,7 +106,7 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     radius = problems.part(lambda: top.number("radius", low=0.01, high=10.0), 1.0)
     base = problems.part(lambda: _base(top.table("base")) if top.has("base") else None, None)
     navigation = problems.part(lambda: _navigation(top, radius), None)
-    joints = _listed(top, "joints", joint_tables.joint, problems)
+    joints = _read_list(top, "joints", joint_tables.joint, problems)
     postures = problems.part(lambda: joint_tables.postures(top, joints), dict[str, tuple[Step, ...]]())
     capsules = tuple(each for each in problems.rows(top, "capsules", joint_tables.capsule) if each is not None)
     forbidden = problems.part(lambda: joint_tables.forbidden_pairs(top), tuple[tuple[str, str], ...]())
@@ -115,8 +115,8 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     gestures = dict[str, Gesture]()
     if top.has("gestures") and not problems.found:
         gestures = problems.part(lambda: read_gestures(top, joints, file), gestures)
-    hands = _listed(top, "hands", _hand, problems)
-    sensors = _listed(top, "sensors", _sensor, problems, key="kind")
+    hands = _read_list(top, "hands", _hand, problems)
+    sensors = _read_list(top, "sensors", _sensor, problems, key="kind")
     problems.found += [
         Problem(f'there is no joint "{sensor.joint}"', "sensors", index, "joint")
         for index, sensor in enumerate(sensors)
@@ -126,8 +126,8 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     dock = problems.part(lambda: _dock(top), None)
     voice = problems.part(lambda: read_voice(top, bool(file)), None)
     screen = problems.part(lambda: top.flag("screen"), False)
-    devices = _listed(top, "device", _device, problems)
-    components = _listed(top, "component", _component, problems)
+    devices = _read_list(top, "device", _device, problems)
+    components = _read_list(top, "component", _component, problems)
     made = Body(
         name, radius, over, base, navigation, joints, postures, hands, sensors, battery, dock, voice, screen,
         devices, components, file, problems.part(lambda: _beside(top, "world", file), ""),
@@ -161,7 +161,7 @@ def _beside(top: Table, key: str, file: str, exists: Callable[[str], bool] = os.
     return path
 
 
-def _listed(
+def _read_list(
     top: Table, section: str, make: Callable[[Table], T], problems: Problems, key: str = "name"
 ) -> tuple[T, ...]:
     """Return what is made of the tables of a list, without the wrong ones; names are unique."""

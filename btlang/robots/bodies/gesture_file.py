@@ -18,18 +18,18 @@ from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, spelled
 _SIDES = {"left": "right", "right": "left"}
 
 
-def swapped(words: str) -> str:
+def swap_sides(words: str) -> str:
     """Return a text with "right" and "left" swapped."""
     return re.sub(r"\b(left|right)\b", lambda match: _SIDES[match[1]], words)
 
 
-def mirrored(gesture: Gesture, joints: Sequence[Joint]) -> Gesture:
+def mirror(gesture: Gesture, joints: Sequence[Joint]) -> Gesture:
     """Return the mirror image of a gesture. Raises ValueError for a joint without another side."""
     known = {joint.name: joint for joint in joints}
     frames = tuple(frame.replace(joints=_step(frame.joints, known)) for frame in gesture.frames)
     made: Gesture = gesture.replace(
-        name=swapped(gesture.name), frames=frames, phrases=tuple(map(swapped, gesture.phrases)),
-        help=swapped(gesture.help), aim=swapped(gesture.aim),
+        name=swap_sides(gesture.name), frames=frames, phrases=tuple(map(swap_sides, gesture.phrases)),
+        help=swap_sides(gesture.help), aim=swap_sides(gesture.aim),
     )  # fmt: skip
     return made
 
@@ -37,7 +37,7 @@ def mirrored(gesture: Gesture, joints: Sequence[Joint]) -> Gesture:
 def _step(step: Step, known: Mapping[str, Joint]) -> Step:
     found: dict[str, float | str] = {}
     for name, value in step.items():
-        sense, other = _sense(known[name], known), known[swapped(name)]
+        sense, other = _sense(known[name], known), known[swap_sides(name)]
         if value in BEARINGS:  # what it is turned to stays where it is
             found[other.name] = value if sense < 0 else BEARING if value == OPPOSITE else OPPOSITE
         else:
@@ -52,9 +52,9 @@ def _step(step: Step, known: Mapping[str, Joint]) -> Step:
 
 def _sense(joint: Joint, known: Mapping[str, Joint]) -> float:
     """Return 1 if the mirror image of a movement has the same sign, else -1."""
-    other = known.get(swapped(joint.name))
+    other = known.get(swap_sides(joint.name))
     if other is None:
-        raise ValueError(f'there is no joint "{swapped(joint.name)}" to mirror "{joint.name}"')
+        raise ValueError(f'there is no joint "{swap_sides(joint.name)}" to mirror "{joint.name}"')
     if not (joint.link and other.link):
         if other is joint:
             raise ValueError(f'"{joint.name}" can\'t be mirrored, because it has no axis')
@@ -165,7 +165,7 @@ def _gestures(top: Table, stem: str, joints: Sequence[Joint]) -> tuple[Gesture, 
         begin, end, times = rounds
         more = (times - 1) * (end - begin)
         stroke += more if stroke > end else 0.0
-        frames = _repeated(frames, begin, end, times)
+        frames = _repeat_frames(frames, begin, end, times)
     if len(frames) > _MOST_FRAMES or _end(frames) > _LONGEST:
         raise Problem(f"a gesture takes at most {_LONGEST:g} seconds and has at most {_MOST_FRAMES} key frames")
     made = Gesture(name, tuple(frames), stroke, phrases, about, aim, least, most)
@@ -227,7 +227,7 @@ def _repeat(top: Table, frames: Sequence[KeyFrame]) -> tuple[float, float, int] 
     return table.finish((begin, end, int(times)))
 
 
-def _repeated(frames: Sequence[KeyFrame], begin: float, end: float, times: int) -> list[KeyFrame]:
+def _repeat_frames(frames: Sequence[KeyFrame], begin: float, end: float, times: int) -> list[KeyFrame]:
     long = end - begin
     before = [frame for frame in frames if frame.at <= begin]
     inside = [frame for frame in frames if begin < frame.at <= end]
@@ -255,11 +255,11 @@ def _both_sides(top: Table, gesture: Gesture, joints: Sequence[Joint]) -> tuple[
     if not (nearer or top.flag("mirror")):
         return (gesture,)
     try:
-        image = mirrored(gesture, joints)
+        image = mirror(gesture, joints)
     except ValueError as problem:
         raise top.problem("mirror", str(problem)) from None
     if nearer:
-        if not gesture.aim or swapped(gesture.aim) == gesture.aim:
+        if not gesture.aim or swap_sides(gesture.aim) == gesture.aim:
             raise top.problem("mirror", f'mirror = "{NEARER}" is for an "aim" that is left or right')
         return (gesture.replace(other=image),)
     if image.name == gesture.name:

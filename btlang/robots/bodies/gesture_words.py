@@ -13,7 +13,7 @@ from btlang.diagnostics.reading import read_source
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import Gesture, joints_of
 from btlang.robots.bodies.gesture_file import TARGET, GestureError, phrase_forms
-from btlang.robots.files import DataFileError, as_mission_error, placed
+from btlang.robots.files import DataFileError, as_mission_error, locate_problems
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem
 from btlang.text.toml_writing import toml_key, toml_value
@@ -95,19 +95,19 @@ def _clash(body: Body, path: str, error: MissionError) -> DataFileError:
     if values.get("first_file") != shown_name(path):
         one, other = other, one
     for gesture in body.gestures.values():
-        if any(one in _aimed(phrase) for phrase in gesture.phrases):
+        if any(one in _add_targets(phrase) for phrase in gesture.phrases):
             alone = (body.replace(gestures={"": gesture.replace(phrases=(phrase,))}) for phrase in gesture.phrases)
             wrong = (index for index, each in enumerate(alone) if _problem(path, keyword_text(each)) is not None)
             index = next(wrong, 0)
-            return _refused(gesture, index, f'"{gesture.phrases[index]}" and "{other}" can match the same words')
+            return _make_error(gesture, index, f'"{gesture.phrases[index]}" and "{other}" can match the same words')
     return GestureError(error.diagnostics[0].message, body.file)
 
 
-def _refused(gesture: Gesture, index: int, says: str) -> DataFileError:
+def _make_error(gesture: Gesture, index: int, says: str) -> DataFileError:
     """Return the error for one of the phrases of a gesture."""
     problem = Problem(f"{says}; choose another phrase", "phrase", index)
     source = read_source(gesture.file) if gesture.file else Source("", gesture.name)
-    return next(placed([problem], source, source.name, GestureError))
+    return next(locate_problems([problem], source, source.name, GestureError))
 
 
 def _entry(body: Body, gesture: Gesture, node_id: str, phrases: list[str]) -> str:
@@ -134,14 +134,14 @@ def _by_id(gesture: Gesture, english: Lexicon) -> Mapping[str, list[str]]:
     """Return the phrases of a gesture by the ids of their words: ids of known gestures, or a new one."""
     found: dict[str, list[str]] = {}
     for index, phrase in enumerate(gesture.phrases):
-        for aimed in _aimed(phrase):
+        for aimed in _add_targets(phrase):
             all_forms = phrase_forms(gesture.replace(phrases=(aimed,)))
             known = {_known(english, form, gesture, index) for form in all_forms} - {""}
             found.setdefault(next(iter(sorted(known)), _new_id(gesture.name, english)), []).append(aimed)
     return found
 
 
-def _aimed(phrase: str) -> Iterator[str]:
+def _add_targets(phrase: str) -> Iterator[str]:
     """Return the forms of a phrase with each type of target."""
     slot = f"{{{TARGET}}}"
     return (phrase.replace(slot, f"{{{kind}}}") for kind in (_TARGETS if slot in phrase else _TARGETS[:1]))
@@ -161,7 +161,7 @@ def _known(english: Lexicon, form: Form, gesture: Gesture, index: int) -> str:
     if meaning is None or (meaning.entry is not None and meaning.entry.yields and meaning.entry.topic != TOPIC):
         return ""
     if meaning.entry is None or meaning.entry.topic != TOPIC:
-        raise _refused(gesture, index, f'"{spelled(form)}" has another meaning already')
+        raise _make_error(gesture, index, f'"{spelled(form)}" has another meaning already')
     return meaning.entry.id
 
 

@@ -162,7 +162,7 @@ def read_idle(top: Table, body: Body) -> Idle:
     if not body.is_smooth:
         raise top.problem("idle", 'only joints with an "acceleration" and a "jerk" can move when the robot is idle')
     table = top.table("idle")
-    breathing = _breathing(table.table("breathing"), body) if table.has("breathing") else None
+    breathing = _read_breathing(table.table("breathing"), body) if table.has("breathing") else None
     looks = table.flag("look_at_speaker")
     if looks and body.bearing_joint(LOOK_AT) is None:
         says = f'"look_at_speaker" needs the posture "{LOOK_AT}"; write "{LOOK_AT}" = {{ "head turn" = "bearing" }}'
@@ -170,12 +170,12 @@ def read_idle(top: Table, body: Body) -> Idle:
     return table.finish(Idle(breathing, looks))
 
 
-def _breathing(table: Table, body: Body) -> Breathing:
+def _read_breathing(table: Table, body: Body) -> Breathing:
     name = table.choice("joint", tuple(joint.name for joint in body.joints))
     joint = body.joint(name)
     assert joint is not None
     by = table.number("by", low=_LEAST, high=max(_LEAST, (joint.high - joint.low) / 2))
     every = table.number("every", low=_EVERY[0], high=_EVERY[1])
-    if every < (needs := 2 * joint.unhurried(2 * by)):
+    if every < (needs := 2 * joint.rest_to_rest_seconds(2 * by)):
         raise table.problem("every", f'the {name} can\'t go so fast; "every" must be at least {needs:.2g}')
     return table.finish(Breathing(name, by, every))

@@ -23,7 +23,7 @@ _THIN = 1e-9  # metres
 
 def urdf(body: Body) -> str:
     """Return a body as the text of a URDF file. Blanks in names become underscores."""
-    lines = [f"<robot name={quoteattr(_plain(body.name))}>"]
+    lines = [f"<robot name={quoteattr(_to_urdf_name(body.name))}>"]
     links = ["", *(joint.link for joint in body.joints if joint.link)]
     for link in links:
         lines += _link(link, [capsule for capsule in body.capsules if capsule.link == link])
@@ -33,13 +33,13 @@ def urdf(body: Body) -> str:
     return "\n".join(['<?xml version="1.0"?>', *lines, "</robot>"]) + "\n"
 
 
-def _plain(name: str) -> str:
+def _to_urdf_name(name: str) -> str:
     return name.replace(" ", "_")
 
 
 def _link(link: str, capsules: Iterable[Capsule]) -> Iterator[str]:
     shapes = [shape for capsule in capsules for shape in _shapes(capsule)]
-    name = quoteattr(_plain(link) or ROOT_LINK)
+    name = quoteattr(_to_urdf_name(link) or ROOT_LINK)
     if not shapes:
         yield f"  <link name={name}/>"
         return
@@ -69,9 +69,9 @@ def _shape(at: Vector, geometry: str, turned: Vector = (0.0, 0.0, 0.0)) -> str:
 def _joint(joint: Joint) -> Iterator[str]:
     kind = "prismatic" if joint.slides else "revolute"
     low, high, speed = (_number(value * joint.si) for value in (joint.low, joint.high, joint.speed))
-    yield f'  <joint name={quoteattr(_plain(joint.name))} type="{kind}">'
-    yield f"    <parent link={quoteattr(_plain(joint.parent) or ROOT_LINK)}/>"
-    yield f"    <child link={quoteattr(_plain(joint.link))}/>"
+    yield f'  <joint name={quoteattr(_to_urdf_name(joint.name))} type="{kind}">'
+    yield f"    <parent link={quoteattr(_to_urdf_name(joint.parent) or ROOT_LINK)}/>"
+    yield f"    <child link={quoteattr(_to_urdf_name(joint.link))}/>"
     yield f'    <origin xyz="{_numbers(joint.at)}" rpy="0 0 0"/>'
     yield f'    <axis xyz="{_numbers(joint.axis)}"/>'
     yield f'    <limit lower="{low}" upper="{high}" velocity="{speed}" effort="{_EFFORT}"/>'
@@ -119,18 +119,22 @@ class Skeleton(Record):
     def toml(self) -> str:
         """A robot file, to be completed by hand."""
         radii = [capsule.radius for capsule in self.capsules if not capsule.link]
-        yields = [f"name = {_quoted(self.name)}", f"radius = {max(radii, default=_WIDTH):g}", ""]
+        yields = [f"name = {_quote(self.name)}", f"radius = {max(radii, default=_WIDTH):g}", ""]
         yields += ["# Give joints of one part of the body, such as an arm, the same `part`, and all an `acceleration`"]
         yields += ["# and a `jerk`: URDF has none of these. `forbidden` are pairs of links that may not touch.", ""]
         for joint in self.joints:
-            yields += ["[[joints]]", f"name = {_quoted(joint.name)}", f"part = {_quoted(joint.part)}"]
+            yields += ["[[joints]]", f"name = {_quote(joint.name)}", f"part = {_quote(joint.part)}"]
             yields += [f"{key} = {getattr(joint, key):.9g}" for key in ("low", "high", "speed", "rest")]
             yields += ["slides = true"] if joint.slides else []
-            yields += [f"link = {_quoted(joint.link)}", f"parent = {_quoted(joint.parent or BASE)}"]
-            yields += [f"at = {_listed(joint.at)}", f"axis = {_listed(joint.axis)}", ""]
+            yields += [f"link = {_quote(joint.link)}", f"parent = {_quote(joint.parent or BASE)}"]
+            yields += [f"at = {_format_list(joint.at)}", f"axis = {_format_list(joint.axis)}", ""]
         for capsule in self.capsules:
-            yields += ["[[capsules]]", f"link = {_quoted(capsule.link or BASE)}", f"start = {_listed(capsule.start)}"]
-            yields += [f"end = {_listed(capsule.end)}", f"radius = {capsule.radius:.9g}", ""]
+            yields += [
+                "[[capsules]]",
+                f"link = {_quote(capsule.link or BASE)}",
+                f"start = {_format_list(capsule.start)}",
+            ]
+            yields += [f"end = {_format_list(capsule.end)}", f"radius = {capsule.radius:.9g}", ""]
         return "\n".join(yields)
 
 
@@ -147,7 +151,7 @@ class _UrdfReader:
         self._source = source
 
     def skeleton(self) -> Skeleton:
-        root = self._parsed()
+        root = self._parse()
         if root.tag != "robot":
             raise self._wrong(root, f"this isn't URDF: it begins with <{root.tag}>, not with <robot>")
         links = {self._text(link, "name"): link for link in root.all("link")}
@@ -162,7 +166,7 @@ class _UrdfReader:
         """By link, the link of ours that it is a piece of; how it is turned and where it is with all joints at 0."""
         starts: dict[str, Array] = {"": np.zeros(3)}
         found: list[Joint] = []
-        for joint in self._ordered(ways, roots[0], links, root):
+        for joint in self._order(ways, roots[0], links, root):
             parent, child = self._end(joint, "parent", links), self._end(joint, "child", links)
             whole, turned, at = carried[parent]
             shift, turn = self._origin(joint)
@@ -177,9 +181,9 @@ class _UrdfReader:
             for name, link in links.items()
             for capsule in self._capsules(link, *carried[name], starts[carried[name][0]])
         ]
-        return Skeleton(_named(root.attributes.get("name") or "robot"), tuple(found), tuple(shapes))
+        return Skeleton(_from_urdf_name(root.attributes.get("name") or "robot"), tuple(found), tuple(shapes))
 
-    def _parsed(self) -> _UrdfElement:
+    def _parse(self) -> _UrdfElement:
         parser, stack, roots = expat.ParserCreate(), list[_UrdfElement](), list[_UrdfElement]()
 
         def start(tag: str, attributes: dict[str, str]) -> None:
@@ -201,7 +205,7 @@ class _UrdfReader:
             raise self._wrong_at(problem.lineno, f"this isn't XML: {says}") from None
         return roots[0]
 
-    def _ordered(
+    def _order(
         self, ways: Mapping[str, _UrdfElement], root: str, links: Mapping[str, _UrdfElement], top: _UrdfElement
     ) -> Iterator[_UrdfElement]:
         below: dict[str, list[str]] = {}
@@ -232,7 +236,7 @@ class _UrdfReader:
         way = turned @ np.array(self._vector(axis, "xyz", (1.0, 0.0, 0.0)) if axis is not None else (1.0, 0.0, 0.0))
         if np.linalg.norm(way) < _SAME:
             raise self._wrong(axis or joint, f'the axis of the joint "{name}" points nowhere')
-        said = _named(name)
+        said = _from_urdf_name(name)
         return Joint(
             said, said, low * unit, high * unit, speed * unit, min(max(0.0, low * unit), high * unit), slides,
             link=_link_name(child), parent=whole, at=_vector(at), axis=_vector(way / np.linalg.norm(way)),
@@ -339,19 +343,19 @@ def _vector(values: Array) -> Vector:
     return x, y, z
 
 
-def _named(name: str) -> str:
+def _from_urdf_name(name: str) -> str:
     return " ".join(name.replace("_", " ").split()) or name
 
 
 def _link_name(name: str) -> str:
-    return f"moving {BASE}" if _named(name) == BASE else _named(name)
+    return f"moving {BASE}" if _from_urdf_name(name) == BASE else _from_urdf_name(name)
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     import json
 
     return json.dumps(text, ensure_ascii=False)
 
 
-def _listed(vector: Vector) -> str:
+def _format_list(vector: Vector) -> str:
     return f"[{', '.join(f'{value:.9g}' for value in vector)}]"

@@ -181,7 +181,7 @@ def brake(state: MotionState, limits: JointLimits) -> Brake:
     return Brake(state, -sign * jerk, first, second, capped / jerk)
 
 
-def braking(state: MotionState, limits: JointLimits) -> CourseSegment:
+def plan_brake(state: MotionState, limits: JointLimits) -> CourseSegment:
     """Plan the fastest stop from one state, as a segment."""
     found = brake(state, limits)
     return CourseSegment(found.seconds, lambda times: found.at(times[:, None]))

@@ -11,7 +11,7 @@ from btlang.robots.bodies.gesture import BEARINGS, Gesture, KeyFrame, Step, angl
 from btlang.robots.bodies.joint_tables import LOOK_AT
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.parts import IdlePart, SmoothPart
-from btlang.robots.robot import Operation, RobotError, clipped, joint_of
+from btlang.robots.robot import Operation, RobotError, clip_targets, joint_of
 
 HEIGHT = 1.0
 """Metres above the floor of what a gesture points at."""
@@ -20,7 +20,7 @@ _FAR = 90.0  # degrees to the side beyond which something is behind
 Angles = Mapping[str, float]
 
 
-def turned(
+def turn_to_point(
     body: Body,
     wanted: Gesture | Sequence[Step],
     pose: Callable[[], Pose],
@@ -42,7 +42,7 @@ def turned(
         begun = {name: float(value) for frame in frames[: at + 1] for name, value in frame.joints.items()}
         metres, around = here.distance_to(aim), radians(bearing)
         point = (metres * cos(around), metres * sin(around), HEIGHT)
-        found = _aimed(body, wanted.aim, begun, point, angle)
+        found = _aim(body, wanted.aim, begun, point, angle)
         if found is None:
             raise _out_of_reach(wanted.aim, bearing)
         frames[at] = frames[at].replace(joints={**frames[at].joints, **found})
@@ -55,10 +55,10 @@ def _angles(body: Body, step: Step, bearing: float) -> Angles:
         joint = joint_of(body, name)
         if value in BEARINGS and not joint.low <= angle_of(value, bearing) <= joint.high:
             raise _out_of_reach(joint.part, bearing)
-    return clipped(body, {name: angle_of(value, bearing) for name, value in step.items()})
+    return clip_targets(body, {name: angle_of(value, bearing) for name, value in step.items()})
 
 
-def _aimed(body: Body, part: str, begun: Angles, aim: Vector, angle: Callable[[str], float]) -> Angles | None:
+def _aim(body: Body, part: str, begun: Angles, aim: Vector, angle: Callable[[str], float]) -> Angles | None:
     import numpy as np
 
     from btlang.robots.motion.kinematics import AimSolver, Kinematics
@@ -133,7 +133,7 @@ class Gestures:
 
         Also returns how many times as long it takes as it should: limits of the joints may slow it.
         """
-        wanted = self._turned(name, pose, aim)
+        wanted = self._turn(name, pose, aim)
         if isinstance(self._joints, SmoothPart):
             return self._joints.play(wanted, room)
         made = Stepped(self._joints, _steps(wanted), max(0.0, (room or 0.0) - self._lead(wanted)))
@@ -141,7 +141,7 @@ class Gestures:
         return made, 1.0
 
     def lead(self, name: str, pose: Callable[[], Pose], aim: Point | None) -> float:
-        wanted = self._turned(name, pose, aim)
+        wanted = self._turn(name, pose, aim)
         return self._joints.lead(wanted) if isinstance(self._joints, SmoothPart) else self._lead(wanted)
 
     def stop(self) -> None:
@@ -155,11 +155,11 @@ class Gestures:
             stepped.step(dt)
         self._stepped = [stepped for stepped in self._stepped if not stepped.done]
 
-    def _turned(self, name: str, pose: Callable[[], Pose], aim: Point | None) -> Gesture | Sequence[Angles]:
+    def _turn(self, name: str, pose: Callable[[], Pose], aim: Point | None) -> Gesture | Sequence[Angles]:
         found = self._body.gestures.get(name) or self._body.postures.get(name)
         if not found:
             raise RobotError(f'the robot has no gesture "{name}"')
-        return turned(self._body, found, pose, aim, self._joints.angle)
+        return turn_to_point(self._body, found, pose, aim, self._joints.angle)
 
     def _lead(self, wanted: Gesture | Sequence[Angles]) -> float:
         if isinstance(wanted, Gesture):
@@ -245,7 +245,7 @@ class Idling:
         if any(abs(at[name] - angle) > _SAME for name, angle in self._turned.items()):
             self._home = self._turned = {}
         if self._left > 0.0 and self._who:
-            wanted = self._aimed()
+            wanted = self._aim()
             if any(abs(at[name] - angle) > _OFF for name, angle in wanted.items()) and self._begin(wanted, _TURNS):
                 self._home, self._turned = self._home or at, wanted
             return
@@ -253,11 +253,13 @@ class Idling:
         if self._home and self._begin(self._home, _TURNS):
             self._home = self._turned = {}
 
-    def _aimed(self) -> Mapping[str, float]:
+    def _aim(self) -> Mapping[str, float]:
         """Return the joint angles to look at who speaks; empty if the head can't, or nobody knows where they are."""
         try:
             place = self._place(self._who)
-            steps = turned(self._body, self._body.postures[LOOK_AT], self._pose, place, self._joints.planned.angle)
+            steps = turn_to_point(
+                self._body, self._body.postures[LOOK_AT], self._pose, place, self._joints.planned.angle
+            )
         except RobotError:
             return {}
         return steps[0] if place is not None and not isinstance(steps, Gesture) else {}

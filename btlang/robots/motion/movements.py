@@ -26,7 +26,7 @@ class FrameTimes(Record):
     times: Array
     positions: Array
 
-    def scaled(self, share: float) -> FrameTimes:
+    def scale(self, share: float) -> FrameTimes:
         """Return the same in a share of the time."""
         return FrameTimes(self.times * share, self.positions)
 
@@ -152,7 +152,7 @@ class Steps:
         self.joints, self._steps, self._limits = joints, steps, limits
 
     def tail(self, start: MotionState, share: float, rests: bool) -> Tail:
-        states = [resting(step) for step in self._steps]
+        states = [rest_at(step) for step in self._steps]
         pieces = [to_state(one, other, self._limits) for one, other in pairwise(states)]
         return Tail(states[0], [piece for piece in pieces if piece is not None], 0.0)
 
@@ -167,7 +167,7 @@ class KeyFrames:
         self._frames, self._stroke, self._limits = frames, gesture.stroke, limits
 
     def tail(self, start: MotionState, share: float, rests: bool) -> Tail:
-        wanted = self._frames.scaled(share)
+        wanted = self._frames.scale(share)
         made = curve(wanted, start.position, self._limits, rests)
         given, times = self._frames.times, made.frames.times
         stroke = float(np.interp(self._stroke, given, times)) - float(times[0])
@@ -179,14 +179,14 @@ class KeyFrames:
         return Tail(made.state(0), made.pieces, stroke, float(wanted.times[0]), slower)
 
 
-def resting(position: Array) -> MotionState:
+def rest_at(position: Array) -> MotionState:
     """Return the state at rest in a position."""
     return MotionState(position, np.zeros_like(position), np.zeros_like(position))
 
 
-def staying(position: Array) -> Callable[[Array], MotionState]:
+def stay_at(position: Array) -> Callable[[Array], MotionState]:
     """Return the states at rest in a position at some times."""
-    return lambda times: resting(np.repeat(position[None], len(times), axis=0))
+    return lambda times: rest_at(np.repeat(position[None], len(times), axis=0))
 
 
 def frames_of(gesture: Gesture, names: Sequence[str], settled: Array) -> FrameTimes:

@@ -12,7 +12,7 @@ from btlang.robots.motion.course import JointLimits, brake
 from btlang.robots.motion.kinematics import Kinematics
 from btlang.robots.motion.movements import KeyFrames, Movement, Steps, frames_of
 from btlang.robots.motion.timeline import JointTimeline, PlannedMotion
-from btlang.robots.robot import clipped, joint_of
+from btlang.robots.robot import clip_targets, joint_of
 
 
 class SmoothJoints:
@@ -47,7 +47,7 @@ class SmoothJoints:
 
         Raises RobotError, also if the body would touch itself.
         """
-        wanted = clipped(self._body, targets)
+        wanted = clip_targets(self._body, targets)
         if wanted:
             self._play(self._steps([wanted]), None)
 
@@ -76,11 +76,11 @@ class SmoothJoints:
         It doesn't if the body would touch itself, or if one of these joints moves. `moving` ignores it, and anything
         else takes over.
         """
-        wanted = clipped(self._body, targets)
+        wanted = clip_targets(self._body, targets)
         joints = [self._names.index(name) for name in wanted]
         here, goal = self.timeline.state.position[joints], np.array(list(wanted.values()))
         ways = zip(joints, np.abs(goal - here).tolist(), strict=True)
-        seconds = max(least, *(self._body.joints[k].unhurried(way) for k, way in ways))
+        seconds = max(least, *(self._body.joints[k].rest_to_rest_seconds(way) for k, way in ways))
         return self.timeline.idle(joints, goal, seconds)
 
     def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[PlannedMotion, float]:

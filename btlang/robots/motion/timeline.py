@@ -17,14 +17,14 @@ from btlang.robots.motion.course import (
     MotionState,
     between,
     brake,
-    braking,
+    plan_brake,
     quintic,
     samples,
     to_state,
 )
 from btlang.robots.motion.guard.trajectories import TrajectoryCheck
 from btlang.robots.motion.kinematics import Array, Kinematics
-from btlang.robots.motion.movements import Movement, Tail, resting, staying
+from btlang.robots.motion.movements import Movement, Tail, rest_at, stay_at
 from btlang.robots.robot import RobotError
 
 _EXACT = 1e-6
@@ -60,21 +60,21 @@ class MotionPlanner:
             course = self._direct(movement, limits, lambda ticks: state(ticks).of(joints), rests, room)
             if course is not None:
                 yield course
-        stop, stopped = braking(start, limits), brake(start, limits).end
-        home = resting(limits.rest)
+        stop, stopped = plan_brake(start, limits), brake(start, limits).end
+        home = rest_at(limits.rest)
         by_rest = to_state(start, home, limits)
         for before, begin in ((stop, stopped), (by_rest, home)):
             if before is not None:
                 left = None if room is None else room - before.seconds
                 course = self._direct(movement, limits, lambda ticks, begin=begin: begin, True, left)  # type: ignore[misc]
                 if course is not None:
-                    waits = CourseSegment(PERIOD * course.begins, staying(begin.position))
+                    waits = CourseSegment(PERIOD * course.begins, stay_at(begin.position))
                     pieces = (before, waits, *course.pieces)
                     yield course.replace(begins=0, pieces=pieces, stroke=course.stroke + before.seconds)
 
     def stop(self, joints: Sequence[int], state: MotionState) -> Course:
         """Plan the fastest stop for all joints."""
-        return Course(joints, 0, [braking(state.of(joints), self._limits.some(joints))], 0.0)
+        return Course(joints, 0, [plan_brake(state.of(joints), self._limits.some(joints))], 0.0)
 
     def soonest(self, movement: Movement, state: MotionState) -> float:
         """Return the least seconds until the stroke."""
@@ -154,7 +154,7 @@ class JointTimeline:
         self.seconds = 0.0
         self._limits = JointLimits.of(body.joints)
         self._guard, self._planner = TrajectoryCheck(body, kinematics), MotionPlanner(self._limits)
-        self._way = resting(self._limits.rest[None])
+        self._way = rest_at(self._limits.rest[None])
         self._first = 0  # the tick of the first sample
         self._ends = np.zeros(len(body.joints), dtype=int)  # the tick at which each joint rests
         self._plays: list[PlannedMotion] = []
@@ -251,7 +251,7 @@ class JointTimeline:
                 return False
             tick = self._tick
             here = self._sample(tick).of(joints).position
-            piece = quintic(resting(here), resting(goal), seconds)
+            piece = quintic(rest_at(here), rest_at(goal), seconds)
             way, ends = self._with(Course(joints, 0, [piece], 0.0), tick)
             if not self._may_idle(way, joints, (tuple(joints), goal.round(_SAME).tobytes(), seconds)):
                 return False

@@ -73,7 +73,7 @@ class SimulatedBase:
 
     def drive(self, linear: float, angular: float) -> None:
         """Set the wanted velocity, within the limits."""
-        self.wanted = (clipped_speed(linear, self._driving.top_speed), clipped_speed(angular, self._turning.top_speed))
+        self.wanted = (clip_speed(linear, self._driving.top_speed), clip_speed(angular, self._turning.top_speed))
         self._hard = False
         if self.wanted == (0.0, 0.0):
             self._forget_trouble()
@@ -125,11 +125,11 @@ class SimulatedBase:
         driving, turning = self._driving, self._turning
         brake, turn_brake = (driving.hard_brake, turning.hard_brake) if self._hard else (driving.brake, turning.brake)
         most, most_turn = self.limits
-        wanted, turn = at_most(self.wanted[0], most), at_most(self.wanted[1], most_turn)
+        wanted, turn = limit_value(self.wanted[0], most), limit_value(self.wanted[1], most_turn)
         if abs(linear) > most:
             brake = driving.hard_brake
-        linear = towards(linear, wanted, driving.acceleration * h, brake * h)
-        angular = towards(angular, turn, turning.acceleration * h, turn_brake * h)
+        linear = step_towards(linear, wanted, driving.acceleration * h, brake * h)
+        angular = step_towards(angular, turn, turning.acceleration * h, turn_brake * h)
         self._speeds = linear, angular
         v, w = self._on_floor(linear, angular)
         old = self.pose
@@ -205,19 +205,19 @@ class SimulatedBase:
         self._contact = pose
 
 
-def clipped_speed(value: float, limit: float) -> float:
+def clip_speed(value: float, limit: float) -> float:
     """Return the velocity, limited to `most`. Raises RobotError for NaN: no limit would hold it."""
     if isnan(value):
         raise RobotError("the robot can't drive at a speed that is not a number")
     return copysign(min(abs(value), limit), value)
 
 
-def at_most(value: float, most: float) -> float:
+def limit_value(value: float, most: float) -> float:
     """Return a value with the same sign, limited to `most`."""
     return value if abs(value) <= most else copysign(most, value)
 
 
-def towards(value: float, target: float, more: float, less: float) -> float:
+def step_towards(value: float, target: float, more: float, less: float) -> float:
     """Step towards the target: by at most `less` while slowing down, `more` while speeding up."""
     slowing = abs(target) < abs(value) or target * value < 0.0
     limit = less if slowing else more

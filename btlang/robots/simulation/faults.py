@@ -47,7 +47,7 @@ class Faults:
         self._faults = tuple(fault for fault in self._faults if (fault.kind, fault.place) != (kind, place))
         self._active = tuple(fault for fault in self._active if fault in self._faults)
 
-    def blocked(self, place: str) -> bool:
+    def is_blocked(self, place: str) -> bool:
         """Return whether no way leads to the place."""
         return any(fault.kind == "blocked" and fault.place == place for fault in self._active)
 

@@ -189,7 +189,7 @@ class Navigator:
             goal.end(f"stuck on the way to {said(name)}: the wheels turn but the robot doesn't move")
         elif self._guard.held and self._guard.verdict.cause not in (Cause.PERSON, Cause.ZONE):
             goal.end(f"stopped on the way to {said(name)}: {self._guard.held}")
-        elif self._faults.blocked(name):
+        elif self._faults.is_blocked(name):
             goal.end(f"there is no free way to {said(name)}")
         elif (target := self._target(goal)) is None:
             goal.end(f"I haven't seen {said(name)}")

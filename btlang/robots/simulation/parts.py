@@ -10,7 +10,7 @@ from btlang.robots.bodies.body import Battery, Body, Dock, HandPart
 from btlang.robots.geometry import Point, Pose, segment_distance
 from btlang.robots.motion.guard.readings import ObstacleReading, ScanReading
 from btlang.robots.parts import JointsPart, Parts
-from btlang.robots.robot import Hand, RobotError, Station, clipped, joint_of
+from btlang.robots.robot import Hand, RobotError, Station, clip_targets, joint_of
 from btlang.robots.simulation.base import SimulatedBase
 from btlang.robots.voice import TimedVoice
 from btlang.robots.worlds.obstacles import Obstacles
@@ -41,7 +41,7 @@ class SimulatedJoints:
 
     def move(self, targets: Mapping[str, float]) -> None:
         """Move towards targets, clipped to the joints' limits. Raises RobotError for an unknown joint."""
-        self._targets.update(clipped(self._body, targets))
+        self._targets.update(clip_targets(self._body, targets))
 
     def at_target(self, names: tuple[str, ...]) -> bool:
         """Return whether none of these joints is on its way."""
@@ -234,7 +234,7 @@ def _is_free(spot: Pose, world: World, radius: float) -> bool:
     return gap >= radius and not any(box.contains(point) for box in world.boxes)
 
 
-def simulated_parts(world: World, obstacles: Obstacles, body: Body) -> Parts:
+def make_simulated_parts(world: World, obstacles: Obstacles, body: Body) -> Parts:
     """Return the parts that act in a world."""
     scanners: list[Scanner] = []
 
@@ -255,12 +255,12 @@ def simulated_parts(world: World, obstacles: Obstacles, body: Body) -> Parts:
 
     scanner = body.sensor("scanner")
     base, power = SimulatedBase(world.start, obstacles, body), SimulatedPower(world.battery, world.all_docks, body)
-    joints = joints_part(body)
+    joints = make_joints(body)
     hands = SimulatedHands(obstacles, world.names.objects, body)
     return Parts(base, power, scan, joints, hands, TimedVoice(body, joints.move), sensors)
 
 
-def joints_part(body: Body) -> JointsPart:
+def make_joints(body: Body) -> JointsPart:
     """Return the joints of a body: smooth ones plan their movements."""
     if not body.is_smooth:
         return SimulatedJoints(body)

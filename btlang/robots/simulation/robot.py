@@ -20,7 +20,7 @@ from btlang.robots.parts import BasePart, IdlePart, JointsPart, Parts, PowerPart
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, SensorSilent, Station
 from btlang.robots.simulation.faults import Faults, describe
 from btlang.robots.simulation.navigation import NavigationGoal, Navigator
-from btlang.robots.simulation.parts import simulated_parts, stations
+from btlang.robots.simulation.parts import make_simulated_parts, stations
 from btlang.robots.simulation.surroundings import Surroundings
 from btlang.robots.worlds.obstacles import Obstacles
 from btlang.robots.worlds.world import Place, World, said
@@ -64,7 +64,7 @@ class SimulatedRobot(AssembledRobot):
         self._has = cache(body.has)
         self.world = world
         self._obstacles = obstacles or Obstacles(world)
-        parts = (make_parts or simulated_parts)(world, self._obstacles, body)
+        parts = (make_parts or make_simulated_parts)(world, self._obstacles, body)
         self._base, self.power, self._scan = parts.base, parts.power, parts.scan
         self._joints, self._hands, self._voice = parts.joints, parts.hands, parts.voice
         self._gestures = Gestures(body, self._joints)

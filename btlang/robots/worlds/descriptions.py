@@ -40,10 +40,10 @@ def without_relations(parts: Mapping[str, str]) -> dict[str, str]:
     return {name: text for name, text in parts.items() if not (name == "named" or name in RELATIONS or name in DENIED)}
 
 
-def related_words(parts: Mapping[str, str]) -> str:
+def describe_relations(parts: Mapping[str, str]) -> str:
     """Return the words for the relations in the parts: ` on the table that isn't red`."""
     words = [
-        f" {_WORDS.get(name, name)} {' and '.join(map(_thing, text.split(SECOND)))}"
+        f" {_WORDS.get(name, name)} {' and '.join(map(_describe_thing, text.split(SECOND)))}"
         for name, text in parts.items()
         if name in RELATIONS
     ]
@@ -51,7 +51,7 @@ def related_words(parts: Mapping[str, str]) -> str:
     return "".join(words)
 
 
-def _thing(value: str) -> str:
+def _describe_thing(value: str) -> str:
     head, *filters = value.split("; ")
     before, behind = "", ""
     for each in filters:
@@ -255,7 +255,9 @@ class Choices:
         """
         if not names:
             raise RobotError(
-                unseen(kind, parts, related_words(parts)) if parts or how == "seen" else f"there's no {kind} to choose"
+                unseen(kind, parts, describe_relations(parts))
+                if parts or how == "seen"
+                else f"there's no {kind} to choose"
             )
         if how in ("nearest", "seen"):
             data: dict[str, str | int] = {"type": kind, "how": "nearest", "name": min(names, key=distance)}

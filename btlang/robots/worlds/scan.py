@@ -65,7 +65,7 @@ def around(ranges: Array, angles: Array, at: Pose, step: float = 1.0) -> Array:
     """
     found = np.full(360, np.nan)
     valid = ~np.isnan(ranges)
-    found[_covered(angles[valid] + np.radians(at.heading), step)] = np.inf
+    found[_covered_degrees(angles[valid] + np.radians(at.heading), step)] = np.inf
     seen = np.isfinite(ranges)
     ranges, angles = ranges[seen], angles[seen] + np.radians(at.heading)
     if at.x or at.y:
@@ -75,7 +75,7 @@ def around(ranges: Array, angles: Array, at: Pose, step: float = 1.0) -> Array:
     return found
 
 
-def _covered(angles: Array, step: float) -> npt.NDArray[np.int64]:
+def _covered_degrees(angles: Array, step: float) -> npt.NDArray[np.int64]:
     """Return the degrees that are covered by beams so many degrees apart."""
     half = min(180, max(0, round(step / 2)))
     middles = np.rint(np.degrees(angles)).astype(int)

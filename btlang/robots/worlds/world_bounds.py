@@ -32,7 +32,9 @@ def outer_wall(world: World) -> Polyline | None:
 
     Walls and doors that meet end to end are one wall.
     """
-    loops = [wall for wall in _joined([*world.walls, *((door.start, door.end) for door in world.doors)]) if _area(wall)]
+    loops = [
+        wall for wall in _join_walls([*world.walls, *((door.start, door.end) for door in world.doors)]) if _area(wall)
+    ]
     return max(loops, key=_area, default=())[:-1] or None
 
 
@@ -43,7 +45,7 @@ def _area(wall: Polyline) -> float:
     return abs(sum(ax * by - bx * ay for (ax, ay), (bx, by) in pairwise(wall))) / 2
 
 
-def _joined(walls: list[Polyline]) -> list[Polyline]:
+def _join_walls(walls: list[Polyline]) -> list[Polyline]:
     """Return the walls; two are joined if their ends meet and no other one ends there."""
     ends: dict[Point, list[Polyline]] = {}
     done = [wall for wall in walls if wall[0] == wall[-1]]

@@ -55,7 +55,7 @@ def load_world(
     It has to leave room for the body, by default that of the robot that ships. In a `bounded` world nothing may be
     outside the outer walls.
     """
-    return _loaded(file, (body or standard_body()).radius, bounded=bounded)
+    return _load(file, (body or standard_body()).radius, bounded=bounded)
 
 
 def world_from(values: dict[str, Any], path: str, body: Body | None = None) -> World:
@@ -69,10 +69,10 @@ def world_names(file: str | PathLike[str] | Source | None = None) -> WorldNames:
 
     Which robot will need room there isn't known yet.
     """
-    return _loaded(file, None, bounded=False).names
+    return _load(file, None, bounded=False).names
 
 
-def _loaded(file: str | PathLike[str] | Source | None, radius: float | None, *, bounded: bool) -> World:
+def _load(file: str | PathLike[str] | Source | None, radius: float | None, *, bounded: bool) -> World:
     given = DEFAULT_WORLD if file is None else file if isinstance(file, Source) else fspath(file)
     return load_data(given, "a world", lambda top: _world(top, radius, bounded), WorldError)
 

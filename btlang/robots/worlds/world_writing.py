@@ -52,7 +52,7 @@ def _row(record: Record) -> dict[str, Any]:
     keys, always = _KEYS.get(type(record), {}), _always(record)
     usual = record.field_defaults
     row = {
-        keys.get(field, field): _plain(value)
+        keys.get(field, field): _to_data(value)
         for field, value in record.as_dict().items()
         if field in always or field not in usual or value != usual[field]
     }
@@ -73,7 +73,7 @@ def _always(record: Record) -> tuple[str, ...]:
     return ()
 
 
-def _plain(value: Any) -> Any:
+def _to_data(value: Any) -> Any:
     if isinstance(value, Stop) and not (value.at or value.stays):
         return [value.x, value.y]
     if isinstance(value, Stop):
@@ -86,7 +86,7 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Record):
         return _row(value)
     if isinstance(value, tuple):
-        return [_plain(each) for each in value]
+        return [_to_data(each) for each in value]
     return dict(value) if isinstance(value, Mapping) else value
 
 

@@ -13,7 +13,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
 from btlang.record import Record
-from btlang.ros.bridge.conversion import as_data, filled, type_of
+from btlang.ros.bridge.conversion import as_data, fill_message, type_of
 from btlang.ros.bridge.replies import BridgeError, answer, reason_of
 from btlang.ros.bridge.topics import full
 from btlang.ros.graph import absent, is_ready, types_of
@@ -145,8 +145,8 @@ class BridgeCall:
     def _send(self, cls: Any, client: Any) -> None:
         if self.ended:
             return
-        future = client.call_async(filled(cls.Request, self._asked.get("args") or {}, self._servers.now))
-        future.add_done_callback(self._answered)
+        future = client.call_async(fill_message(cls.Request, self._asked.get("args") or {}, self._servers.now))
+        future.add_done_callback(self._on_answer)
 
         def late(reason: str) -> None:
             client.remove_pending_request(future)
@@ -155,7 +155,7 @@ class BridgeCall:
         reason = f"{self._asked['service']} hasn't answered within {self._seconds:g} s."
         self._servers.waits.when(future.done, int, late, lambda: reason, self._seconds)
 
-    def _answered(self, future: Any) -> None:
+    def _on_answer(self, future: Any) -> None:
         if not self.ended:
             self.ended = True
             self._reply(answer(self._asked, as_data(future.result()), success=True))
@@ -176,7 +176,7 @@ class BridgeGoal:
         self._client: Any = None
         self._handle: Any = None
         cls = type_of(str(asked.get("action_type", "")), "action")
-        self._goal = filled(cls.Goal, asked.get("args") or {}, servers.now)
+        self._goal = fill_message(cls.Goal, asked.get("args") or {}, servers.now)
         servers.find("action", asked["action"], cls, self._send, self._end_badly)
 
     def cancel(self) -> None:
@@ -194,7 +194,7 @@ class BridgeGoal:
             return
         self._is_sent, self._client = True, client
         future = client.send_goal_async(self._goal, self._hear, self._servers.lease.goal_id())
-        future.add_done_callback(self._accepted)
+        future.add_done_callback(self._on_accept)
         self._watch()
 
     def _watch(self) -> None:
@@ -202,7 +202,7 @@ class BridgeGoal:
         gone = partial(self._end_badly, f"The action server {self._asked['action']} has gone.")
         self._servers.waits.when(lambda: self.ended or not is_ready(self._client), gone, self._end_badly, str, math.inf)
 
-    def _accepted(self, future: Any) -> None:
+    def _on_accept(self, future: Any) -> None:
         self._handle = future.result()
         if not self._handle.accepted:
             self._end_badly("The goal was rejected.")

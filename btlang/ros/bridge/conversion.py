@@ -100,7 +100,7 @@ def _all_finite(values: Any) -> list[float | None]:
     return [_finite(number) for number in numbers.tolist()]
 
 
-def filled(cls: Any, data: object, now: Now) -> Any:
+def fill_message(cls: Any, data: object, now: Now) -> Any:
     """Return a message of a class with these fields; other fields keep their defaults.
 
     A header without a stamp gets that of `now`. Raises BridgeError.

@@ -12,7 +12,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 
-from btlang.ros.bridge.conversion import as_data, filled, type_of
+from btlang.ros.bridge.conversion import as_data, fill_message, type_of
 from btlang.ros.bridge.replies import MOST_CHARACTERS, BridgeError
 from btlang.ros.graph import types_of
 from btlang.ros.messages import type_name
@@ -89,7 +89,7 @@ class Subscription:
             return
         if types and type_name(self._cls) not in types:
             raise BridgeError(f"{self._name} is of the type {min(types)}, not {type_name(self._cls)}.")
-        qos = _fitting(publishers) if publishers or self._qos is None else self._qos
+        qos = _compatible_qos(publishers) if publishers or self._qos is None else self._qos
         if qos != self._qos:
             self._unsubscribe()
             self._qos = qos
@@ -109,7 +109,7 @@ class Subscription:
             self._period = period
             if period:
                 clock = Clock(clock_type=ClockType.STEADY_TIME)
-                self._timer = self._node.create_timer(period, self._elapsed, clock=clock)
+                self._timer = self._node.create_timer(period, self._on_period, clock=clock)
                 self._timer.cancel()
 
     def _heard(self, message: bytes) -> None:
@@ -121,7 +121,7 @@ class Subscription:
         else:
             self._newest = message
 
-    def _elapsed(self) -> None:
+    def _on_period(self) -> None:
         newest, self._newest = self._newest, None
         if newest is None:
             self._timer.cancel()
@@ -166,7 +166,7 @@ class Publisher:
 
     def publish(self, fields: object) -> None:
         """Publish these fields. Raises BridgeError if they don't fit."""
-        self._publisher.publish(filled(self.cls, fields, self._node.get_clock().now().to_msg))
+        self._publisher.publish(fill_message(self.cls, fields, self._node.get_clock().now().to_msg))
 
     def end(self) -> None:
         """Stop publishing, once the last message, which may be a stop, has been heard."""
@@ -179,7 +179,7 @@ def full(name: str) -> str:
     return f"/{name.removeprefix('/')}"
 
 
-def _fitting(publishers: list[Any]) -> QoSProfile:
+def _compatible_qos(publishers: list[Any]) -> QoSProfile:
     """Return a quality of service that hears all publishers, and keeps messages for late
     listeners if all of them do.
     """

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from contextlib import closing
 
 from btlang.arguments import robot_on
-from btlang.components.device_robot import simulated_devices
+from btlang.components.device_robot import simulate_devices
 from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import DeviceError
 from btlang.robots.bodies.body import Body
@@ -20,7 +20,7 @@ from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.robots.worlds.world import World
 from btlang.robots.worlds.world_file import read_world
 from btlang.ros.available import require_ros
-from btlang.ros.command import EndingSignals, add_namespace, ending_signals
+from btlang.ros.command import EndingSignals, add_namespace, keep_ending_signals
 from btlang.ros.devices.driver import PACKAGES
 from btlang.run.controls import Controls
 from btlang.text.output import show
@@ -50,12 +50,12 @@ def serve(options: argparse.Namespace) -> int:
     body = runs_on(options.robot, "devices")[0]
     world = read_world(options.world, body)
     try:
-        body = body.replace(devices=simulated_devices(body, options.simulate))
+        body = body.replace(devices=simulate_devices(body, options.simulate))
     except DeviceError as problem:
         raise unusable_robot(problem) from None
     if not body.devices:
         options.refuse("the robot file has no [[device]]; --simulate shows simulated ones")
-    with ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
+    with keep_ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
         return _show_devices(options, body, world, came)
 
 

@@ -80,12 +80,12 @@ class TopicClient:
         self._sent: Command | None = None
         self._publisher: Any = None
         if device.topic:
-            node.create_subscription(self._translation.reads, device.topic, self.arrived, qos_profile_sensor_data)
+            node.create_subscription(self._translation.reads, device.topic, self.on_message, qos_profile_sensor_data)
         if device.command:
             qos = 10 if self._kind.reading is not None else LATCHED  # who listens later gets what a light shows
             self._publisher = node.create_publisher(self._translation.takes, device.command, qos)
 
-    def arrived(self, message: Any) -> None:
+    def on_message(self, message: Any) -> None:
         """Take a message."""
         self._messages.append((message, time.monotonic()))
 
@@ -220,7 +220,7 @@ class DeviceTopics:
     def __init__(self, node: Node, devices: Mapping[str, Device], readers: Mapping[str, Reads], body: Body) -> None:
         make = partial(ShownDevice, node=node)
         self._clock = NodeClock(node)
-        self._shown = [make(device, readers[name], _setting(device, body)) for name, device in devices.items()]
+        self._shown = [make(device, readers[name], _make_setting(device, body)) for name, device in devices.items()]
 
     def publish(self) -> None:
         """Publish all new readings."""
@@ -228,7 +228,7 @@ class DeviceTopics:
             device.publish(self._clock.message)
 
 
-def _setting(device: Device, body: Body) -> Setting:
+def _make_setting(device: Device, body: Body) -> Setting:
     joint, scanner = body.joint(device.name), body.sensor("scanner")
     reach = float(device.options.get("range", 0.0)) if device.kind == "range" else body.range
     return Setting(

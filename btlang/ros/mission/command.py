@@ -11,7 +11,7 @@ from typing import Any
 
 from btlang.arguments import node_name
 from btlang.ros.available import require_interfaces, require_ros
-from btlang.ros.command import EndingSignals, add_body_options, add_namespace, ending_signals, platform_of
+from btlang.ros.command import EndingSignals, add_body_options, add_namespace, keep_ending_signals, platform_of
 from btlang.task.options import add_companion_options, add_layer_options
 from btlang.text.output import show
 
@@ -47,7 +47,7 @@ def serve(options: argparse.Namespace) -> int:
     """
     if platform_of(options) == "simulated" and options.sim_time:
         options.refuse("--sim-time is for --robot ros and --robot actions")
-    with ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
+    with keep_ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
         return _serve(options, came)
 
 

@@ -163,7 +163,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             self._topics.complain(str(error))
             return _FAILURE
         self._end_tasks(WAITING, "its node ended before it did")
-        self._follower = Follower(self._layer.store, self._changed, self._topics.complain)
+        self._follower = Follower(self._layer.store, self._on_change, self._topics.complain)
         self._topics.tasks(self.answer(messages.List(limit=_MOST)))
         return _SUCCESS
 
@@ -282,11 +282,11 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
 
         def changed(news: RunListener) -> None:
             self._running, self._seconds[task.id] = news.running, news.time
-            tree.changed(news)
+            tree.publish_changes(news)
             self._server.news(task.id, news)
 
         def reached(news: RunListener) -> None:
-            tree.reached(news, is_last=news.is_last)
+            tree.publish_snapshot(news, is_last=news.is_last)
             self._topics.status(news)
 
         return [
@@ -294,7 +294,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             MissionProgress(run.snapshot, changed, reached),
         ]
 
-    def _changed(self, changes: Sequence[Change]) -> None:
+    def _on_change(self, changes: Sequence[Change]) -> None:
         """Publish a change of tasks, in the thread of the follower."""
         layer = self._layer
         if layer is None:

@@ -16,7 +16,7 @@ from std_srvs.srv import Trigger
 
 from btlang.ros.goals import GONE, GoalServer, HeldGoal
 from btlang.ros.lease import Leases
-from btlang.ros.mission.topics import MissionReport, filled
+from btlang.ros.mission.topics import MissionReport, fill_progress
 from btlang.task import messages
 from btlang.task.messages import Answer, Command
 from btlang.text.json_text import load_json
@@ -57,7 +57,7 @@ class MissionServer:
         """Send the progress of a task to its client."""
         goal = self._goals.get(task)
         if goal is not None:
-            goal.publish_feedback(filled(RunMission.Feedback(task=task, state="underway"), news))
+            goal.publish_feedback(fill_progress(RunMission.Feedback(task=task, state="underway"), news))
 
     def changed(self, data: dict[str, Any], report: MissionReport | None) -> None:
         """Take a change of a task's state: `data` as in answers, and the report if the task is over."""
@@ -123,31 +123,31 @@ _OF_A_TASK = (
 def create_services(node: Node, handle: Handle) -> None:
     """Create `~/pause`, `~/cancel` and so on, and `~/command` for all commands as JSON; `handle` does them."""
     for kind in _PLAIN:
-        node.create_service(Trigger, f"~/{kind.tag}", partial(_plain, kind, handle))
+        node.create_service(Trigger, f"~/{kind.tag}", partial(_answer_plain, kind, handle))
     for each in _OF_A_TASK:
         node.create_service(TaskCommand, f"~/{each.tag}", partial(_of_a_task, each, handle))
     node.create_service(CommandService, "~/command", partial(_any, handle))
 
 
-def _plain(kind: type[Command], handle: Handle, request: Any, response: Any) -> Any:
+def _answer_plain(kind: type[Command], handle: Handle, request: Any, response: Any) -> Any:
     answer = handle(kind())
     response.success, response.message = answer.ok, answer.text
     return response
 
 
 def _of_a_task(kind: type[Command], handle: Handle, request: Any, response: Any) -> Any:
-    return _filled(response, handle(kind(**{field: getattr(request, field) for field in kind.fields})))
+    return _fill_response(response, handle(kind(**{field: getattr(request, field) for field in kind.fields})))
 
 
 def _any(handle: Handle, request: Any, response: Any) -> Any:
     try:
         data = load_json(request.command)
     except ValueError:
-        return _filled(response, Answer(False, "That isn't JSON.", {}, "BT198"))
-    return _filled(response, handle(data))
+        return _fill_response(response, Answer(False, "That isn't JSON.", {}, "BT198"))
+    return _fill_response(response, handle(data))
 
 
-def _filled(response: Any, answer: Answer) -> Any:
+def _fill_response(response: Any, answer: Answer) -> Any:
     response.ok, response.text, response.code = answer.ok, answer.text, answer.code
     response.data = json.dumps(dict(answer.data), ensure_ascii=False, default=str)
     return response

@@ -155,7 +155,7 @@ class Topics:
 
     def status(self, news: RunListener) -> None:
         """Publish the nodes that have been reached."""
-        self._status.publish(filled(TreeStatus(), news))
+        self._status.publish(fill_progress(TreeStatus(), news))
 
     def tasks(self, listed: Answer) -> None:
         """Publish the tasks that aren't over, as the command `list` answers them."""
@@ -182,7 +182,7 @@ class Topics:
         self._diagnostics.publish(array)
 
 
-def filled(message: Any, news: RunListener) -> Any:
+def fill_progress(message: Any, news: RunListener) -> Any:
     """Fill a TreeStatus or the feedback of RunMission with the progress of a run."""
     message.time, message.running = news.time, news.running
     message.paths, message.statuses = list(news.statuses), [int(status) for status in news.statuses.values()]
@@ -212,20 +212,25 @@ class TreeTopic:
         self._published_at = time.monotonic()
         self._snapshot(json.dumps({**self._head, "sequence": 0, "time": 0.0, "statuses": {}}))
 
-    def changed(self, news: RunListener) -> None:
+    def publish_changes(self, news: RunListener) -> None:
         """Publish the nodes with a new status."""
         self._sequence += 1
-        changes = {"run": self._head["run"], "sequence": self._sequence, "time": news.time, "changes": _named(news)}
+        changes = {
+            "run": self._head["run"],
+            "sequence": self._sequence,
+            "time": news.time,
+            "changes": _status_names(news),
+        }
         self._changes(json.dumps(changes))
 
-    def reached(self, news: RunListener, *, is_last: bool = False) -> None:
+    def publish_snapshot(self, news: RunListener, *, is_last: bool = False) -> None:
         """Publish all nodes that were reached."""
         now = time.monotonic()
         if is_last or now >= self._published_at + _TREE_PAUSE:
             self._published_at = now
-            state = {"sequence": self._sequence, "time": news.time, "statuses": _named(news)}
+            state = {"sequence": self._sequence, "time": news.time, "statuses": _status_names(news)}
             self._snapshot(json.dumps({**self._head, **state}))
 
 
-def _named(news: RunListener) -> dict[str, str]:
+def _status_names(news: RunListener) -> dict[str, str]:
     return {path: NAMES[status] for path, status in news.statuses.items()}

@@ -70,8 +70,8 @@ class RosBase:
         self._early: Any = None  # a localization that is newer than the odometry
         self._publisher: Any = None
         self._type = TWIST
-        subscriptions.listen(ODOMETRY, Odometry, "odometry", also=self._moved)
-        subscriptions.listen(LOCATED, PoseWithCovarianceStamped, "pose", qos="state", also=self._located)
+        subscriptions.listen(ODOMETRY, Odometry, "odometry", also=self._on_odometry)
+        subscriptions.listen(LOCATED, PoseWithCovarianceStamped, "pose", qos="state", also=self._on_pose)
 
     def adapt(self) -> str:
         """Choose the type of velocity messages that listeners take, and return its name."""
@@ -92,7 +92,7 @@ class RosBase:
         of a stop comes after all that was let through before it.
         """
         with self._lock:
-            wanted = self.clipped(linear, angular)
+            wanted = self.clip(linear, angular)
             if self._latch.refuses and wanted != (0.0, 0.0):
                 return
             if wanted == (0.0, 0.0):
@@ -125,7 +125,7 @@ class RosBase:
                     self._publish()
             self._published = False
 
-    def clipped(self, linear: float, angular: float) -> tuple[float, float]:
+    def clip(self, linear: float, angular: float) -> tuple[float, float]:
         """Return a velocity within the limits of the base."""
         return _at_most(linear, self._fastest[0]), _at_most(angular, self._fastest[1])
 
@@ -147,17 +147,17 @@ class RosBase:
     @property
     def velocity(self) -> tuple[float, float]:
         """The measured metres and degrees a second. Raises RobotError if the odometry is silent."""
-        return self._measured(_SILENT)
+        return self._measure(_SILENT)
 
     @property
     def motion(self) -> tuple[float, float] | None:
         """The metres and degrees a second measured a moment ago; None if there is no measurement."""
         try:
-            return self._measured(_JUST)
+            return self._measure(_JUST)
         except RobotError:
             return None
 
-    def _measured(self, age: float) -> tuple[float, float]:
+    def _measure(self, age: float) -> tuple[float, float]:
         twist = self._subscriptions.get(ODOMETRY, age).twist.twist
         linear, angular = float(twist.linear.x), degrees(twist.angular.z)
         return (linear if abs(linear) > _REST else 0.0), (angular if abs(angular) > _TURN_REST else 0.0)
@@ -166,7 +166,7 @@ class RosBase:
     def pose(self) -> Pose:
         """The pose on the map. Raises RobotError if the odometry is silent."""
         now = pose_of(self._subscriptions.get(ODOMETRY, _SILENT).pose.pose)
-        return now if self._fix is None else _carried(*self._fix, now)
+        return now if self._fix is None else _move_with_odometry(*self._fix, now)
 
     def reading(self) -> OdometryReading | None:
         """Return the latest odometry, for the guard; None if none has come."""
@@ -239,13 +239,13 @@ class RosBase:
         """Return the metres that the rim of the robot moves for metres and degrees."""
         return abs(way) + self._radius * radians(abs(angle))
 
-    def _moved(self, message: Any) -> None:
+    def _on_odometry(self, message: Any) -> None:
         self._track.append((seconds_of(message.header.stamp), pose_of(message.pose.pose)))
         if self._early is not None:
             early, self._early = self._early, None
             self._match(early)
 
-    def _located(self, message: Any) -> None:
+    def _on_pose(self, message: Any) -> None:
         """Match a pose with the odometry of its time, which may come a moment later."""
         if self._track and seconds_of(message.header.stamp) <= self._track[-1][0]:
             self._match(message)
@@ -263,7 +263,7 @@ def _at_most(speed: float, most: float) -> float:
     return max(-most, min(most, speed)) + 0.0 if isfinite(speed) else speed
 
 
-def _carried(located: Pose, before: Pose, now: Pose) -> Pose:
+def _move_with_odometry(located: Pose, before: Pose, now: Pose) -> Pose:
     """Return a pose on the map, moved on as the odometry did."""
     turn = wrap(located.heading - before.heading)
     c, s = cos(radians(turn)), sin(radians(turn))

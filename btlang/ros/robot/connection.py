@@ -11,7 +11,7 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.bodies.body import Body
-from btlang.robots.preflight import check_mission, lacking
+from btlang.robots.preflight import check_mission, find_missing_parts
 from btlang.robots.worlds.world import World
 from btlang.ros.available import OWN, require_interfaces, require_ros
 from btlang.ros.clocks import RosPace, wait_until
@@ -20,7 +20,7 @@ from btlang.ros.node import SpunNode
 from btlang.ros.robot.interface import ALTERNATIVES, CLOCK, ONE_SOURCE, VELOCITY, Interface, interfaces, needs
 from btlang.ros.robot.joints import STATES
 from btlang.ros.robot.robot import RosRobot
-from btlang.ros.serving.names import served
+from btlang.ros.serving.names import use_server
 from btlang.ros.subscriptions import NodeClock
 from btlang.ros.words.binding import bind_ros
 from btlang.ros.words.clients import RosClients
@@ -87,7 +87,7 @@ class RosConnection:
         Raises MissionError (BT104 to BT106).
         """
         if self._servers:
-            entry = served(entry, vocabulary, self._servers)
+            entry = use_server(entry, vocabulary, self._servers)
         return bind_ros(entry, vocabulary, self._clients, self.robot.located)
 
     def survey(self, tree: Tree, vocabulary: Lexicon) -> dict[Interface, tuple[Node | None, str]]:
@@ -99,7 +99,7 @@ class RosConnection:
         installed (BT100), or btlang's interfaces aren't compiled (BT110).
         """
         wanted: dict[Interface, Node | None] = {CLOCK: None} if self._sim_time else {}
-        declared, own = self._bound(tree, vocabulary)
+        declared, own = self._bind_leaves(tree, vocabulary)
         wanted.update(needs(tree, vocabulary, self.robot.body, but=declared))
         if any(interface.kind == "action" for interface in wanted):
             require_ros("nav2_msgs")
@@ -111,21 +111,21 @@ class RosConnection:
 
         def has_all() -> bool:
             found.clear()
-            for spoken, node in self._spoken(wanted).items():
-                offered, reason = self._offered(spoken)
+            for spoken, node in self._with_velocity_type(wanted).items():
+                offered, reason = self._find_offer(spoken)
                 found[offered] = node, reason
             lacking = {Interface(need.kind, need.name, need.type): need.missing for need in self._clients.needs()}
             found.update((interface, (node, lacking[interface])) for interface, node in own.items())
             if any(reason for _, reason in found.values()):
                 return False
-            return not self.robot.awaited(joints) or time.monotonic() >= states_until
+            return not self.robot.find_unreported(joints) or time.monotonic() >= states_until
 
         wait_until(has_all, max(self._discovers_until - time.monotonic(), _AGAIN))
-        return {self._named(interface): lack for interface, lack in found.items()}
+        return {self._resolve(interface): lack for interface, lack in found.items()}
 
     def lacking_parts(self, tree: Tree, vocabulary: Lexicon) -> dict[str, Node]:
         """Return the parts that a tree needs and the body lacks, each with the first leaf that needs it."""
-        return lacking(self.robot.body, tree, vocabulary, but=self._bound(tree, vocabulary)[0])
+        return find_missing_parts(self.robot.body, tree, vocabulary, but=self._bind_leaves(tree, vocabulary)[0])
 
     def warnings(self, needs: Iterable[Interface]) -> list[str]:
         """Return what may do harm: others that command the robot to move, and two publishers of the same state.
@@ -170,15 +170,15 @@ class RosConnection:
         if node is None or self.robot.body.sensor("scanner") is None:
             return []
         [scan] = interfaces("scanner", self.robot.body)
-        reason = self._lacks(scan) if self._named(scan) not in found else ""
+        reason = self._lacks(scan) if self._resolve(scan) not in found else ""
         return [diagnostic("BT107", _place(node), words=_words(node), reason=reason)] if reason else []
 
-    def _spoken(self, wanted: Mapping[Interface, Node | None]) -> dict[Interface, Node | None]:
+    def _with_velocity_type(self, wanted: Mapping[Interface, Node | None]) -> dict[Interface, Node | None]:
         """Return the interfaces with the type of velocity that the robot listens to."""
         types = {VELOCITY: self.robot.velocity_type()}
         return {i.replace(type=types.get(i.name, i.type)): node for i, node in wanted.items()}
 
-    def _offered(self, wanted: Interface) -> tuple[Interface, str]:
+    def _find_offer(self, wanted: Interface) -> tuple[Interface, str]:
         """Return what the robot offers for an interface, and what is wrong with that, "" for nothing."""
         choices = ALTERNATIVES.get(wanted.name, ())
         if any(each.kind == "action" for each in choices) and not self.robot.power.prepare_docking():
@@ -190,7 +190,7 @@ class RosConnection:
 
     def _lacks(self, wanted: Interface) -> str:
         """Return what is wrong with an interface that shipped leaves need, "" for nothing."""
-        node, name = self._spun.node, self._named(wanted).name
+        node, name = self._spun.node, self._resolve(wanted).name
         reason = self._absent(wanted)
         if not reason and wanted.kind in ("publisher", "listener"):
             reason = mismatch(node, wanted.kind, name)
@@ -199,13 +199,13 @@ class RosConnection:
         return reason if reason or is_connected(node, name) else f"{name} is not connected yet"
 
     def _absent(self, wanted: Interface) -> str:
-        return absent(self.node, wanted.kind, self._named(wanted).name, wanted.type)
+        return absent(self.node, wanted.kind, self._resolve(wanted).name, wanted.type)
 
-    def _named(self, interface: Interface) -> Interface:
+    def _resolve(self, interface: Interface) -> Interface:
         named: Interface = interface.replace(name=full_name(self._spun.node, interface.kind, interface.name))
         return named
 
-    def _bound(self, tree: Tree, vocabulary: Lexicon) -> tuple[set[str], dict[Interface, Node]]:
+    def _bind_leaves(self, tree: Tree, vocabulary: Lexicon) -> tuple[set[str], dict[Interface, Node]]:
         """Return the ids of leaves with `ros` tables, and what these need, each with the first such leaf."""
         self._clients.begin()
         ids: set[str] = set()
@@ -221,7 +221,7 @@ class RosConnection:
 
     def check(self, tree: Tree, vocabulary: Lexicon) -> None:
         """Raise MissionError as `check_mission` does, and for all interfaces that the robot lacks (BT101)."""
-        check_mission(self.robot.world, self.robot.body, tree, vocabulary, but=self._bound(tree, vocabulary)[0])
+        check_mission(self.robot.world, self.robot.body, tree, vocabulary, but=self._bind_leaves(tree, vocabulary)[0])
         lacking = [(i, node, reason) for i, (node, reason) in self.survey(tree, vocabulary).items() if reason]
         if lacking:
             raise MissionError([_lack(*lack) for lack in lacking])

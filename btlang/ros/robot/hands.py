@@ -54,11 +54,11 @@ class RosHands:
         if name is not None:
             self._places.check_movable(name)
         wanted = None if name is None else self._places.known(name)
-        return self._services.call(_close(hand), partial(self._grasped, hand, wanted), data=True)
+        return self._services.call(_close(hand), partial(self._on_grasp, hand, wanted), data=True)
 
     def release(self, hand: Hand) -> ServiceCall:
         """Open a hand. Raises RobotError."""
-        self._opening[hand] = self._services.call(_close(hand), partial(self._released, hand), data=False)
+        self._opening[hand] = self._services.call(_close(hand), partial(self._on_release, hand), data=False)
         return self._opening[hand]
 
     def hand_over(self, hand: Hand, person: str) -> ServiceCall:
@@ -92,19 +92,19 @@ class RosHands:
                 if before and not message.data and not opens:
                     self._emit("drop", hand=hand, name=before)
 
-    def awaited(self) -> list[str]:
+    def find_unreported(self) -> list[str]:
         """Return the topics that somebody publishes and that have reported nothing yet."""
         topics = map(_held, self._hands)
         return [each for each in topics if not self._subscriptions.has(each) and self._node.count_publishers(each)]
 
-    def _grasped(self, hand: Hand, wanted: str | None, found: str) -> None:
+    def _on_grasp(self, hand: Hand, wanted: str | None, found: str) -> None:
         if wanted is not None and found.lower() != wanted.lower():
             self._services.fire(_close(hand), data=False)
             raise RobotError(f"the {hand} hand closed on {said(found)} instead of {said(wanted)}")
         self._holds(hand, found)
         self._emit("grasp", hand=hand, name=found)
 
-    def _released(self, hand: Hand, name: str) -> None:
+    def _on_release(self, hand: Hand, name: str) -> None:
         self._holds(hand, "")
         self._emit("release", hand=hand, name=name or None)
 

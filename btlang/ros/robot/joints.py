@@ -12,7 +12,7 @@ from trajectory_msgs.msg import JointTrajectory
 
 from btlang.robots.bodies.body import Body
 from btlang.robots.motion.guard.tracking import JointProgress
-from btlang.robots.robot import RobotError, clipped, joint_of
+from btlang.robots.robot import RobotError, clip_targets, joint_of
 from btlang.ros.clocks import AWAKE
 from btlang.ros.messages import trajectory
 from btlang.ros.subscriptions import SubscriptionCache
@@ -31,16 +31,16 @@ class JointStates:
         self._subscriptions, self._body = subscriptions, body
         subscriptions.listen(STATES, JointState, "joint states")
 
-    def awaited(self) -> list[str]:
+    def find_unreported(self) -> list[str]:
         """Return the joints of the body that haven't been reported yet, although others have."""
         states = self._subscriptions.latest_joints(STATES)
         return states.missing(on_wire(joint.name) for joint in self._body.joints) if states.has_come else []
 
     def angle(self, name: str) -> float:
         """Return the angle of a joint. Raises RobotError for an unknown joint, or if the joint states are silent."""
-        return self.stamped(name)[0]
+        return self.find_stamped(name)[0]
 
-    def stamped(self, name: str) -> tuple[float, float]:
+    def find_stamped(self, name: str) -> tuple[float, float]:
         """Return the angle of a joint with the time stamp of its message. Raises as `angle`."""
         joint = joint_of(self._body, name)
         self._subscriptions.get(STATES, _SILENT)
@@ -58,7 +58,7 @@ class JointsOverRos(Protocol):
 
     @property
     def moving(self) -> bool: ...
-    def awaited(self) -> list[str]: ...
+    def find_unreported(self) -> list[str]: ...
     def angle(self, name: str) -> float: ...
     def move(self, targets: Mapping[str, float]) -> None: ...
     def at_target(self, names: tuple[str, ...]) -> bool: ...
@@ -76,8 +76,8 @@ class RosJoints:
         self._progress = JointProgress(body, AWAKE.now)
         self._publisher = node.create_publisher(JointTrajectory, TRAJECTORY, 10)
 
-    def awaited(self) -> list[str]:
-        return self._states.awaited()
+    def find_unreported(self) -> list[str]:
+        return self._states.find_unreported()
 
     @property
     def moving(self) -> bool:
@@ -92,7 +92,7 @@ class RosJoints:
 
     def move(self, targets: Mapping[str, float]) -> None:
         """Set off towards the targets, clipped to the limits. Raises RobotError as `angle` does."""
-        goals = clipped(self._body, targets)
+        goals = clip_targets(self._body, targets)
         times = (abs(goal - self.angle(name)) / joint_of(self._body, name).speed for name, goal in goals.items())
         self._publish(goals, max(times, default=0.0))
         self._targets.update(goals)

@@ -23,7 +23,7 @@ from btlang.robots.robot import RobotError
 from btlang.robots.worlds.sight import Sight
 from btlang.robots.worlds.world import said
 from btlang.ros.clocks import AWAKE
-from btlang.ros.goals import unanswered
+from btlang.ros.goals import goal_handle
 from btlang.ros.lease import Lease
 from btlang.ros.messages import pose_of, stamped_pose
 from btlang.ros.node import ExecutorThread
@@ -186,7 +186,7 @@ class ServerGoal:
     # In the thread that spins
     def _send(self) -> None:
         sent = self._client.send_goal_async(self._goal, feedback_callback=self._hear, goal_uuid=self._goal_id)
-        sent.add_done_callback(self._answered)
+        sent.add_done_callback(self._on_answer)
 
     def _hear(self, message: Any) -> None:
         self.heard, self._since = True, AWAKE.now()
@@ -194,7 +194,7 @@ class ServerGoal:
         if current is not None and not pose_fault(current.pose):
             self._reported = pose_of(current.pose)
 
-    def _answered(self, answer: Any) -> None:
+    def _on_answer(self, answer: Any) -> None:
         handle = answer.result()
         if not handle.accepted:
             self.end(f"the {self._task.sort} server refused to {self._task.verb}", withdraw=False)
@@ -215,10 +215,10 @@ class ServerGoal:
         if not self._withdrawing:  # the second answer would call it terminated
             self._withdrawing = True
             was_accepted = self._handle is not None
-            handle = self._handle or unanswered(self._client, self._goal_id)
-            handle.cancel_goal_async().add_done_callback(lambda answer: self._cancelled(answer.result(), was_accepted))
+            handle = self._handle or goal_handle(self._client, self._goal_id)
+            handle.cancel_goal_async().add_done_callback(lambda answer: self._on_cancel(answer.result(), was_accepted))
 
-    def _cancelled(self, response: CancelGoal.Response, was_accepted: bool) -> None:
+    def _on_cancel(self, response: CancelGoal.Response, was_accepted: bool) -> None:
         code = response.return_code
         if code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID and not was_accepted:
             self._withdrawing = False
@@ -226,7 +226,7 @@ class ServerGoal:
                 self._withdraw()
             return
         if self._handle is None:
-            self._follow(unanswered(self._client, self._goal_id))
+            self._follow(goal_handle(self._client, self._goal_id))
         if self._result.done() or code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
             self._over()
         elif response.goals_canceling or code == CancelGoal.Response.ERROR_GOAL_TERMINATED:  # its result comes, or not

@@ -180,7 +180,7 @@ class RosDoors:
     def move_door(self, name: str, is_open: bool) -> ServiceCall:
         """Open or close a door."""
         door = self._places.door(name).name
-        return self._services.call(self._doors[door], partial(self._moved, door, is_open), data=is_open)
+        return self._services.call(self._doors[door], partial(self._on_move, door, is_open), data=is_open)
 
     def is_open(self, name: str) -> bool:
         """Return whether a door is open."""
@@ -190,7 +190,7 @@ class RosDoors:
         """Switch an object on or off; None toggles it."""
         known = self._switchable(name)
         wanted = not self._state(self._switches[known]) if on is None else on
-        return self._services.call(self._switches[known], partial(self._switched, known, wanted), data=wanted)
+        return self._services.call(self._switches[known], partial(self._on_switch, known, wanted), data=wanted)
 
     def is_on(self, name: str) -> bool:
         """Return whether an object is switched on."""
@@ -202,7 +202,7 @@ class RosDoors:
             for message in self._subscriptions.events(state_topic(service)):
                 self._note(name, service, bool(message.data))
 
-    def awaited(self) -> list[str]:
+    def find_unreported(self) -> list[str]:
         """Return the topics that somebody publishes and that have reported nothing yet."""
         topics = map(state_topic, (*self._doors.values(), *self._switches.values()))
         return [each for each in topics if not self._subscriptions.has(each) and self._node.count_publishers(each)]
@@ -223,11 +223,11 @@ class RosDoors:
         if name in self._doors:
             self._places.swing(name, state)
 
-    def _moved(self, door: str, is_open: bool, message: str) -> None:
+    def _on_move(self, door: str, is_open: bool, message: str) -> None:
         self._note(door, self._doors[door], is_open)  # before the topic reports it
         self._emit("door", name=door, open=is_open)
 
-    def _switched(self, name: str, on: bool, message: str) -> None:
+    def _on_switch(self, name: str, on: bool, message: str) -> None:
         self._note(name, self._switches[name], on)
         self._emit("switch", name=name, on=on)
 

@@ -157,14 +157,14 @@ class RosPower:
     def dock(self, pose: Pose | None) -> Operation:
         """Connect to the charger. A docking server drives there, at a pose of the map if that is known."""
         if self.docking is None or not self.docks_by_itself:
-            return self._services.call(DOCK, lambda _: self._connected(True))
+            return self._services.call(DOCK, lambda _: self._set_docked(True))
         self._docks = True
         return self.docking.dock(pose)
 
     def undock(self) -> Operation:
         """Disconnect. A docking server drives out of the dock."""
         if self.docking is None or not self.docks_by_itself:
-            return self._services.call(UNDOCK, lambda _: self._connected(False))
+            return self._services.call(UNDOCK, lambda _: self._set_docked(False))
         self._docks = False
         return self.docking.undock()
 
@@ -175,7 +175,7 @@ class RosPower:
         self._hear_battery()
         ended = self.docking.step() if self.docking is not None else None
         if ended is not None and ended.failure is None:
-            self._connected(self._docks)
+            self._set_docked(self._docks)
 
     def _charge_fault(self, state: BatteryState) -> str:
         if not 0.0 <= state.percentage <= 1.0:
@@ -189,6 +189,6 @@ class RosPower:
                 status = self._subscriptions.get(STATUS, _SILENT).power_supply_status
                 self._docked = _AT_CHARGER.get(status, self._docked)
 
-    def _connected(self, docked: bool) -> None:
+    def _set_docked(self, docked: bool) -> None:
         self._docked, self._since = docked, AWAKE.now()  # before the topic reports it
         self._emit("dock" if docked else "undock")

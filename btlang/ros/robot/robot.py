@@ -280,7 +280,7 @@ class RosRobot(AssembledRobot):
         for servers in self._servers:
             servers.stop("another command took over the drive")
         try:
-            verdict = self._judge(*self._base.clipped(linear, angular))
+            verdict = self._judge(*self._base.clip(linear, angular))
         except RobotError:
             self._base.halt()
             raise
@@ -472,13 +472,18 @@ class RosRobot(AssembledRobot):
         """Return whether an object is switched on. Raises RobotError if nothing reports it."""
         return self._doors.is_on(name)
 
-    def awaited(self, joints: bool = False) -> list[str]:
+    def find_unreported(self, joints: bool = False) -> list[str]:
         """Return the topics of states that somebody publishes, but that have reported nothing yet.
 
         With `joints` also the joints that are missing, if some have been reported.
         """
-        missing = self._joints.awaited() if joints else []
-        return [*self._doors.awaited(), *self._perception.awaited(), *self._hands.awaited(), *missing]
+        missing = self._joints.find_unreported() if joints else []
+        return [
+            *self._doors.find_unreported(),
+            *self._perception.find_unreported(),
+            *self._hands.find_unreported(),
+            *missing,
+        ]
 
     # Power
 

@@ -151,7 +151,7 @@ class RosPerception:
         self._check()
         return self._places.sight.seen(kind, pose)
 
-    def awaited(self) -> list[str]:
+    def find_unreported(self) -> list[str]:
         """Return the topic, if somebody publishes it and it has reported nothing yet."""
         comes = not self._listens or self._subscriptions.has(SIGHTINGS) or not self._node.count_publishers(SIGHTINGS)
         return [] if comes else [SIGHTINGS]

@@ -42,7 +42,7 @@ class ServiceCall:
             if not self.done:
                 self.failure, self.done = failure, True
 
-    def answered(self, answer: Any) -> None:
+    def on_answer(self, answer: Any) -> None:
         """Store the answer, in the thread that spins."""
         self._answer = answer
 
@@ -88,7 +88,7 @@ class Services:
         if not self._clients[name].service_is_ready():
             raise RobotError(NotThere(f"there is no service {shown}"))
         call = ServiceCall(shown, accomplished)
-        self._send(name, fields, call.answered)
+        self._send(name, fields, call.on_answer)
         self._calls.append(call)
         return call
 

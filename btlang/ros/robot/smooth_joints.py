@@ -14,10 +14,10 @@ from trajectory_msgs.msg import JointTrajectory
 from btlang.record import Record
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import Gesture, joints_of
-from btlang.robots.motion.course import PERIOD, CourseSegment, JointLimits, MotionState, between, braking, samples
+from btlang.robots.motion.course import PERIOD, CourseSegment, JointLimits, MotionState, between, plan_brake, samples
 from btlang.robots.motion.guard.tracking import shown_distance
 from btlang.robots.motion.kinematics import Array
-from btlang.robots.motion.movements import staying
+from btlang.robots.motion.movements import stay_at
 from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.motion.timeline import PlannedMotion
 from btlang.robots.robot import RobotError, joint_of
@@ -106,8 +106,8 @@ class RosSmoothJoints:
         self._publisher = node.create_publisher(JointTrajectory, TRAJECTORY, 10)
         node.create_timer(_RENEWED, self._renew, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
-    def awaited(self) -> list[str]:
-        return self._states.awaited()
+    def find_unreported(self) -> list[str]:
+        return self._states.find_unreported()
 
     @property
     def moving(self) -> bool:
@@ -152,7 +152,7 @@ class RosSmoothJoints:
         if self._have_arrived([joint for joint in joints if joint in self._commanded]):
             return True
         for joint in joints:
-            left = abs(self._measured(joint) - sent.way.position[-1][joint])
+            left = abs(self._measure(joint) - sent.way.position[-1][joint])
             if self._now() > sent.ends + self._body.patience and left > self._body.joints[joint].close_enough:
                 far = shown_distance(self._body.joints[joint], left)
                 raise RobotError(f"the {self._names[joint]} doesn't move: it is {far} from where it should be")
@@ -228,9 +228,9 @@ class RosSmoothJoints:
 
     def _here(self) -> Array:
         """Return the positions of all joints; the planned one of a joint that is silent."""
-        return np.array([self._measured(index) for index in range(len(self._names))])
+        return np.array([self._measure(index) for index in range(len(self._names))])
 
-    def _measured(self, index: int) -> float:
+    def _measure(self, index: int) -> float:
         try:
             return self.angle(self._names[index])
         except RobotError:
@@ -263,20 +263,20 @@ class RosSmoothJoints:
             self._stay(str(problem))
 
     def _off_plan(self, joint: int, sent: Sent, now: float) -> float:
-        angle, said = self._states.stamped(self._names[joint])
+        angle, said = self._states.find_stamped(self._names[joint])
         return angle - float(sent.at(said if 0.0 <= now - said < _STAMPED else now).position[joint])
 
     def _stay(self, reason: str) -> None:
         timeline = self._smooth.timeline
         timeline.halt(reason)
-        timeline.follow(range(len(self._names)), staying(self._here()), timeline.seconds, timeline.seconds)
+        timeline.follow(range(len(self._names)), stay_at(self._here()), timeline.seconds, timeline.seconds)
 
     def _brake(self) -> None:
         """Send how all joints come to rest from the motion that was sent last. For any thread."""
         sent, begins = self._sent, self._now() + _WIRE
         if sent is None or begins >= sent.ends:
             return
-        piece = braking(sent.at(begins), self._limits)
+        piece = plan_brake(sent.at(begins), self._limits)
         self._braked = begins, piece
         self._publish(begins, samples([piece]))
 

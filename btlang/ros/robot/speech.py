@@ -53,7 +53,7 @@ class RosSpeech:
         self._node, self._clock = node, node.get_clock()
         self._stepped = self._set_in = self._now()  # of the node's clock: the latest step, and when speech began
         self._timer: Any = None
-        subscriptions.listen(SPEAKING, Bool, "speech status", qos="state", also=self._arrived)
+        subscriptions.listen(SPEAKING, Bool, "speech status", qos="state", also=self._on_message)
 
     def utterance(self, text: str) -> Utterance:
         """Return the sound and the times of a text. Raises RobotError if the engine can't speak it."""
@@ -106,7 +106,7 @@ class RosSpeech:
     def _now(self) -> float:
         return float(self._clock.now().nanoseconds) * 1e-9
 
-    def _arrived(self, message: Bool) -> None:
+    def _on_message(self, message: Bool) -> None:
         if message.data:
             self._set_in = self._now()
 

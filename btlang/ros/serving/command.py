@@ -12,11 +12,11 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.instance import EngineError
 from btlang.mission_vocabulary import world_vocabulary
-from btlang.robots.preflight import lacking
+from btlang.robots.preflight import find_missing_parts
 from btlang.robots.registry import connector
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.command import add_body_options, add_namespace, platform_of
-from btlang.ros.serving.names import FOLDER, chosen, servable
+from btlang.ros.serving.names import FOLDER, choose_actions, find_servable
 from btlang.run.limits import RATES
 from btlang.session import Session
 from btlang.text.output import show
@@ -67,7 +67,7 @@ def serve(options: argparse.Namespace) -> int:
         options.refuse("--sim-time is for --robot ros")
     vocabulary = world_vocabulary(options.keywords, options.world, options.language)
     try:
-        ids = chosen(options.only, servable(vocabulary, ros=over == "ros"), vocabulary)
+        ids = choose_actions(options.only, find_servable(vocabulary, ros=over == "ros"), vocabulary)
     except ValueError as problem:
         options.refuse(str(problem))
     require_ros("std_srvs")
@@ -87,7 +87,7 @@ def _check(connection: Connection, ids: Sequence[str], vocabulary: Lexicon) -> N
             user = f", which {node.id} needs" if node is not None else ""
             show(f"btlang serve-actions: no {interface.name}{user}: {reason}", stream=sys.stderr)
     body = connection.robot.body
-    for part, node in lacking(body, everything, vocabulary).items():
+    for part, node in find_missing_parts(body, everything, vocabulary).items():
         show(f"btlang serve-actions: the robot '{body.name}' has no {part}, which {node.id} needs", stream=sys.stderr)
     for node_id in ids:
         try:
@@ -99,7 +99,7 @@ def _check(connection: Connection, ids: Sequence[str], vocabulary: Lexicon) -> N
 
 def _spin(connection: Connection, ids: Sequence[str], vocabulary: Lexicon, options: argparse.Namespace) -> int:
     from btlang.printer.phrase import phrase_of
-    from btlang.ros.command import ending_signals
+    from btlang.ros.command import keep_ending_signals
     from btlang.ros.node import SpunNode
     from btlang.ros.serving.goal_executor import GoalExecutor
     from btlang.ros.serving.server import serve_actions
@@ -120,7 +120,7 @@ def _spin(connection: Connection, ids: Sequence[str], vocabulary: Lexicon, optio
         executor, bus=bus, robot=connection.robot, rate=options.rate,
         speed=1.0 if options.speed == "real" else options.speed, controls=controls, pace=connection.pace,
     )  # fmt: skip
-    with ending_signals() as came, emergency_signal(controls.emergency_stop, controls.disable):
+    with keep_ending_signals() as came, emergency_signal(controls.emergency_stop, controls.disable):
         came.on_arrival = controls.stop
         spun = SpunNode(options.name, namespace=options.namespace, use_sim_time=options.sim_time)
         try:

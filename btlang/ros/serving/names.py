@@ -30,7 +30,7 @@ def action_name(node_id: str) -> str:
     return name if re.fullmatch(r"[a-z][a-z0-9_]*", name) and "__" not in name else ""
 
 
-def served(entry: Entry, vocabulary: Lexicon, servers: str) -> Entry:
+def use_server(entry: Entry, vocabulary: Lexicon, servers: str) -> Entry:
     """Return an entry as one that is served by its name in the folder `servers`; one with a
     `ros` table stays as it is.
     """
@@ -42,7 +42,7 @@ def served(entry: Entry, vocabulary: Lexicon, servers: str) -> Entry:
     return made
 
 
-def servable(vocabulary: Lexicon, *, ros: bool) -> list[str]:
+def find_servable(vocabulary: Lexicon, *, ros: bool) -> list[str]:
     """Return the ids of actions that Python or a ROS 2 interface does, but not another server of actions."""
     found = []
     for node_id, entries in vocabulary.entries.items():
@@ -52,7 +52,7 @@ def servable(vocabulary: Lexicon, *, ros: bool) -> list[str]:
     return found
 
 
-def chosen(only: Sequence[str], ids: Sequence[str], vocabulary: Lexicon) -> list[str]:
+def choose_actions(only: Sequence[str], ids: Sequence[str], vocabulary: Lexicon) -> list[str]:
     """Return the ids that have one of these names, or are listed under such a topic; all if none is given.
 
     Raises ValueError for an unknown name, and for two actions with the same name in ROS.

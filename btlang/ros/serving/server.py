@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _FEW = 8  # names that a reason lists
 
 
-def requested_leaf(
+def make_leaf(
     phrase: str, names: Sequence[str], values: Sequence[str], entries: Sequence[Entry], vocabulary: Lexicon
 ) -> Node:
     """Return the leaf that a goal requests, of an action whose entries have the same id.
@@ -135,7 +135,7 @@ def _beginner(
     def begin(goal: HeldGoal) -> Callable[[str], object]:
         caller, asked = _Caller(goal), goal.request
         try:
-            leaf = requested_leaf(asked.phrase, asked.names, asked.values, entries, vocabulary)
+            leaf = make_leaf(asked.phrase, asked.names, asked.values, entries, vocabulary)
         except ActionFailed as problem:
             caller.end(False, str(problem))
             return lambda reason: None

@@ -13,7 +13,7 @@ from btlang.robots.platforms import add_world
 from btlang.robots.registry import runs_on
 from btlang.robots.worlds.world import World
 from btlang.robots.worlds.world_file import read_world
-from btlang.ros.command import EndingSignals, add_body_options, add_namespace, ending_signals
+from btlang.ros.command import EndingSignals, add_body_options, add_namespace, keep_ending_signals
 from btlang.run.emergency import emergency_signal
 from btlang.run.limits import RATES
 from btlang.text.output import show
@@ -56,7 +56,7 @@ def serve(options: argparse.Namespace) -> int:
     """
     body = runs_on(options.robot, "simulated")[0]
     world = read_world(options.world, body)
-    with ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
+    with keep_ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
         return _simulate(options, body, world, came)
 
 

@@ -36,7 +36,7 @@ _CODES = {
 }
 
 
-def _wanted(request: Any, stations: list[Station]) -> Station:
+def _find_dock(request: Any, stations: list[Station]) -> Station:
     """Return the dock that a request means: by its name, or the nearest to a pose."""
     if request.use_dock_id:
         return next(station for station in stations if station.name == request.dock_id)
@@ -107,7 +107,7 @@ class DockingServer:
             """Run a goal, in the thread of the executor."""
             goal = DockingGoal(self._node, handle, docks)
             self._calls.post(lambda: self._begin(goal))
-            await goal.finished(self._leases)
+            await goal.wait_for_end(self._leases)
             return goal.result()
 
         return execute
@@ -127,7 +127,7 @@ class DockingServer:
 
     def _dock(self, goal: DockingGoal) -> Steps:
         if not self._robot.docked:
-            station = _wanted(goal.handle.request, self._robot.stations)
+            station = _find_dock(goal.handle.request, self._robot.stations)
             yield from enter_dock(self._robot, station, lambda stage: self._publish_feedback(goal, stage))
 
     def _refusal(self, request: Any) -> tuple[str, int] | None:
@@ -141,7 +141,7 @@ class DockingServer:
         pose = pose_of(request.dock_pose.pose)
         if not request.use_dock_id and (wrong := refusal(request.dock_pose.header.frame_id, pose)):
             return wrong, DockRobot.Result.DOCK_NOT_VALID
-        station, at = _wanted(request, self._robot.stations), self._robot.pose
+        station, at = _find_dock(request, self._robot.stations), self._robot.pose
         if not request.use_dock_id and pose.distance_to((station.spot.x, station.spot.y)) > _NEAR:
             return f"there is no dock at ({pose.x:.2f}, {pose.y:.2f})", DockRobot.Result.FAILED_TO_DETECT_DOCK
         if not request.navigate_to_staging_pose and station.staging.distance_to((at.x, at.y)) > _NEAR:

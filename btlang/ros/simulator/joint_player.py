@@ -12,7 +12,7 @@ from trajectory_msgs.msg import JointTrajectory
 from btlang.robots.bodies.body import Body
 from btlang.robots.motion.course import PERIOD, CourseSegment, JointLimits, MotionState, on_quintic, to_state
 from btlang.robots.motion.kinematics import Array
-from btlang.robots.motion.movements import staying
+from btlang.robots.motion.movements import stay_at
 from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.motion.timeline import JointTimeline
 from btlang.robots.robot import RobotError
@@ -59,7 +59,7 @@ class JointPlayer:
         begins = max(now, float(times[0]))
         if begins >= times[-1] and self._timeline.rests(joints):
             return
-        at = self._joined(joints, lambda seconds: _on(times, way, seconds), begins)
+        at = self._join(joints, lambda seconds: _on(times, way, seconds), begins)
         self._timeline.follow(joints, at, begins, float(times[-1]))
 
     def watch(self) -> None:
@@ -91,7 +91,7 @@ class JointPlayer:
         acceleration = np.gradient(velocity, times, axis=0) if len(times) > 1 else 0.0 * velocity
         return joints, times, MotionState(np.clip(position, limits.low, limits.high), velocity, acceleration)
 
-    def _joined(
+    def _join(
         self, joints: list[int], at: Callable[[Array], MotionState], begins: float
     ) -> Callable[[Array], MotionState]:
         """Return how the joints get to a movement that has begun already. Raises RobotError if they can't."""
@@ -122,7 +122,7 @@ def _first(piece: CourseSegment, begins: float, at: Callable[[Array], MotionStat
 def _on(times: Array, way: MotionState, seconds: Array) -> MotionState:
     """Return the states at some seconds; before and after the points the joints rest."""
     if len(times) == 1:
-        return staying(way.position[0])(seconds)
+        return stay_at(way.position[0])(seconds)
     before = np.clip(np.searchsorted(times, seconds, side="right") - 1, 0, len(times) - 2)
     start, end = way.rows(before), way.rows(before + 1)
     return on_quintic(start, end, (times[before + 1] - times[before])[:, None], seconds - times[before])

@@ -94,7 +94,7 @@ class NavigationServer:
         """Run a goal, in the thread of the executor."""
         ride = NavigationRide(self._node, handle)
         self._calls.post(lambda: self._begin(ride))
-        await ride.finished(self._leases)
+        await ride.wait_for_end(self._leases)
         if ride.failure is None:
             return NavigateToPose.Result()
         return NavigateToPose.Result(error_code=FAILED, error_msg=ride.failure)

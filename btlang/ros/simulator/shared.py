@@ -147,7 +147,7 @@ class AcceptedGoal:
         self._abandoned = False
         self._ended = RosFuture()
 
-    async def finished(self, leases: Leases) -> None:
+    async def wait_for_end(self, leases: Leases) -> None:
         """Wait for `end`, and report how the goal ended; in the thread of the executor."""
         goal_id = bytes(self.handle.goal_id.uuid)
         leases.watch(goal_id, self._abandon)

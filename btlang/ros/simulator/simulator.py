@@ -14,7 +14,7 @@ from std_srvs.srv import Trigger
 
 from btlang.robots.bodies import body as bodies
 from btlang.robots.parts import JointsPart, Parts
-from btlang.robots.simulation.parts import simulated_parts
+from btlang.robots.simulation.parts import make_simulated_parts
 from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.robots.worlds.world import World
 from btlang.ros.available import optional_interface
@@ -61,7 +61,7 @@ class Simulator:
         joints: list[JointsPart] = []
 
         def make_parts(*of: Any) -> Parts:
-            made = simulated_parts(*of)
+            made = make_simulated_parts(*of)
             joints.append(made.joints)
             return made
 
@@ -103,7 +103,7 @@ class Simulator:
         self._stepped = self._system_time()
         self._clock = node.create_publisher(Clock, "/clock", QoSProfile(depth=1)) if gives_clock else None
         node.create_service(Trigger, "stop", self._stop)
-        node.create_subscription(String, "call", self._called, COMMANDS)
+        node.create_subscription(String, "call", self._on_call, COMMANDS)
         self.robot.on_event = self._take_event
 
     def work(self, seconds: float) -> None:
@@ -163,7 +163,7 @@ class Simulator:
         elif kind == "hear" and self._hearing is not None:
             self._hearing.heard(data["text"], data["who"])
 
-    def _called(self, message: String) -> None:
+    def _on_call(self, message: String) -> None:
         self._calls.post(lambda: self._show(f'calls "{message.data}"'))
 
 

@@ -192,7 +192,7 @@ class RosClients:
         try:
             name = full_name(self.node, kind, name)
         except (RCLError, ValueError) as error:
-            raise _refused(error) from None
+            raise _make_unusable(error) from None
         first = self._types.setdefault((sort, name), cls)
         if first is not cls:
             raise Unusable(f"another word uses the {sort} {name} with the type {type_name(first)}")
@@ -203,12 +203,12 @@ class RosClients:
             try:
                 self._made[key] = make()
             except (RCLError, ValueError) as error:
-                raise _refused(error) from None
+                raise _make_unusable(error) from None
         self._used[key] = None
         return self._made[key][0]
 
 
-def _refused(error: Exception) -> Unusable:
+def _make_unusable(error: Exception) -> Unusable:
     """Return an Unusable for an error of rclpy, which raises ValueError for a name."""
     return Unusable(f"ROS 2 refuses it: {str(error).partition(', at ')[0]}")
 

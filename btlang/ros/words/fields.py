@@ -62,7 +62,7 @@ def inner_class(word: RosWord, owner: Any, name: str, kind: str, path: str) -> A
     return message_class(word, kind)
 
 
-def reader(word: RosWord, cls: Any) -> Callable[[Any], Any]:
+def make_reader(word: RosWord, cls: Any) -> Callable[[Any], Any]:
     """Return a function that reads the value that a word's table names in a message.
 
     Raises MissionError (BT104 to BT106). The function raises ValueError if a message has no such value.
@@ -103,7 +103,7 @@ def reader(word: RosWord, cls: Any) -> Callable[[Any], Any]:
     if (array is None) != (reduce is None):
         reason = f"{path} is {kind}, so " + ("reduce doesn't apply" if array is None else 'reduce = "min" is needed')
         raise word.misfit(cls, path, reason)
-    return follow if array is None else _reduced(word, cls, path, follow, _REDUCERS[reduce])
+    return follow if array is None else _make_reducer(word, cls, path, follow, _REDUCERS[reduce])
 
 
 def _part(part: str) -> tuple[str, int | None]:
@@ -111,7 +111,7 @@ def _part(part: str) -> tuple[str, int | None]:
     return (found[1], int(found[2])) if found else (part, None)
 
 
-def _reduced(
+def _make_reducer(
     word: RosWord, cls: Any, path: str, follow: Callable[[Any], Any], reduce: Callable[[list[Any]], Any]
 ) -> Callable[[Any], Any]:
     """Return a function that reduces an array, or part of it by indexes or by angles of a scan, to one value."""
@@ -145,7 +145,7 @@ NOW = "now"
 _POINTS = ("Point", "Point32", "Pose", "PoseStamped", "Pose2D")
 
 
-def filler(word: RosWord, cls: Any, fields: Fields | None, now: Now) -> Make:
+def make_filler(word: RosWord, cls: Any, fields: Fields | None, now: Now) -> Make:
     """Return a function that makes a message from the values of slots; what a mission leaves out keeps its default.
 
     `now` gives the time as a message. Raises MissionError (BT104 to BT106); the function raises ActionFailed if a value
@@ -207,7 +207,7 @@ def _maker(word: RosWord, owner: Any, name: str, kind: str, value: Value, now: N
     if isinstance(value, Fields):
         if "/" not in kind:
             raise misfit()
-        return filler(word, message_class(word, kind), value, now)
+        return make_filler(word, message_class(word, kind), value, now)
     slot = SLOT.fullmatch(value) if isinstance(value, str) else None
     if slot is not None:
         try:
@@ -224,7 +224,7 @@ def _maker(word: RosWord, owner: Any, name: str, kind: str, value: Value, now: N
         return lambda values: SLOT.sub(lambda found: _text(word, values, found[1], found[2] or ""), value)
     constant = getattr(owner, value, None) if isinstance(value, str) and value.isidentifier() else value
     try:
-        fitted = _fitted(constant, kind)
+        fitted = _fit_constant(constant, kind)
     except ValueError:
         raise misfit() from None
     return lambda values: fitted
@@ -239,7 +239,7 @@ def _element(word: RosWord, kind: str, value: Any) -> Any:
     return message
 
 
-def _fitted(value: Any, kind: str) -> Any:
+def _fit_constant(value: Any, kind: str) -> Any:
     """Return a constant as Python has it for a type of field. Raises ValueError."""
     if kind == "boolean" and isinstance(value, bool):
         return value
@@ -264,7 +264,7 @@ def _slot(word: RosWord, slot: str, unit: str, kind: str, name: str) -> Make:
         if kind in INTEGERS:
             return lambda values: _whole(float(values[slot]) * factor, kind, name)
     elif kind.partition("/")[2] in _POINTS:
-        return lambda values: _placed(kind.partition("/")[2], word.located(str(values[slot])))
+        return lambda values: _make_place_writer(kind.partition("/")[2], word.located(str(values[slot])))
     if kind.startswith(("string", "wstring")):
         return lambda values: _text(word, values, slot, unit)
     raise LookupError(f"{name} is {kind}, which the slot {{{slot}}} of the type {word.types[slot].name} cannot fill")
@@ -282,7 +282,7 @@ def _whole(value: float, kind: str, name: str) -> int:
     return round(value)
 
 
-def _placed(kind: str, pose: tuple[float, float, float | None]) -> Callable[[Any], None]:
+def _make_place_writer(kind: str, pose: tuple[float, float, float | None]) -> Callable[[Any], None]:
     """Return a function that writes a place into a message, and keeps its other fields."""
     x, y, facing = pose
 

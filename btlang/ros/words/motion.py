@@ -60,7 +60,7 @@ def drive_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
         approach = Approach(abs(speed(values)), _GAIN, slowest=_SLOWEST[turns])
         if not publisher.get_subscription_count() or not odometry.has_come:
             yield from _ready(clients, cls, name, publisher, odometry, patience)
-        travelled = _turned if turns else _driven
+        travelled = _measure_turn if turns else _measure_drive
         start = pose = _pose(odometry.take(_ODOMETRY_AGE))
         done, shown = 0.0, math.degrees if turns else float
         reason = ""
@@ -73,7 +73,7 @@ def drive_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
                 if abs(left) <= close:
                     return True
                 bounds.check(shown(left), shown(done) if turns else math.dist(start[:2], pose[:2]))
-                reason = send(approach.velocity(left), 0.0 if turns else -_GAIN * _turned(start, pose))
+                reason = send(approach.velocity(left), 0.0 if turns else -_GAIN * _measure_turn(start, pose))
                 yield
         finally:
             send(0.0)
@@ -98,12 +98,12 @@ def _pose(message: Any) -> tuple[float, float, float]:
     return pose.position.x, pose.position.y, yaw_of(pose.orientation)
 
 
-def _driven(start: tuple[float, float, float], pose: tuple[float, float, float]) -> float:
+def _measure_drive(start: tuple[float, float, float], pose: tuple[float, float, float]) -> float:
     """Return the metres ahead, in the direction at the start."""
     return (pose[0] - start[0]) * math.cos(start[2]) + (pose[1] - start[1]) * math.sin(start[2])
 
 
-def _turned(start: tuple[float, float, float], pose: tuple[float, float, float]) -> float:
+def _measure_turn(start: tuple[float, float, float], pose: tuple[float, float, float]) -> float:
     """Return the radians to the left, less than half a turn."""
     return math.remainder(pose[2] - start[2], math.tau)
 

@@ -11,8 +11,8 @@ from btlang.engine.leaves.leaf import Failed
 from btlang.ros.graph import is_ready
 from btlang.ros.subscriptions import AGE, Latest
 from btlang.ros.words.clients import RosClients
-from btlang.ros.words.servers import LIMIT, WAIT, answered, awaited, nothing
-from btlang.ros.words.topics import comparing, measuring
+from btlang.ros.words.servers import LIMIT, WAIT, await_answer, await_server, do_nothing
+from btlang.ros.words.topics import make_comparison, make_measurement
 from btlang.ros.words.word import RosWord
 from btlang.vocabulary.ros_table import SLOT
 
@@ -25,20 +25,20 @@ _PERIOD = 0.5  # seconds between two questions for the value of a parameter
 
 def parameter_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
     """Return a generator leaf that sets a parameter, or a function that compares it or returns its number."""
-    return _setting(word, clients) if word.entry.sort == "action" else _asking(word, clients)
+    return _make_setter(word, clients) if word.entry.sort == "action" else _make_quantity(word, clients)
 
 
-def _setting(word: RosWord, clients: RosClients) -> Callable[..., Any]:
+def _make_setter(word: RosWord, clients: RosClients) -> Callable[..., Any]:
     node, parameter = word.ros.name, word.ros.interface
     name = f"{node}/set_parameters"
     client = clients.service(SetParameters, name)
     value = _value(word)
     wait, limit = word.ros.get("wait", WAIT), word.ros.get("limit", LIMIT)
 
-    def set_parameter(wake: Callable[[], object] = nothing, **values: Any) -> Generator[None, None, bool | Failed]:
+    def set_parameter(wake: Callable[[], object] = do_nothing, **values: Any) -> Generator[None, None, bool | Failed]:
         request = SetParameters.Request(parameters=[Parameter(parameter, value=value(values)).to_parameter_msg()])
-        yield from awaited(clients, client, SetParameters, name, wait)
-        answer = yield from answered(clients, client, name, request, limit, wake)
+        yield from await_server(clients, client, SetParameters, name, wait)
+        answer = yield from await_answer(clients, client, name, request, limit, wake)
         [result] = answer.results
         return bool(result.successful) or Failed(result.reason or f"{node} refused the value of {parameter}")
 
@@ -64,19 +64,21 @@ def _value(word: RosWord) -> Callable[[Mapping[str, Any]], Any]:
     return value
 
 
-def _asking(word: RosWord, clients: RosClients) -> Callable[..., Any]:
+def _make_quantity(word: RosWord, clients: RosClients) -> Callable[..., Any]:
     node, parameter = word.ros.name, word.ros.interface
     shown = f"{parameter} of {node}"
-    latest = clients.parameter(node, parameter, lambda: _polled(clients, node, parameter, shown))
+    latest = clients.parameter(node, parameter, lambda: _poll(clients, node, parameter, shown))
     age = word.ros.get("age", AGE)
 
     def value() -> Any:
         return latest.take(age)
 
-    return measuring(word, value, shown) if word.measured is not None else comparing(word, None, value, shown)
+    return (
+        make_measurement(word, value, shown) if word.measured is not None else make_comparison(word, None, value, shown)
+    )
 
 
-def _polled(clients: RosClients, node: str, parameter: str, shown: str) -> Latest:
+def _poll(clients: RosClients, node: str, parameter: str, shown: str) -> Latest:
     """Return the value of a parameter, which is polled for as long as the node runs: a condition needs it at once."""
     name = f"{node}/get_parameters"
     client = clients.node.create_client(GetParameters, name)

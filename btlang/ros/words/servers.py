@@ -14,11 +14,11 @@ from unique_identifier_msgs.msg import UUID
 from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere, described
 from btlang.engine.script.values import as_text
 from btlang.ros.clocks import AWAKE
-from btlang.ros.goals import unanswered
+from btlang.ros.goals import goal_handle
 from btlang.ros.graph import is_ready, no_server
 from btlang.ros.serving.names import RUN_PHRASE, SILENCE
 from btlang.ros.words.clients import RosClients
-from btlang.ros.words.fields import field_types, filler
+from btlang.ros.words.fields import field_types, make_filler
 from btlang.ros.words.word import RosWord
 from btlang.vocabulary.value_type import format_number
 
@@ -35,7 +35,7 @@ _REASONS = ("message", "error_msg", "error_string", "reason", "status_message")
 _PAUSE = 0.5  # real seconds between two looks at a server
 
 
-def awaited(clients: RosClients, client: Any, cls: Any, name: str, limit: float) -> Generator[None]:
+def await_server(clients: RosClients, client: Any, cls: Any, name: str, limit: float) -> Generator[None]:
     """Yield until there is a server. Raises ActionFailed when the limit is over."""
     until = time.monotonic() + limit
     while not is_ready(client):
@@ -98,7 +98,7 @@ class ServerPresence:
         return bool(self._first) and not self._first & now
 
 
-def nothing() -> None:
+def do_nothing() -> None:
     """Do nothing, in place of the `wake` of a run."""
 
 
@@ -110,20 +110,20 @@ _GONE = 1.0  # seconds without a server, after which it counts as lost
 def service_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
     """Return a generator leaf. A call can't be taken back: when it is halted, the answer is ignored."""
     cls, name = word.interface(), word.ros.name
-    make = filler(word, cls.Request, word.ros.get("request"), clients.clock.message)
+    make = make_filler(word, cls.Request, word.ros.get("request"), clients.clock.message)
     judge = Judge(word, cls.Response)
     client = clients.service(cls, name)
     wait, limit = word.ros.get("wait", WAIT), word.ros.get("limit", LIMIT)
 
-    def call(wake: Callable[[], object] = nothing, **values: Any) -> Generator[None, None, bool | Failed]:
+    def call(wake: Callable[[], object] = do_nothing, **values: Any) -> Generator[None, None, bool | Failed]:
         request = make(values)
-        yield from awaited(clients, client, cls, name, wait)
-        return judge.verdict((yield from answered(clients, client, name, request, limit, wake)))
+        yield from await_server(clients, client, cls, name, wait)
+        return judge.verdict((yield from await_answer(clients, client, name, request, limit, wake)))
 
     return call
 
 
-def answered(
+def await_answer(
     clients: RosClients, client: Any, name: str, request: Any, limit: float, wake: Callable[[], object]
 ) -> Generator[None, None, Any]:
     """Yield until a service has answered; return the response. Raises ActionFailed if none comes."""
@@ -203,14 +203,14 @@ class ActionGoal:
             return
         try:
             sent = self._client.send_goal_async(self._message, self._hear, goal_uuid=self._goal_id)
-            sent.add_done_callback(self._answered)
+            sent.add_done_callback(self._on_answer)
         except Exception as problem:
             self._end(f"the goal could not be sent to {self._name}: {described(problem)}")
 
     def _hear(self, _: object = None) -> None:
         self.heard = AWAKE.now()
 
-    def _answered(self, future: Any) -> None:
+    def _on_answer(self, future: Any) -> None:
         handle = future.result()
         if handle is None or not handle.accepted:
             self._end(f"{self._name} rejected the goal")
@@ -229,7 +229,7 @@ class ActionGoal:
         if self.answer is None:
             if self._handle is not None:
                 self._waits_for = self._not_ended
-            handle = self._handle or unanswered(self._client, self._goal_id)
+            handle = self._handle or goal_handle(self._client, self._goal_id)
             handle.cancel_goal_async().add_done_callback(self._cancel_answered)
 
     def _cancel_answered(self, future: Any) -> None:
@@ -238,7 +238,7 @@ class ActionGoal:
             if response.return_code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
                 return
             self._waits_for = self._not_ended
-            self._follow(unanswered(self._client, self._goal_id))
+            self._follow(goal_handle(self._client, self._goal_id))
         if response.return_code in _REFUSED and not response.goals_canceling:
             self._waits_for = f"{self._name} refused to cancel its goal"
 
@@ -250,7 +250,7 @@ class ActionGoal:
 def action_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
     """Return a generator leaf that fills the goal as the table says. See goal_leaf."""
     cls = word.interface()
-    return goal_leaf(word, clients, cls, filler(word, cls.Goal, word.ros.get("goal"), clients.clock.message))
+    return goal_leaf(word, clients, cls, make_filler(word, cls.Goal, word.ros.get("goal"), clients.clock.message))
 
 
 def goal_leaf(
@@ -269,9 +269,9 @@ def goal_leaf(
     def servers() -> set[bytes]:
         return {bytes(end.endpoint_gid) for end in clients.node.get_publishers_info_by_topic(status)}
 
-    def act(wake: Callable[[], object] = nothing, **values: Any) -> Generator[None, None, bool | Failed]:
+    def act(wake: Callable[[], object] = do_nothing, **values: Any) -> Generator[None, None, bool | Failed]:
         goal = ActionGoal(clients, client, name, make(values), wake)
-        yield from awaited(clients, client, cls, name, limit)
+        yield from await_server(clients, client, cls, name, limit)
         presence = ServerPresence(servers)
         try:
             goal.send()

@@ -10,7 +10,7 @@ from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere, Unknown
 from btlang.ros.graph import no_listener
 from btlang.ros.subscriptions import AGE
 from btlang.ros.words.clients import RosClients
-from btlang.ros.words.fields import filler, reader
+from btlang.ros.words.fields import make_filler, make_reader
 from btlang.ros.words.servers import WAIT
 from btlang.ros.words.word import RosWord
 from btlang.vocabulary.ros_table import LIMITS, SLOT
@@ -32,7 +32,7 @@ def topic_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
     if the topic is silent.
     """
     cls, latched = word.interface(), word.ros.get("latched", False)
-    read = reader(word, cls) if word.ros.get("field") else None
+    read = make_reader(word, cls) if word.ros.get("field") else None
     latest = clients.latest(cls, word.ros.name, latched)
     age = word.ros.get("age", None if latched else AGE)
 
@@ -44,7 +44,9 @@ def topic_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
             raise Unknown(f"{problem} in the message on {word.ros.name}") from None
 
     shown = word.ros.get("field", "") and f"{word.ros.get('field')} of {word.ros.name}"
-    return measuring(word, value, shown) if word.measured is not None else comparing(word, cls, value, shown)
+    return (
+        make_measurement(word, value, shown) if word.measured is not None else make_comparison(word, cls, value, shown)
+    )
 
 
 def _known(value: Any, shown: str) -> Any:
@@ -53,7 +55,7 @@ def _known(value: Any, shown: str) -> Any:
     return value
 
 
-def measuring(word: RosWord, value: Callable[[], Any], shown: str) -> Callable[..., Any]:
+def make_measurement(word: RosWord, value: Callable[[], Any], shown: str) -> Callable[..., Any]:
     """Return a function that returns a value in the unit of the word's type. Raises
     ActionFailed if it isn't a number.
     """
@@ -68,7 +70,7 @@ def measuring(word: RosWord, value: Callable[[], Any], shown: str) -> Callable[.
     return measure
 
 
-def comparing(word: RosWord, cls: Any, value: Callable[[], Any], shown: str) -> Callable[..., Any]:
+def make_comparison(word: RosWord, cls: Any, value: Callable[[], Any], shown: str) -> Callable[..., Any]:
     """Return a function that holds if all comparisons of the table do; without any, if the value isn't empty or 0."""
     limits = [
         (_HOLDS[key], key, _limit(word, cls, word.ros.get(key))) for key in LIMITS if word.ros.get(key) is not None
@@ -120,9 +122,9 @@ def publish_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
     last one the message of `finally`, also when it is halted.
     """
     cls, name, latched = word.interface(), word.ros.name, word.ros.get("latched", False)
-    make = filler(word, cls, word.ros.get("message"), clients.clock.message)
+    make = make_filler(word, cls, word.ros.get("message"), clients.clock.message)
     last = word.ros.get("finally")
-    make_last = None if last is None else filler(word, cls, last, clients.clock.message)
+    make_last = None if last is None else make_filler(word, cls, last, clients.clock.message)
     publisher = clients.publisher(cls, name, latched)
     seconds = word.amount("for", 0.0)
     timed, again = word.ros.get("for") is not None, word.ros.get("rate") is not None

@@ -136,7 +136,7 @@ class Guard:
         check_velocity(linear, angular)
         now = self._now()
         self._touches = may_touch and now < self._touches_until
-        verdict = self._judged(linear, angular, now)
+        verdict = self._find_verdict(linear, angular, now)
         self._check.sent(now, verdict.linear, verdict.angular)
         self.verdict = verdict
         stands = abs(verdict.linear) < min(_STANDS, abs(linear)) or (verdict.angular == 0.0 != angular)
@@ -146,7 +146,7 @@ class Guard:
             self._stands_since = now
         return verdict
 
-    def _judged(self, linear: float, angular: float, now: float) -> Verdict:
+    def _find_verdict(self, linear: float, angular: float, now: float) -> Verdict:
         reading = self._odometry()
         if reading is not None and not reading.fault and reading.stamp != self._checked:
             self._checked = reading.stamp

@@ -111,7 +111,7 @@ class StampCheck:
         if before is not None and stamp == before:
             return "repeats its time stamp"
         if before is not None and stamp < before - _BACK:
-            return self._jumped(f"has time stamps that go back by {before - stamp:.2f} s", arrival, last)
+            return self._on_jump(f"has time stamps that go back by {before - stamp:.2f} s", arrival, last)
         if not lags:
             return ""
         under_way = arrival - stamp
@@ -119,14 +119,14 @@ class StampCheck:
             self._offset, self._first = under_way, arrival
         late = under_way - self._offset
         if late > _LATE:
-            return self._jumped(f"is {late:.1f} s old", arrival, last, under_way)
+            return self._on_jump(f"is {late:.1f} s old", arrival, last, under_way)
         held_up = arrival - self._first < _LEARNING and late > -_LEARNING
         if late < -_EARLY and not held_up:
-            return self._jumped(f"has time stamps that are {-late:.1f} s in the future", arrival, last, under_way)
+            return self._on_jump(f"has time stamps that are {-late:.1f} s in the future", arrival, last, under_way)
         self._offset, self._steady_since = min(self._offset, under_way), None
         return ""
 
-    def _jumped(self, reason: str, arrival: float, last: float, under_way: float | None = None) -> str:
+    def _on_jump(self, reason: str, arrival: float, last: float, under_way: float | None = None) -> str:
         """Believe a clock that was set once its stamps have been steady for a while."""
         if self._steady_since is None or under_way is None or arrival - last > _LATE:
             self._steady_since = arrival

@@ -91,7 +91,7 @@ class OdometryCheck:
         self._compared = stamp
         ways = [
             (end[0] - begin[0], end[1] - begin[1])
-            for end, begin in ((self._commanded(stamp - late), self._commanded(first[0] - late)) for late in _LATER)
+            for end, begin in ((self._predict(stamp - late), self._predict(first[0] - late)) for late in _LATER)
         ]
         measured, turned = self._measured - first[1], self._turned - first[2]
         if max(abs(way) for way, _ in ways) < _SLACK:
@@ -140,7 +140,7 @@ class OdometryCheck:
         while len(self._samples) > 1 and self._samples[1][0] <= stamp - _WINDOW:
             self._samples.popleft()
 
-    def _commanded(self, time: float) -> tuple[float, float]:
+    def _predict(self, time: float) -> tuple[float, float]:
         at = bisect_right(self._times, time)
         if at in (0, len(self._times)):
             return self._ways[max(0, at - 1)]
