@@ -55,6 +55,8 @@ from btlang.builders import wait_value_update as wait_value_update
 from btlang.builders import was_entry_updated as was_entry_updated
 from btlang.builders import whenever as whenever
 from btlang.builders import while_do_else as while_do_else
+from btlang.components.component import Component as Component
+from btlang.components.component import Parameter as Parameter
 from btlang.decorators import action as action
 from btlang.decorators import condition as condition
 from btlang.decorators import quantity as quantity
