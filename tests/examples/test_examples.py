@@ -10,7 +10,7 @@ import pytest
 
 from btlang.cli import main
 from btlang.mission_vocabulary import world_vocabulary
-from btlang.robots.simulation.connection import connection
+from btlang.robots.simulation import connection
 from btlang.robots.simulation.robot import SimulatedRobot
 
 from .cases import CASES, Case

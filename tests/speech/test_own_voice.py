@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from btlang.components.parts.hearing import Hearing
-from btlang.components.parts.parts import hearing
+from btlang.components.parts import hearing
 from btlang.devices.kinds import Sound
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.body import EarsSpec as EarsOfBody
