@@ -12,8 +12,8 @@ import pytest
 
 import btlang
 from btlang.actions.conversation import has_heard, somebody_says
-from btlang.components.parts.hearing import Hearing
 from btlang.components.parts import hearing
+from btlang.components.parts.hearing import Hearing
 from btlang.devices.kinds import Sound
 from btlang.engine.leaves.leaf import Unknown
 from btlang.robots.bodies.body import Body, EarsSpec

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from btlang.components.parts.hearing import Hearing
 from btlang.components.parts import hearing
+from btlang.components.parts.hearing import Hearing
 from btlang.devices.kinds import Sound
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.body import EarsSpec as EarsOfBody
