@@ -21,7 +21,7 @@ from btlang.engine.saving import SaveError
 from btlang.engine.timing import Stopwatch
 from btlang.robots.command_gate import RobotProxy
 from btlang.robots.registry import connector
-from btlang.robots.spoken import SpokenCommands, choices
+from btlang.robots.spoken_commands import SpokenCommands, choices
 from btlang.robots.worlds.world import Place
 from btlang.robots.worlds.world_file import read_world
 from btlang.run.bus import Bus

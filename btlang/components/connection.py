@@ -19,7 +19,7 @@ from btlang.devices.kinds import KINDS, Command, Reading
 from btlang.devices.simulated import twin
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.bodies.body_file import unusable_robot
-from btlang.robots.platforms import node_function
+from btlang.robots.platforms import NODES, import_function
 from btlang.robots.simulation.connection import Simulation
 from btlang.run.events import RobotEvent
 from btlang.speech.recogniser import RecogniserError
@@ -83,7 +83,7 @@ class ComponentConnection:
             self.devices = DeviceSet(mine, inner.robot, self._post)
             self.devices.start()
         has_nodes = any(part.node is not None for part in body.components)
-        self._nodes: Any = node_function()(inner.robot, body) if has_nodes else None
+        self._nodes: Any = import_function(NODES)(inner.robot, body) if has_nodes else None
         kinds = {name: device.kind for name, device in self.devices.devices.items()}
         self._gates = {name: DeviceGate(reads, kinds[name], self.robot) for name, reads in self.devices.readers.items()}
         self.manager = ComponentManager(body.components, self._host, self._post, self._in_use)

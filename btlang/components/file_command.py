@@ -10,7 +10,6 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.robots.bodies.body import Body, ComponentPart
 from btlang.robots.bodies.body_file import BodyError, read_body
-from btlang.robots.bodies.urdf import urdf
 from btlang.robots.files import as_mission_error
 from btlang.text.escaping import one_line
 from btlang.text.output import pass_on, show
@@ -26,6 +25,8 @@ def serve_file(act: str, path: str) -> int:
     """
     source = read_source(path)
     if act == "urdf":
+        from btlang.robots.bodies.urdf import urdf  # brings numpy
+
         pass_on(urdf(read_body(source)))
         return 0
     if act == "import":

@@ -45,7 +45,7 @@ class Ears:
         self.answer = ""
         """What answered the last question."""
         self.commands: Any = None
-        """A btlang.robots.spoken.SpokenCommands: those that people may speak; None where there are none."""
+        """A btlang.robots.spoken_commands.SpokenCommands: those that people may speak; None where there are none."""
         self.problem = ""
         """Why nothing is heard but what is typed; "" while the ears work."""
         self.talk: Callable[[bool], object] | None = None

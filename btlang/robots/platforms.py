@@ -10,43 +10,24 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import Any
 
-    from btlang.run.connection import Connection
-
-
 ROBOTS = {
     "simulated": "btlang.robots.simulation.connection:Simulation",
     "devices": "btlang.components.device_robot:connect_devices",
     "ros": "btlang.ros.command:connect_ros",
     "actions": "btlang.ros.command:connect_actions",
 }
-"""Functions of a world and a body, by what the robot runs on; imported when it is asked for."""
-
+"""Functions of a world and a body that connect to a robot, by what it runs on. They are imported when needed."""
 
 ALL = "all"
 """For --simulate: all devices of a robot."""
 COMPONENTS = "btlang.components.connection:component_connection"
-"""What adds the components and devices of a body to a connection."""
-
+"""The function that adds the components and devices of a body to a connection."""
 NODES = "btlang.ros.command:component_nodes"
-"""What leads the components of a body that are ROS 2 nodes."""
+"""The function that makes the node for components that are ROS 2 nodes."""
 
 
-def connection_function(name: str) -> Callable[..., Connection]:
-    """Return the function that connects to a robot, by a name in ROBOTS."""
-    return _import_function(ROBOTS[name])
-
-
-def component_function() -> Callable[..., Connection]:
-    """Return the function that adds components and devices to a connection."""
-    return _import_function(COMPONENTS)
-
-
-def node_function() -> Callable[..., Any]:
-    """Return the function that leads components that are ROS 2 nodes."""
-    return _import_function(NODES)
-
-
-def _import_function(place: str) -> Callable[..., Any]:
+def import_function(place: str) -> Callable[..., Any]:
+    """Import a function by its `module:name`, such as those above."""
     module, _, function = place.partition(":")
     made: Callable[..., Any] = getattr(import_module(module), function)
     return made

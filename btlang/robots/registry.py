@@ -10,7 +10,7 @@ from importlib.util import find_spec
 
 from btlang.record import Record
 from btlang.robots.bodies.body_file import read_body, shipped_bodies, standard_body
-from btlang.robots.platforms import ALL, ROBOTS, component_function, connection_function
+from btlang.robots.platforms import ALL, COMPONENTS, ROBOTS, import_function
 from btlang.text.source import Source
 from btlang.vocabulary.shipped import BODIES
 
@@ -95,10 +95,13 @@ class Connector(Record):
 
     def __call__(self, world: World) -> Connection:
         """Connect. Raises MissionError if the robot can't be reached."""
-        connect = partial(connection_function(self.over), world, body=self.body, **self.options)
-        if not (self.body.components or self.body.devices):
-            return connect()
-        return component_function()(connect, self.body)
+        connect = partial(import_function(ROBOTS[self.over]), world, body=self.body, **self.options)
+        connection: Connection
+        if self.body.components or self.body.devices:
+            connection = import_function(COMPONENTS)(connect, self.body)
+        else:
+            connection = connect()
+        return connection
 
 
 def connector(robot: str | Source, over: str | None = None, **options: Any) -> Connector:

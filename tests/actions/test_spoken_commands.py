@@ -7,7 +7,7 @@ import pytest
 import btlang
 from btlang.actions.conversation import meaning_of
 from btlang.robots.robot import RobotError
-from btlang.robots.spoken import SpokenCommands, choices
+from btlang.robots.spoken_commands import SpokenCommands, choices
 from btlang.run.bus import INLINE
 from btlang.run.events import Event, Said
 from btlang.run.world_input import WorldInput
