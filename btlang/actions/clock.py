@@ -1,4 +1,4 @@
-"""What the clock says."""
+"""Conditions and quantities of the time of day."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ def things_described(robot: Base, type: str, **parts: str) -> list[str]:
 
 
 _SHARES = {"slowly": 0.5, "carefully": 0.5, "quietly": 0.4}
-"""Of the normal speed. Who goes quickly goes as fast as the robot can."""
+"""Shares of the normal speed. "Quickly" is as fast as the robot can."""
 
 
 def keep_pace(robot: Base, manner: str | None, steps: Generator[None, None, None]) -> Generator[None, None, None]:

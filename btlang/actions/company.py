@@ -1,4 +1,4 @@
-"""People to be with: following, guiding, greeting and waiting for them."""
+"""Actions with people: following, guiding, greeting and waiting for them."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from btlang.robots.robot import Leading, Listening, Navigation, Operation, Perce
 from btlang.robots.worlds.world import said
 
 LOST = 5.0
-"""Seconds without a sight of somebody, where he or she was seen last, after which the robot has lost him or her."""
+"""Seconds out of sight, at the last position of a person, after which the robot has lost them."""
 WAITS = 10.0
-"""Seconds that a robot that guides waits for who has fallen behind, before it goes back."""
+"""Seconds that a guiding robot waits for a person who has fallen behind, before it goes back."""
 BEHIND = 3.0
-"""Metres from the robot at which who is guided has fallen behind."""
+"""Metres from the robot from which a guided person has fallen behind."""
 RETURNS = 4
-"""How often it goes back for somebody."""
+"""How often it goes back for a person."""
 
 _TURNED = 30.0  # degrees to the side at which it turns to who it follows
 _STEP = 0.4  # metres that who is followed may go before it sets out

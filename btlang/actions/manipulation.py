@@ -12,7 +12,7 @@ from btlang.robots.robot import Base, Hand, Hands, Joints, Navigation, RobotErro
 from btlang.robots.worlds.world import said
 
 BESIDE = 1.0
-"""Metres from the robot within which something that it doesn't hold has been put down."""
+"""Metres from the robot within which an object that it doesn't hold has been put down."""
 
 
 class Reaching(Joints, Hands, Protocol):

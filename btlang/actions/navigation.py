@@ -1,4 +1,4 @@
-"""Journeys to what has a name, to one side of it, or to a part of a region. A failure has the robot's reason."""
+"""Journeys to a name, to one side of something, or to a part of a region. A failure has the robot's reason."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from btlang.robots.worlds.likeness import unseen
 from btlang.robots.worlds.world import said
 
 PASSED = 0.5
-"""Metres from a place at which the robot has come past it."""
+"""Metres from a place within which the robot has passed it."""
 _SPOTS = 12  # that are tried to get in or out of a zone
 
 
@@ -133,9 +133,9 @@ def accomplish(operation: Operation) -> Steps:
 
 
 _BESIDE = 1.0
-"""Metres from a thing at which the robot stands that goes to a side of it."""
+"""Metres from a thing at which a robot that goes to a side of it stops."""
 _AHEAD = {"front": (-1.0, 0.0), "behind": (1.0, 0.0), "left": (0.0, 1.0), "right": (0.0, -1.0)}
-"""How far along the sight of the robot, and to the left of it, each side lies."""
+"""The direction of each side: along the robot's line of sight, and to the left of it."""
 
 
 def go_to_side(

@@ -41,9 +41,9 @@ TRANSITIONS = {
         Transition("shut down", (UNCONFIGURED, INACTIVE, ACTIVE), FINALIZED, "shut_down", FINALIZED),
     )
 }
-"""By name."""
+"""The transitions by name."""
 UPWARDS = ("configure", "activate")
-"""From unconfigured to active."""
+"""The transitions from unconfigured to active."""
 
 
 class ComponentError(ActionFailed):
@@ -129,14 +129,14 @@ class Component:
     needs: ClassVar[Sequence[str]] = ()
     """Names of other components, of devices of the robot file, and capabilities such as "base". Those come up first."""
     version: ClassVar[str] = ""
-    """For people, who compare two versions with it."""
+    """The version, for people who compare two of them."""
     rate: ClassVar[float] = 0.0
     """How often `step` is called, in calls a second; 0: never."""
 
     name = ""
-    """The one in the robot file."""
+    """The name in the robot file."""
     body: Any = None
-    """What the robot file says of the body: see btlang.robots.bodies.body.Body."""
+    """The body in the robot file, a btlang.robots.bodies.body.Body."""
     _devices: Mapping[str, Any] = {}
     _report_event: Callable[[str, Mapping[str, Any]], object] = staticmethod(lambda kind, data: None)
 

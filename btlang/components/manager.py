@@ -1,4 +1,4 @@
-"""Leads components through their life: up in the order of their needs, down in reverse, up again after a failure."""
+"""Leads components through their life: started by their needs, shut down in reverse, restarted after a failure."""
 
 from __future__ import annotations
 
@@ -184,7 +184,7 @@ class ComponentKeeper:
     def __init__(self, manager: ComponentManager, part: ComponentPart) -> None:
         self._manager, self.part = manager, part
         self.class_place = class_of(part)
-        """The `module:Class` of the part, found once: looking through what is installed takes long."""
+        """The `module:Class` of the part, found once: looking through installed packages takes long."""
         self.next: ComponentPart | None = part  # what it is to be; None: unloaded. Changed with the lock
         self._asked = False
         self.host: Host | None = None

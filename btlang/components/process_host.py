@@ -1,4 +1,4 @@
-"""A component in a process of its own: a crash, a leak or an endless loop of it stays there."""
+"""A component in its own process, which contains crashes, leaks and endless loops."""
 
 from __future__ import annotations
 

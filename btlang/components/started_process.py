@@ -1,4 +1,4 @@
-"""A program that lives as long as its component: it ends with the robot, however that ends, with all it has started.
+"""A program that lives as long as its component: it ends with the robot, with everything it has started.
 
 `python -m btlang.components.started_process COMMAND ...` stands between the two: it says the number of the process on
 standard output, or why there is none, and kills its group when standard input is closed.
@@ -38,7 +38,7 @@ class StartedProcess:
             self.close(0.0)
             raise ComponentError(f"{command[0]} can't be started: {said or 'it ended at once'}")
         self.number = int(said)
-        """Of its process."""
+        """The number of its process."""
 
     @property
     def ending(self) -> str | None:

@@ -47,7 +47,7 @@ def words_of(body: Body) -> list[str]:
 
 
 _SERVICES = ("robot", "halted")
-"""Parameters of methods that no slot gives."""
+"""Parameters of methods that no slot fills."""
 
 
 def check_words(path: str, methods: Mapping[str, Mapping[str, Any]]) -> Iterator[Diagnostic]:

@@ -73,7 +73,7 @@ DRIVERS = {
     "dynamixel": "btlang.devices.dynamixel.driver:DynamixelDriver",
     "topic": "btlang.ros.devices.driver:TopicDriver",
 }
-"""Places of the classes; SIMULATED devices have none, since they act in the world of the simulated robot."""
+"""The classes of drivers by name. SIMULATED devices have none, since they act in the world of the simulated robot."""
 ENTRY_POINTS = "btlang.drivers"
 
 

@@ -210,7 +210,7 @@ KINDS = {
         DeviceKind("display", None, Shown),
     )
 }
-"""By name."""
+"""The kinds by name."""
 
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"

@@ -95,7 +95,7 @@ class DeviceLoop:
         self._followers: dict[str, list[Callable[[Reading], object]]] = {}
         self._charges = {device.name: ChargeCheck() for device in devices if device.kind == "battery"}
         self.settled = threading.Event()
-        """Set once it is known of each device whether it answers."""
+        """Set once it is known for each device whether it answers."""
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=self._work, name="btlang devices", daemon=True)
         self.rate = 0.0

@@ -68,7 +68,7 @@ class SimulatedDevice:
         self._begun = 0.0
         self._at_dock = False
         self.is_pressed = False
-        """Of a button: whether somebody presses it."""
+        """Whether somebody presses this button."""
 
     @property
     def shown(self) -> Command | None:
@@ -255,7 +255,7 @@ _VALUES: dict[str, tuple[Callable[[Any], bool], str]] = {
     "part": (lambda value: isinstance(value, str), "a name"),
     "bumper": (lambda value: isinstance(value, bool), "true or false"),
 }
-"""What options may be, where that isn't a number."""
+"""The valid values of options that aren't numbers."""
 _OPTIONS = {
     "range": ("cone", "range"), "camera": ("view",), "joint": ("part",), "hand": ("part",),
     "button": ("bumper",), "gauge": ("value",),

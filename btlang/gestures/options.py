@@ -1,4 +1,4 @@
-"""The options of `btc gesture`, apart from what it does."""
+"""The options of `btc gesture`."""
 
 from __future__ import annotations
 

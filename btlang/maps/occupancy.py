@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     Corners = npt.NDArray[np.int64]
 
 MOST_CELLS = 25_000_000
-"""Of the largest map."""
+"""The most cells of a map."""
 _MOST_IN_TEXT = 4_000_000  # pixels; each is an object while it is read
 _MOST_BYTES = 60_000_000
 _GAP = rb"(?:\s|#[^\n]*\n)+"

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 MOST = 10_000
-"""Way points of one file."""
+"""The most way points of one file."""
 _LISTS = ("waypoints", "way_points", "poses", "points", "goals", "places", "locations", "stations", "route")
 _NAMES = ("name", "label", "id", "frame_name")
 _ABOUT = ("frame_id", "frame", "map", "version", "name", "resolution")  # of the whole list

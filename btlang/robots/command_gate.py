@@ -49,7 +49,7 @@ _UNDO: dict[str, Callable[..., object]] = {
     "move_joints": lambda robot, targets: robot.freeze_joints(*targets),
     "say": lambda robot, *said: robot.silence(),
 }
-"""How what a command has set about is ended; a deed that it returned is cancelled."""
+"""How to end what a command has started; an operation that it returned is cancelled."""
 
 
 class RobotProxy:

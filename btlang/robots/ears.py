@@ -43,13 +43,13 @@ class Ears:
         self.asking = ""
         """The open question; "" if there is none."""
         self.answer = ""
-        """What answered the last question."""
+        """The answer to the last question."""
         self.commands: Any = None
-        """A btlang.robots.spoken_commands.SpokenCommands: those that people may speak; None where there are none."""
+        """The commands that people may speak (SpokenCommands); None for none."""
         self.problem = ""
-        """Why nothing is heard but what is typed; "" while the ears work."""
+        """Why only typed texts are heard; "" while the ears work."""
         self.talk: Callable[[bool], object] | None = None
-        """Somebody holds, or lets go of, the button that isn't one of the robot; None where it needs none."""
+        """A function to press and release a remote talk button; None if it needs none."""
         self.choices: tuple[str, ...] = ()
         """The answers that the mission asks about: "if the answer is tea"."""
 

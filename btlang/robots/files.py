@@ -45,7 +45,7 @@ class DataFileError(Exception):
         self.line = line
         self.source = source
         self.more: tuple[DataFileError, ...] = ()
-        """What else is wrong with it."""
+        """Further problems of the file."""
 
 
 def load_data(file: str | Source, what: str, make: Callable[[Table], T], error: type[DataFileError]) -> T:

@@ -19,7 +19,7 @@ ROBOTS = {
 """Functions of a world and a body that connect to a robot, by what it runs on. They are imported when needed."""
 
 ALL = "all"
-"""For --simulate: all devices of a robot."""
+"""The value of --simulate for all devices of a robot."""
 COMPONENTS = "btlang.components.connection:component_connection"
 """The function that adds the components and devices of a body to a connection."""
 NODES = "btlang.ros.command:component_nodes"

@@ -1,4 +1,4 @@
-"""What keeps a mission from running on a robot, said before anything moves: parts, languages, zones and gestures."""
+"""Checks of a mission against a robot before anything moves: parts, languages, zones and gestures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which robots a mission can run on: by name, what connects to one; or a robot file."""
+"""Finds robots: by the name of what they run on, by the name of an installed package, or by a robot file."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 ENTRY_POINTS = "btlang.robots"
-"""Each names a package with a file `robot.toml`: an installed robot."""
+"""Each entry point names a package with a file `robot.toml`: an installed robot."""
 
 
 def body_of(robot: str | Source) -> Body:

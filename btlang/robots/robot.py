@@ -128,7 +128,7 @@ class Base(Machine, Protocol):
     """Wheels, and where the robot is."""
 
     pace: float
-    """The share of the normal speed at which it goes its ways; 1 unless a mission says how."""
+    """The share of the normal speed for journeys; 1 unless a mission gives another."""
 
     @property
     def radius(self) -> float:

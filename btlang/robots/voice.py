@@ -29,7 +29,7 @@ class Synthesizer:
         self._body = body
         self._own = (body.voice or VoiceSettings(Settings())).settings.language
         self.language = self._own
-        """Such as "en"."""
+        """The language, such as "en"."""
         self._last: tuple[str, Utterance] | None = None  # gestures ask for the times of what is said next
         try:
             self._engine = engine_of(body)
@@ -73,9 +73,9 @@ class TimedVoice:
         self._shape = "rest"
         self._ended = True
         self.said: Utterance | None = None
-        """What it says, or said last."""
+        """The current or the last utterance."""
         self.position = 0.0
-        """Seconds since that began, also after its end; negative before."""
+        """Seconds since it began, also after its end; negative before."""
 
     @property
     def speaking(self) -> bool:

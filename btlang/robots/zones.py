@@ -11,7 +11,7 @@ from btlang.robots.geometry import Point, centre_of, edges, segment_distance
 from btlang.robots.worlds.world import Zone, said
 
 CLEAR = 0.8
-"""Metres from the border of a zone at which the robot goes that enters or leaves it."""
+"""Metres from the border of a zone to which the robot drives when it enters or leaves it."""
 _OVER, _APART = 0.4, 0.5  # metres from the border at which it has done so; between two points along it
 
 
@@ -49,11 +49,11 @@ class Zones:
         self._restrictions: list[Restriction] = []
         self.version = 0
         self.closed: Sequence[Zone] = ()
-        """Those to keep out of."""
+        """The zones to keep out of."""
         self.slow: Sequence[Zone] = ()
-        """Those to drive slowly through."""
+        """The zones to drive through slowly."""
         self.confines: Sequence[Sequence[Zone]] = ()
-        """Those to stay in: in at least one of each of these."""
+        """The zones to stay in: in at least one of each of these groups."""
         self.begin()
 
     def begin(self) -> None:

@@ -1,4 +1,4 @@
-"""Whether ROS 2 is there. Imports none of it, so that it can be asked anywhere."""
+"""Checks whether ROS 2 is installed. Imports no ROS, so that it can be used anywhere."""
 
 from __future__ import annotations
 

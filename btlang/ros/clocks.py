@@ -28,9 +28,9 @@ class AwakeClock:
 
     def __init__(self, real: Callable[[], float] = _real) -> None:
         self.naps = 0
-        """How often it was asleep."""
+        """How often the process was asleep."""
         self.nap = 0.0
-        """For how many seconds the last time."""
+        """The seconds of the last nap."""
         self._real = real
         self._lock = RLock()
         self._seen, self._slept, self._woke = real(), 0.0, -math.inf
@@ -63,7 +63,7 @@ class AwakeClock:
 
 
 AWAKE = AwakeClock()
-"""That of this process."""
+"""The clock of this process."""
 
 
 STANDING = 1.0
@@ -85,7 +85,7 @@ class SteadyTime:
         self._read, self._said = read, said
         self._warned: set[str] = set()
         self.has_failed = False
-        """Whether the clock has done what a clock should not do."""
+        """Whether the clock has done something that a clock shouldn't do."""
         now = read()
         # what the clock said and when, how long it has stood still, and the time that was made of it; replaced as one
         self._seen: tuple[float, float, float, float] = now, time.monotonic(), 0.0, now

@@ -1,4 +1,4 @@
-"""Leases: who sends goals shows that it lives, so that a server halts the goals of one that has died.
+"""Leases of clients: a client shows that it is alive, so that a server halts the goals of one that has died.
 
 A client holds a publisher that never publishes, on a topic that its goal ids name. DDS itself asserts its liveliness,
 in a thread that no Python holds up. A goal id that names no such topic is that of another program: it is not watched.

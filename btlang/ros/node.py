@@ -60,7 +60,7 @@ _TASKS_OF_AN_ANSWER = 3  # one starts the next: the goal ends, its future is don
 _DELIVERY = 0.2  # seconds
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""Who subscribes later gets the last message."""
+"""A quality of service by which late subscribers get the last message."""
 
 
 class SpunNode:

@@ -107,7 +107,7 @@ def _scan(scan: Any) -> str:
 
 
 AGE = 5.0
-"""Seconds after which what came last no longer counts, where a table says nothing else."""
+"""Seconds after which the latest message no longer counts, unless a table gives another age."""
 
 
 class NodeClock:
@@ -121,7 +121,7 @@ class NodeClock:
         self._clock = node.get_clock()
         simulated = getattr(self._clock, "ros_time_is_active", True)
         self.now: Callable[[], float] = SteadyTime(self._seconds).now if simulated else AWAKE.now
-        """Seconds of the node's clock."""
+        """The seconds of the node's clock."""
 
     def message(self) -> Any:
         """Return the time as builtin_interfaces/Time."""
@@ -150,7 +150,7 @@ class Latest:
     ) -> None:
         self.named = named
         self.refused = ""
-        """Why the latest one was refused, in words; "" where it was not."""
+        """Why the latest message was refused; "" if it wasn't."""
         self._now = now
         self._absence = absence
         self._refuses = refuses
@@ -244,7 +244,7 @@ _KEPT = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _MOST = 1000  # messages of one topic that wait for a tick; older ones are forgotten
 _NONSENSE = 2.0  # seconds in which only what is refused has come, however slow the topic is
 QOS = {"events": QoSProfile(depth=100), "state": _KEPT}
-"""How a topic is listened to: each event counts, late listeners get a state too. Those of a sensor may be lost."""
+"""How to listen to a topic: each event counts, late listeners get a state too; those of a sensor may be lost."""
 
 
 class SubscriptionCache:

@@ -95,7 +95,7 @@ def words_at(text: str, starts: Sequence[tuple[int, float]], seconds: float) -> 
 
 
 SHAPES = {"rest": 0.0, "closed": 0.0, "teeth": 0.2, "narrow": 0.3, "round": 0.5, "wide": 0.6, "open": 1.0}
-"""How far the mouth is open in each, 0 to 1."""
+"""How far the mouth is open in each shape, 0 to 1."""
 _LETTERS = {
     letter: shape
     for shape, letters in {

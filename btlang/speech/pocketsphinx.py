@@ -56,10 +56,12 @@ _LONGEST = 10.0  # seconds of a sentence: what is longer is none, or the hall is
 _BASE = math.log(1.0001)  # of the scores of a decoder
 _VARIANT = re.compile(r"\(\d+\)$")
 _SAME_PHONES, _SCORE, _CONSTANT = 15.5, 0.11, -1.7
-"""Of a logistic regression over the training samples of tests/speech/ears, in the noise of 20 and 30 dB."""
+"""The coefficients of a logistic regression over the training samples of tests/speech/ears,
+with noise of 20 and 30 dB.
+"""
 _SURE = {"open": 1.0, "wake": -1.0, "addressed": -3.0, "pushed": -math.inf}
 _UNSURE = {"open": -0.5, "wake": -2.0, "addressed": -6.0, "pushed": -math.inf}
-"""From which confidence on a sentence is sure, and worth a question, by the mode of what is expected."""
+"""The confidence from which a sentence is sure, and from which it is worth a question, by the mode of expectation."""
 
 
 class PocketSphinx:

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 Mode = Literal["open", "wake", "addressed", "pushed"]
 RATE = 16_000
-"""Samples a second of what a recogniser hears."""
+"""Samples a second for recognisers."""
 
 
 class RecogniserError(Exception):

@@ -1,4 +1,4 @@
-"""What a robot hears with its microphone: it listens for what is expected, and asks where it isn't sure."""
+"""Hearing with a microphone: the robot listens for what is expected, and asks if it isn't sure."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from btlang.robots.bodies.body import Body
 
 TALK = "talk"
-"""In the name of the button that is held while somebody speaks."""
+"""The word in the name of the talk button."""
 _ECHO = 0.3  # seconds after its own voice in which it hears nothing
 _HELD = 2.0  # seconds for which a button that isn't one of the robot counts as held: its connection may be lost
 _PATIENCE = 8.0  # seconds in which "Did you say ...?" has to be answered

@@ -1,4 +1,4 @@
-"""The parts of a robot over its devices: those that ship as components."""
+"""The parts of a robot over its devices: battery, joints, hands and voice."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Smooth joints over servos: what is planned is written to them a hundred times a second, beside the tick."""
+"""Smooth joints over servos: plans are written to them a hundred times a second, concurrently with the tick."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ class SerialLine:
     def __init__(self, port: str, baud: int) -> None:
         self.port, self.baud = port, baud
         self.sent_by = 0.0
-        """When all that was sent is out (of time.monotonic()): a slow line is still at it."""
+        """When everything that was sent is out (of time.monotonic()): a slow line needs time."""
         self._serial: Serial | None = None
 
     def open(self) -> None:
@@ -115,7 +115,7 @@ def _reason(problem: Exception) -> str:
 PATIENCE = 0.008
 """Seconds that an adapter and a busy computer may add to an answer."""
 LONGEST_DELAY = 0.000508
-"""Seconds that a servo can be set to wait before it answers, which they are when they are new."""
+"""The longest answer delay in seconds that a servo can be set to, which is also that of a new one."""
 _TRIES = 5
 
 

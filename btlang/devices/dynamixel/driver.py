@@ -95,7 +95,7 @@ class Polling:
 _RATE = 100.0
 _MORE_TRIES = 2  # to find a servo when the line is opened
 _PAUSES = (0.1, 0.2, 0.4, 1.0)
-"""Seconds until a servo that can't be used is tried again, the last of them from then on."""
+"""Seconds until a servo that can't be used is tried again; the last one repeats."""
 _PACKET = 14  # bytes of a packet to all servos, beside those of each
 
 
@@ -119,7 +119,7 @@ class DynamixelDriver:
     def __init__(self, port: str, devices: Sequence[Device]) -> None:
         options = read_all(devices)
         self.rate = _RATE
-        """100, or what the line carries."""
+        """Cycles a second: 100, or what the line carries."""
         self._servos = {own.id: Servo(device, own) for device, own in zip(devices, options, strict=True)}
         self._line = SerialLine(port, options[0].baud)
         self._client = ServoClient(self._line)

@@ -10,7 +10,7 @@ BROADCAST = 0xFE
 HIGHEST_ID = 252
 PING, READ, WRITE, REBOOT, STATUS, SYNC_READ, SYNC_WRITE, FAST_SYNC_READ = 1, 2, 3, 8, 0x55, 0x82, 0x83, 0x8A
 ALERT = 0x80
-"""The bit of an error byte that says: see the hardware error status."""
+"""The bit of an error byte that refers to the hardware error status."""
 ERRORS = {
     1: "it could not do what it was asked",
     2: "it does not know the instruction",
@@ -20,7 +20,7 @@ ERRORS = {
     6: "a value is beyond a limit",
     7: "the address can't be written or read now",
 }
-"""By the error byte of a status packet without the alert bit."""
+"""The errors by the error byte of a status packet without the alert bit."""
 OVERHEAD = 11  # bytes of a status packet beside its data
 SEGMENT_OVERHEAD = 4  # bytes of each servo in the answer to a fast sync read, beside its data
 _HEADER = b"\xff\xff\xfd\x00"

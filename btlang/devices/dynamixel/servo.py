@@ -79,7 +79,7 @@ def _is_number(value: object) -> bool:
 
 
 WATCHDOG_SET = round(0.2 / table.WATCHDOG_UNIT)
-"""What the watchdog of a servo is set to: 200 ms without an instruction on the line stop it."""
+"""The setting of a servo's watchdog: it stops after 200 ms without an instruction on the line."""
 _COOLED = 5.0  # degrees Celsius below its limit at which a hot servo may be used again
 _DEGREES = 360 / table.TICKS
 

@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 
 MOST = 250
-"""Bytes of a message with its CRC at most, so that no block of COBS is full, and all end at a zero."""
+"""The most bytes of a message with its CRC, so that no block of COBS is full, and all end at a zero."""
 
 MOST_MESSAGE = MOST - 2
 FRAMING = 4
-"""Bytes of a frame beside its message: the CRC, one of COBS, the zero."""
+"""Bytes of a frame in addition to its message: the CRC, one of COBS, the zero."""
 
 
 def crc16(data: bytes) -> int:

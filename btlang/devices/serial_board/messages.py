@@ -27,7 +27,7 @@ from btlang.record import Record
 KIND_NUMBERS = {
     "range": 1, "drive": 2, "imu": 3, "battery": 4, "button": 5, "joint": 6, "light": 7, "display": 8,
 }  # fmt: skip
-"""The kinds that a board can have."""
+"""The numbers of the kinds that a board can have."""
 TEXT = 32
 """Bytes of the text on a display."""
 _U8, _U16, _I8, _I16, _I32 = (0, 0xFF), (0, 0xFFFF), (-0x80, 0x7F), (-0x8000, 0x7FFF), (-(2**31), 2**31 - 1)
@@ -168,7 +168,7 @@ READINGS = {
     "button": ReadingFormat(Struct("<B"), lambda reading: (int(reading.pressed),), _pressed),
     "joint": ReadingFormat(Struct("<ihbbB"), _joint_integers, _joint),
 }
-"""By kind; the other kinds measure nothing."""
+"""The formats of readings by kind; the other kinds measure nothing."""
 
 
 _SPEEDS, _TARGET, _COLOUR, _SHOWN = Struct("<hh"), Struct("<BiH"), Struct("<BBB"), Struct(f"<{TEXT}s")
@@ -216,11 +216,11 @@ COMMANDS = {
     "light": CommandFormat(_COLOUR, _pack_colour, _unpack_colour),
     "display": CommandFormat(_SHOWN, _pack_shown, _unpack_shown),
 }
-"""By kind; the other kinds take no commands."""
+"""The formats of commands by kind; the other kinds take no commands."""
 
 
 VERSION = 1
-"""Of the protocol."""
+"""The version of the protocol."""
 ASK_HELLO, TELL, STOP = 0x01, 0x02, 0x03
 """Types of messages to a board."""
 HELLO, ANSWER = 0x81, 0x82

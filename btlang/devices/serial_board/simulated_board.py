@@ -183,7 +183,7 @@ class SimulatedLine:
 
 
 SILENCE = 0.18
-"""Seconds without a command after which a channel comes to rest: all is at rest in 0.2 s."""
+"""Seconds without a command after which a channel comes to rest: everything is at rest in 0.2 s."""
 CHANNELS = (
     BoardChannel(1, "range", 0.05),
     BoardChannel(2, "drive", 0.02),
@@ -194,7 +194,7 @@ CHANNELS = (
     BoardChannel(7, "light", 0.0),
     BoardChannel(8, "display", 0.0),
 )
-"""One of each kind."""
+"""One channel of each kind."""
 _FIRST: dict[str, Reading] = {
     "range": Distance(1.0),
     "drive": Wheels(0.0, 0.0, 0.0, 0.0),

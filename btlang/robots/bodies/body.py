@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 PATIENCE = 5.0
-"""Seconds in which what moves has to get on, where a robot file says nothing else."""
+"""Seconds in which what moves has to make progress, unless a robot file gives another time."""
 Vector = tuple[float, float, float]
 """Metres ahead, left and up."""
 
@@ -47,7 +47,7 @@ class BaseSpec(Record):
 
 
 TOLERANCE = 0.5
-"""Metres from the goal of a journey, where the robot file doesn't say another distance."""
+"""Metres from the goal of a journey, unless a robot file gives another distance."""
 
 
 class NavigationSpec(Record):

@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 from btlang.record import Record
 
 BEARING = "bearing"
-"""In a posture the angle towards what the robot points or looks at."""
+"""In a posture, the angle towards the target of the robot."""
 OPPOSITE = "-bearing"
-"""As BEARING, for a joint that turns to the right where its angle grows."""
+"""The same for a joint that turns to the right when its angle grows."""
 BEARINGS = (BEARING, OPPOSITE)
 
 Step = Mapping[str, float | str]
-"""Joint -> degrees (metres where it slides) or one of BEARINGS."""
+"""Joint -> degrees (metres if it slides) or one of BEARINGS."""
 
 
 def angle_of(value: float | str, bearing: float) -> float:

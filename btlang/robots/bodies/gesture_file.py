@@ -65,7 +65,7 @@ def _sense(joint: Joint, known: Mapping[str, Joint]) -> float:
 
 
 TARGET = "target"
-"""The slot of phrases for what a gesture is aimed at."""
+"""The slot of phrases for the target of a gesture."""
 ARTICLES = frozenset(("the", "a", "an"))
 NEARER = "nearer"
 _SHORTEST = 0.05  # seconds to a key frame

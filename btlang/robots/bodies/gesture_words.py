@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 TOPIC = "gestures"
-"""Words of this topic are taken over by a gesture with their phrase."""
+"""The topic of words that a gesture with their phrase replaces."""
 _CALL = "btlang.actions.gestures:perform"
 _TARGETS = ("person", "object", "place")
 _POINT = {"x": "length", "y": "length"}

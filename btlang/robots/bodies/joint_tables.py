@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 BASE = "base"
-"""What files call the link that wheels carry; in a body its name is ""."""
+"""The name in files for the link that wheels carry; in a body its name is ""."""
 _LEAST = 0.001
 _FRAME = ("link", "parent", "at", "axis")
 

@@ -163,7 +163,7 @@ class _UrdfReader:
         if len(roots) != 1:
             raise self._wrong(root, f"one link must have no joint that moves it; {len(roots) or 'no'} links have none")
         carried: dict[str, tuple[str, Array, Array]] = {roots[0]: ("", np.eye(3), np.zeros(3))}
-        """By link, the link of ours that it is a piece of; how it is turned and where it is with all joints at 0."""
+        """For each link, our link that it is a part of, and its rotation and position with all joints at 0."""
         starts: dict[str, Array] = {"": np.zeros(3)}
         found: list[Joint] = []
         for joint in self._order(ways, roots[0], links, root):

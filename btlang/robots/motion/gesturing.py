@@ -14,7 +14,7 @@ from btlang.robots.parts import IdlePart, SmoothPart
 from btlang.robots.robot import Operation, RobotError, clip_targets, joint_of
 
 HEIGHT = 1.0
-"""Metres above the floor of what a gesture points at."""
+"""Metres above the floor of a gesture's target."""
 _FAR = 90.0  # degrees to the side beyond which something is behind
 
 Angles = Mapping[str, float]

@@ -85,7 +85,7 @@ class Collisions:
             for other in of_link.get(second, ())
         ]
         self.pairs = [body.forbidden[number] for number, *_ in pairs]
-        """Two links for each row of `distances`; links that have several capsules are in several."""
+        """Two links for each row of `distances`; links with several capsules are in several rows."""
         self._first = [one for _, one, _ in pairs]
         self._second = [other for *_, other in pairs]
         sizes = [(capsule.radius, dist(capsule.start, capsule.end) / 2) for capsule in body.capsules]

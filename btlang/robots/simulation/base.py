@@ -23,7 +23,7 @@ class SimulatedBase:
     """
 
     silent = None
-    """It is always known where it is."""
+    """Always None: a simulated base knows its pose."""
 
     def __init__(self, pose: Pose, obstacles: Obstacles, body: Body) -> None:
         self.pose = pose
@@ -38,7 +38,7 @@ class SimulatedBase:
         self._rolled = self._turned = 0.0
         self.grips = (1.0, 1.0)
         self.limits = inf, inf
-        """Metres and degrees a second that it doesn't exceed, whatever the command."""
+        """Metres and degrees a second that it doesn't exceed, whatever is commanded."""
         self._obstacles = obstacles
         self.wanted = (0.0, 0.0)
         self._speeds = (0.0, 0.0)

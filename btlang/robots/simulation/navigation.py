@@ -25,7 +25,7 @@ ROOM = 0.15
 """Metres between the robot and an object or a person that it goes to, at least."""
 
 PATIENCE, GIVES_UP = 8.0, 30.0
-"""Seconds that the robot waits for who is in its way, and that it looks for another way."""
+"""Seconds that the robot waits for somebody in its way, and that it then looks for another way."""
 _AGAIN = 4.0  # seconds between two looks for another way
 _NEARBY = 3.0  # metres: who walks farther away may be elsewhere by then
 _MOVED, _REPLAN = 0.3, 0.5  # metres that somebody has moved, and seconds between two plans for that

@@ -1,4 +1,4 @@
-"""What a gesture does to a body, tried in the simulation before a robot does it."""
+"""A rehearsal of a gesture: what it does to a body, tried in the simulation before a robot does it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from btlang.robots.worlds.world import World
 STEP = 0.02
 """Seconds between two angles of a rehearsal."""
 AHEAD: Point = (3.0, -1.0)
-"""What gestures are aimed at where nothing else is said: metres ahead and to the left of the robot."""
+"""The default target of gestures: metres ahead and to the left of the robot."""
 _LONGEST = 120.0
 
 

@@ -1,4 +1,4 @@
-"""What is where around a robot, by name, as far as the robot knows; and who lives there."""
+"""The surroundings of a simulated robot as far as it knows them, and the people who live there."""
 
 from __future__ import annotations
 

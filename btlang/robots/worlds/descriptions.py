@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 NEAR = 2.0
 """Metres within which something is near, beside, behind, left or right of another thing."""
 HERE = 1.0
-"""Metres from a place at which the robot is there."""
+"""Metres from a place within which the robot is there."""
 BETWEEN = 0.25
-"""Of the distance between two things: what is no further from the line between them is between them."""
+"""A share of the distance between two things: what is within it of the line between them is between them."""
 _SIDES = {"in_front_of": 0.0, "left_of": 90.0, "behind": 180.0, "right_of": -90.0}
 """The bearings of the sides of the robot, in degrees to the left."""
 _HALF_SIDE = 60.0  # degrees: what is ahead to the left is on both of these sides
@@ -220,7 +220,7 @@ def _is_on_side(relation: str, one: Point, point: Point, pose: Pose) -> bool:
 
 
 PICKY = ("seen", "largest", "smallest")
-"""The ways to choose that look at what something is like."""
+"""The ways to choose that depend on what something is like."""
 _AHEAD = 90.0  # degrees to either side
 
 

@@ -7,7 +7,7 @@ from itertools import chain
 
 Parts = tuple[tuple[str, str], ...]
 SPEAKER = "me"
-"""The owner of what belongs to whoever gives the robot its missions."""
+"""The owner of things that belong to whoever gives the robot its missions."""
 
 
 def of_thing(

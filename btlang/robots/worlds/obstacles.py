@@ -1,4 +1,4 @@
-"""All that the robot can run into: walls, furniture, objects, and people, who may walk."""
+"""Everything that the robot can run into: walls, furniture, objects, and people, who may walk."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from btlang.robots.geometry import Point, Segment
 from btlang.robots.worlds.world import Door, FurnitureBox, Thing, World
 
 Disc = tuple[float, float, float]
-"""x, y and radius."""
+"""The x, y and radius of a disc."""
 
 
 class Obstacles:

@@ -30,7 +30,7 @@ class Sight:
         self._obstacles, self._find, self._report = obstacles, find, report
         self._kinds = {name: kind for kind in ("object", "person") for name in world.names.of(kind)}
         self.watched = {thing.name: None for thing in (*world.objects, *world.people) if not thing.known}
-        """The names of what the robot knows only from where it has seen it, in the order in which that began."""
+        """Names that the robot knows only from where it has seen them, in the order in which that began."""
         self._last: dict[str, tuple[Point, float]] = {}
         self._met: set[str] = set()
         self._now = self._next = 0.0

@@ -1,4 +1,4 @@
-"""What of a world lies outside its outer walls, where these are closed."""
+"""Finds what lies outside the outer walls of a world, if these are closed."""
 
 from __future__ import annotations
 

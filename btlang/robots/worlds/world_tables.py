@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 ANYWHERE = "anywhere"
-"""The `walks` of who wanders."""
+"""The `walks` of a person who wanders."""
 _MOST_STOPS, _MOST_IN_CROWD = 1_000, 1_000
 _SHORTEST_VISIT = 60.0  # seconds
 

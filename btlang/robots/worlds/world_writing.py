@@ -19,7 +19,7 @@ _KEYS: dict[type, dict[str, str]] = {
     Door: {"start": "from", "end": "to"},
     WorldObject: {"having": "has"},
 }
-"""Of fields that have another key in the file."""
+"""The keys of fields whose key in the file differs."""
 _MONDAY = 5  # of January 2026
 _LISTS = ("boxes", "docks", "places", "objects", "people", "zones", "doors", "faults")
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _LOOK = 0.25  # seconds between two looks at who publishes
 _MOST = {"subscriptions": 100, "publishers": 100, "calls": 50, "goals": 20}
-"""Of one client."""
+"""Limits for one client."""
 _FEEDBACK = 10  # messages that wait for a client
 
 

@@ -7,7 +7,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 MOST_CHARACTERS = 256 * 1024
-"""Of a message as JSON, either way."""
+"""The longest message as JSON, in either direction."""
 _ANSWERS = {"call_service": ("service_response", "service"), "send_action_goal": ("action_result", "action")}
 
 

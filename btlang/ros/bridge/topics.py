@@ -1,4 +1,4 @@
-"""What one client hears of topics, and what he publishes."""
+"""What one client hears of topics, and what it publishes."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ TRANSLATIONS: dict[str, type[Translation]] = {
     "light": LightTranslation,
     "display": DisplayTranslation,
 }
-"""By the kinds of devices."""
+"""The translations by kind of device."""
 
 
 _MOST = 50  # messages of one topic that wait for a cycle

@@ -1,4 +1,4 @@
-"""What has to be known of a device so that messages of ROS 2 can be made of it. Imports no ROS."""
+"""What messages of ROS 2 need to know of a device. Imports no ROS."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What makes messages of the readings and commands of one device, and back."""
+"""The base of all translations between messages and the readings and commands of one device."""
 
 from __future__ import annotations
 

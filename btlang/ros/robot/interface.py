@@ -33,7 +33,7 @@ class Interface(Record):
 
 
 VELOCITY = "cmd_vel"
-"""The topic whose type is Twist, or TwistStamped where the robot listens to that."""
+"""The topic of velocities; its type is Twist, or TwistStamped if the robot listens to that."""
 CLOCK = Interface("publisher", "/clock", "rosgraph_msgs/msg/Clock", flows=True)
 ONE_SOURCE = ("odom", "clock", "battery_state", "docked")
 """Topics on which two publishers would contradict one another."""
@@ -71,7 +71,7 @@ ALTERNATIVES: dict[str, tuple[Interface, ...]] = {
     "undock": (Interface("action", "undock_robot", "nav2_msgs/action/UndockRobot"), _CAPABILITIES["docking"][1]),
     "docked": (*_CAPABILITIES["docked"], *_CAPABILITIES["battery"]),
 }
-"""What will do in the place of an interface, by its name: the first that the robot has."""
+"""The interfaces that may replace one, by its name: the first that the robot has is used."""
 
 
 def interfaces(need: str, body: Body) -> tuple[Interface, ...]:

@@ -116,7 +116,7 @@ class RosRobot(AssembledRobot):
         self._pursuit: Pursuit | None = None
         self._navigation: RosNavigation | None = None
         self.pending: Callable[[], Iterable[str]] = tuple
-        """Further reasons why it may be moved on, beside its journeys."""
+        """Further reasons why somebody may still move it, besides its own goals."""
         self._stops_for = 0.0
         self._driven = False  # by somebody else, since the latest step
         self._closed = False
@@ -442,7 +442,7 @@ class RosRobot(AssembledRobot):
         return self._zones.zones
 
     held_up = ""
-    """No topic reports who is in its way."""
+    """Always "": no topic reports who is in its way."""
 
     def wait_for_way(self, seconds: float) -> None:
         """Do nothing: the navigation server decides how long it waits for people in its way."""

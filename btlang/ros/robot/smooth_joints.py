@@ -26,7 +26,7 @@ from btlang.ros.robot.joints import TRAJECTORY, JointStates, on_wire
 from btlang.ros.subscriptions import SubscriptionCache
 
 _AHEAD = 0.05
-"""Seconds to come that are settled: so long has a new trajectory to be made and to arrive before it begins."""
+"""Seconds ahead that are settled: the time to plan and send a new trajectory before it begins."""
 _WIRE = 0.02  # seconds that a braking trajectory gets to arrive
 _EACH = 2  # samples between two points of a trajectory
 _RENEWED = 0.2  # seconds of real time after which what is under way is sent again: the robot brakes where it isn't

@@ -41,7 +41,7 @@ class RosSpeech:
     def __init__(self, node: Node, subscriptions: SubscriptionCache, synthesizer: Synthesizer) -> None:
         self._subscriptions, self._synthesizer = subscriptions, synthesizer
         self.said: Utterance | None = None
-        """What it says, or said last."""
+        """The current or the last utterance."""
         self._speech = node.create_publisher(String, SPEECH, 10)
         self._print = node.create_publisher(String, PRINT, 10)
         self._language = node.create_publisher(String, LANGUAGE, LATCHED)
@@ -173,9 +173,9 @@ class RosSpeech:
 HEARD, ASKING, LISTENING = "heard", "asking", "listening"
 HEARD_TYPE, QUESTION_TYPE = "btlang_interfaces/msg/Heard", "btlang_interfaces/msg/Question"
 ANYTHING = "*"
-"""The line of the topic of what is listened for that stands for any words."""
+"""The line in the topic of expected phrases that stands for any words."""
 WORDLESS = "..."
-"""The text of a question that has no words: the robot only listens."""
+"""The text of a question without words: the robot only listens."""
 
 
 class RosEars:

@@ -53,7 +53,7 @@ class LeafGoal:
         self.reason: str | None = None
         self.engine: Engine | None = None
         self.patient_until = patient_until
-        """The real time until which it waits for what another one uses."""
+        """The real time until which it waits for a busy resource."""
         self.ended = connection.bus.clock.now
         self.words = phrase_of(node, vocabulary)
         self.resources = frozenset(r for entry in vocabulary.entries[node.id] for r in entry.resources)
@@ -128,7 +128,9 @@ class LeafGoal:
 
 
 BUSY = 0.5
-"""Real seconds that a goal waits for what another one uses: the word that cancels that one may come a moment later."""
+"""Real seconds that a goal waits for a busy resource: the request that cancels the other goal
+may come a moment later.
+"""
 REST = 2.0
 """Seconds of the mission that a robot gets to come to rest before the end of a cancelled goal is reported."""
 

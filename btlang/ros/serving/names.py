@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 
 RUN_PHRASE = "btlang_interfaces/action/RunPhrase"
-"""The type of them all."""
+"""The type of all served actions."""
 WORD, SILENCE = 2.0, 10.0
 """Real seconds after which a server repeats its feedback, and after which a client takes it for dead without any."""
 FOLDER = "actions"
-"""What stands before their names, behind the namespace of the node."""
+"""The prefix of their names, after the namespace of the node."""
 
 
 def action_name(node_id: str) -> str:

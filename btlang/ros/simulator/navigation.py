@@ -22,7 +22,7 @@ from btlang.ros.simulator.base import BaseTopics
 from btlang.ros.simulator.shared import COMMANDS, AcceptedGoal, CallQueue, Moment, PeriodicPublisher
 
 FAILED = 9000
-"""The error code of all that can go wrong, as of Nav2 for what it has no own code for; `error_msg` says what it is."""
+"""Nav2's error code for all failures without a code of their own; `error_msg` has the reason."""
 
 
 class NavigationRide(AcceptedGoal):

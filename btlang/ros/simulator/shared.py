@@ -143,7 +143,7 @@ class AcceptedGoal:
         self.failure: str | None = None
         self.began = 0.0
         self.cancelled: float | None = None
-        """The second at which its client had withdrawn it."""
+        """The second at which its client cancelled it."""
         self._abandoned = False
         self._ended = RosFuture()
 

@@ -66,14 +66,14 @@ class RosClients:
         self.node = node
         self.clock = NodeClock(node)
         self.steady = Clock(clock_type=ClockType.STEADY_TIME)
-        """For timers that go on while simulated time stands still."""
+        """A clock for timers that go on while simulated time stands still."""
         self.executor = ExecutorThread(node)
         self.endings: list[Ending] = []
         """What was halted and may not have ended yet."""
         self.judge: Callable[[str, float, float], Verdict | None] = lambda topic, linear, angular: None
         """The verdict of the guard about metres and degrees a second on a topic; None if it doesn't guard that one."""
         self.lease: Lease | None = None
-        """That of the goals, once there is an action."""
+        """The lease of the goals, once there is an action."""
         self._publishers: list[Any] = []
         self._types: dict[tuple[str, str], Any] = {}
         self._made: dict[Key, tuple[Any, Missing]] = {}  # each with a function for why it's of no use yet

@@ -141,7 +141,7 @@ def _within(scan: Any, at: int, low: float, high: float) -> bool:
 
 
 NOW = "now"
-"""What a field of the type builtin_interfaces/Time may be given."""
+"""The value for a field of type builtin_interfaces/Time."""
 _POINTS = ("Point", "Point32", "Pose", "PoseStamped", "Pose2D")
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 SPEED, TURN = 0.3, math.radians(45)
-"""Metres and radians a second where neither the table nor the mission gives a speed."""
+"""Default speeds in metres and radians a second."""
 _GAIN = 3.0  # speed per way that is left; twice as much would swing where odometry comes 0.1 s late
 _SLOWEST = (0.03, 0.08)  # metres and radians a second that still move a robot
 _CLOSE = (0.01, math.radians(1.0))

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 WAIT = 5.0
-"""Real seconds that a server gets to appear, where a table says nothing else."""
+"""Real seconds that a server has to appear, unless a table gives another time."""
 ANSWER = 5.0
 """Seconds that the server of an action gets to accept a goal or to reject it."""
 _REASONS = ("message", "error_msg", "error_string", "reason", "status_message")
@@ -103,7 +103,7 @@ def do_nothing() -> None:
 
 
 LIMIT = 10.0
-"""Real seconds that an answer may take, where a table says nothing else."""
+"""Real seconds that an answer may take, unless a table gives another time."""
 _GONE = 1.0  # seconds without a server, after which it counts as lost
 
 
@@ -169,7 +169,7 @@ class ActionGoal:
         self.answer: Any = None
         self.accepted = False
         self.heard = 0.0
-        """When it last had word of the server, in seconds of AWAKE; 0 for never."""
+        """When the server last answered, in seconds of AWAKE; 0 for never."""
         self._clients = clients
         self._client = client
         self._name = name

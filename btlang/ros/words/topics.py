@@ -112,7 +112,7 @@ def _limit(word: RosWord, cls: Any, given: Any) -> Callable[[Mapping[str, Any]],
 
 
 RATE = 10.0
-"""Messages a second of what is published again and again, where a table says nothing else."""
+"""Messages a second of repeated publishing, unless a table gives another rate."""
 
 
 def publish_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:

@@ -1,4 +1,4 @@
-"""A keyword entry with a `ros` table, and what is said where ROS 2 has no such interface or field."""
+"""A keyword entry with a `ros` table, and messages for interfaces and fields that ROS 2 lacks."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     Locate: TypeAlias = Callable[[str], tuple[float, float, float | None]]
 
 _SI = {"angle": math.pi / 180, "percent": 0.01}
-"""What values of these types are multiplied with to be those of a message; all others are SI as they are."""
+"""Factors from values of these types to those in messages; all others are SI as they are."""
 
 
 class RosWord:

@@ -1,4 +1,4 @@
-"""Judges each velocity of a base before it is sent: what may be sent, and the one reason why it is less."""
+"""The guard of a base: it judges each velocity before it is sent, and gives one reason why it allows less."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from btlang.robots.zones import Zones
 FASTEST, FASTEST_TURN = 20.0, degrees(30.0)
 """Metres and degrees a second that no robot exceeds."""
 FRESH = 0.6
-"""Seconds after which a reading says nothing about the way any more."""
+"""Seconds after which a reading doesn't count for driving any more."""
 _BLIND, _OFTEN = (
     0.3,
     0.25,
@@ -49,7 +49,7 @@ class Cause(Enum):
 
 
 _PATIENCE = {Cause.NONE: inf, Cause.OBSTACLE: 1.0, Cause.ZONE: 1.0, Cause.SENSOR: 2.0, Cause.ODOMETRY: 0.0}
-"""Seconds after which a drive that stands for it has failed; for people it has the patience of the body."""
+"""Seconds after which a drive that the guard holds has failed; for people it is the patience of the body."""
 
 
 class Verdict(Record):
@@ -98,7 +98,7 @@ class Guard:
         self._stands_since: float | None = None
         self._touches_until, self._touches = -inf, False
         self.verdict = Verdict(0.0, 0.0)
-        """The latest one."""
+        """The latest verdict."""
 
     @property
     def held(self) -> str:

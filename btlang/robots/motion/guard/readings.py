@@ -64,7 +64,7 @@ class OdometryReading(SensorReading):
 
     pose: Pose = Pose(0.0, 0.0)
     measured: float | None = None
-    """Seconds by the clock of its source, where it has one: `stamp` may be that of an arrival, which may be late."""
+    """Seconds by the clock of its source, if it has one: `stamp` may be the time of a late arrival."""
 
 
 class JointReading(SensorReading):
@@ -74,9 +74,9 @@ class JointReading(SensorReading):
 
 
 ObstacleReading = ScanReading | RangeReading | ContactReading
-"""Readings that say what is near."""
+"""A reading of what is near."""
 Sensors = Callable[[], "list[ObstacleReading]"]
-"""Gives the readings of all sensors that look out for obstacles, as they are now."""
+"""A function that returns the current readings of all sensors for obstacles."""
 
 
 _LATE = 0.7  # seconds more than usual that a message may be under way

@@ -45,7 +45,7 @@ class OdometryCheck:
         self._tops: deque[tuple[float, float]] = deque()  # times and metres a second that were commanded
         self._drives_since = 0.0
         self.rolled = self.commanded = 0.0
-        """Metres that the odometry has shown in sum, in whatever direction, and that the commands come to."""
+        """Total metres by the odometry, in any direction, and by the commands."""
 
     def sent(self, now: float, linear: float, angular: float) -> None:
         """Note the commanded metres and degrees a second since the last call."""
