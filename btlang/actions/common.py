@@ -56,7 +56,7 @@ def share_of(robot: Base, manner: str | None) -> float:
 STUCK = "the wheels turn but the robot doesn't move"
 
 
-class Driving(Base, Sensors, Power, Protocol):
+class DrivingRobot(Base, Sensors, Power, Protocol):
     """A base that reports what keeps it from driving on, as far as it has a bumper and a battery."""
 
 
@@ -83,7 +83,7 @@ class Watch:
 class BaseWatch(Watch):
     """A watch for bumps and other trouble of the base, too."""
 
-    def __init__(self, robot: Driving) -> None:
+    def __init__(self, robot: DrivingRobot) -> None:
         super().__init__(robot)
         self._robot = robot
         self._bumps = robot.bumps

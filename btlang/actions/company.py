@@ -6,11 +6,11 @@ from collections.abc import Generator
 from math import dist, inf
 from typing import Any, Protocol
 
-from btlang.actions.common import Driving, Watch, keep_pace, where
-from btlang.actions.gestures import Aiming, wave
+from btlang.actions.common import DrivingRobot, Watch, keep_pace, where
+from btlang.actions.gestures import AimingRobot, wave
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import go_to, travel
-from btlang.actions.speech import Presenting, say
+from btlang.actions.speech import PresentingRobot, say
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Point
 from btlang.robots.robot import Leading, Listening, Navigation, Operation, Perception
@@ -32,47 +32,47 @@ _ARRIVED, _MOVED = 2.0, 0.2  # metres
 _TRIES, _PAUSE = 3, 1.0  # journeys that fail one after the other, and the seconds between them
 
 
-class Meeting(Perception, Listening, Navigation, Protocol):
+class MeetingRobot(Perception, Listening, Navigation, Protocol):
     """A robot that goes to people whom it sees or hears."""
 
 
-class Following(Meeting, Driving, Protocol):
+class FollowingRobot(MeetingRobot, DrivingRobot, Protocol):
     """A robot that follows people."""
 
 
-class Guiding(Leading, Following, Presenting, Protocol):
+class GuidingRobot(Leading, FollowingRobot, PresentingRobot, Protocol):
     """A robot that asks people to follow."""
 
 
-class Greeting(Navigation, Presenting, Aiming, Protocol):
+class GreetingRobot(Navigation, PresentingRobot, AimingRobot, Protocol):
     """A robot that goes to people, waves and speaks."""
 
 
-class Telling(Navigation, Presenting, Protocol):
+class TellingRobot(Navigation, PresentingRobot, Protocol):
     """A robot that goes to people and speaks."""
 
 
-def speaker(robot: Meeting) -> str | None:
+def speaker(robot: MeetingRobot) -> str | None:
     """Return who "me" is: the last speaker, else the nearest person in view; None if there is nobody."""
     heard = robot.ears.since(0) if robot.body.has("ears") else []
     spoken = next((each.who for each in reversed(heard) if each.who), None)
     return spoken or next(iter(robot.seen("person")), None)
 
 
-def _somebody(robot: Meeting, person: str | None) -> str:
+def _somebody(robot: MeetingRobot, person: str | None) -> str:
     found = person or speaker(robot)
     if found is None:
         raise ActionFailed("I see nobody")
     return found
 
 
-def come_to_me(robot: Meeting, manner: str | None = None) -> Steps:
+def come_to_me(robot: MeetingRobot, manner: str | None = None) -> Steps:
     """Go to the last speaker, else to the nearest person in view."""
     yield from keep_pace(robot, manner, travel(robot, _somebody(robot, None)))
 
 
 def follow(
-    robot: Following,
+    robot: FollowingRobot,
     person: str | None = None,
     place: str | None = None,
     x: float | None = None,
@@ -89,12 +89,12 @@ def follow(
     yield from keep_pace(robot, manner or "quickly", _follow(robot, name, goal, inf))
 
 
-def follow_until_still(robot: Following, person: str, duration: float) -> Steps:
+def follow_until_still(robot: FollowingRobot, person: str, duration: float) -> Steps:
     """Follow a person until they stand for so many seconds. Fails as `follow` does."""
     yield from keep_pace(robot, "quickly", _follow(robot, person, None, duration))
 
 
-def _follow(robot: Following, person: str, goal: Point | None, stands: float) -> Steps:
+def _follow(robot: FollowingRobot, person: str, goal: Point | None, stands: float) -> Steps:
     watch, journey = Watch(robot), _Journeys(robot, person)
     seen_at, stood_at, stood = robot.time, robot.time, robot.locate(person)
     try:
@@ -123,7 +123,7 @@ def _follow(robot: Following, person: str, goal: Point | None, stands: float) ->
 class _Journeys:
     """The journeys to somebody who walks on, one after the other."""
 
-    def __init__(self, robot: Following, person: str) -> None:
+    def __init__(self, robot: FollowingRobot, person: str) -> None:
         self._robot, self._person = robot, person
         self._operation: Operation | None = None
         self._failed, self._next = 0, 0.0
@@ -157,7 +157,7 @@ class _Journeys:
 
 
 def guide(
-    robot: Guiding,
+    robot: GuidingRobot,
     person: str | None = None,
     place: str | None = None,
     x: float | None = None,
@@ -187,14 +187,14 @@ def guide(
         robot.guide(name, False)
 
 
-def fetch_person(robot: Guiding, person: str) -> Steps:
+def fetch_person(robot: GuidingRobot, person: str) -> Steps:
     """Go to a person and guide them to where the robot is now. Fails as `guide` does."""
     here = robot.pose
     yield from travel(robot, person)
     yield from guide(robot, person, x=here.x, y=here.y)
 
 
-def _lead(robot: Guiding, person: str, steps: Steps) -> Generator[None, None, bool]:
+def _lead(robot: GuidingRobot, person: str, steps: Steps) -> Generator[None, None, bool]:
     """Go on while the person keeps up; return whether both came to the end together."""
     with_us, arrived = robot.time, False
     try:
@@ -215,11 +215,11 @@ def _lead(robot: Guiding, person: str, steps: Steps) -> Generator[None, None, bo
         steps.close()
 
 
-def _is_with(robot: Guiding, person: str) -> bool:
+def _is_with(robot: GuidingRobot, person: str) -> bool:
     return robot.sees(person) and robot.pose.distance_to(robot.locate(person)) <= BEHIND
 
 
-def _rejoin(robot: Guiding, person: str) -> Steps:
+def _rejoin(robot: GuidingRobot, person: str) -> Steps:
     """Wait for a person, facing where they were seen last, then go there."""
     watch, until = Watch(robot), robot.time + WAITS
     yield from turn(robot, robot.pose.bearing_to(robot.locate(person)))
@@ -236,14 +236,14 @@ def _rejoin(robot: Guiding, person: str) -> Steps:
         robot.guide(person, True)
 
 
-def greet(robot: Greeting, person: str, text: str | None = None) -> Steps:
+def greet(robot: GreetingRobot, person: str, text: str | None = None) -> Steps:
     """Drive to a person, wave and say the text, or hello."""
     yield from travel(robot, person)
     yield from wave(robot, person)
     yield from say(robot, text or f"Hello, {person}!")
 
 
-def tell(robot: Telling, person: str, text: str, kept: dict[str, Any] | None = None) -> Steps:
+def tell(robot: TellingRobot, person: str, text: str, kept: dict[str, Any] | None = None) -> Steps:
     """Drive to a person and say the text."""
     yield from travel(robot, person)
     yield from say(robot, text, kept)

@@ -10,9 +10,9 @@ from importlib.resources import files
 from inspect import isgenerator
 from typing import Protocol
 
-from btlang.actions.common import Driving, Watch
+from btlang.actions.common import DrivingRobot, Watch
 from btlang.actions.motion import Steps
-from btlang.actions.speech import Presenting, say
+from btlang.actions.speech import PresentingRobot, say
 from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown
 from btlang.robots.bodies.body import Body
 from btlang.robots.ears import HeardText
@@ -31,11 +31,11 @@ WAITS = 60.0
 MEANINGS = ("yes", "no")
 
 
-class Questioning(Conversing, Presenting, Protocol):
+class QuestioningRobot(Conversing, PresentingRobot, Protocol):
     """A robot that asks, with gestures."""
 
 
-def ask(robot: Questioning, question: str, person: str | None = None, kept: dict[str, Any] | None = None) -> Steps:
+def ask(robot: QuestioningRobot, question: str, person: str | None = None, kept: dict[str, Any] | None = None) -> Steps:
     """Ask a person, or anybody, and wait for the answer. Fails after a minute without one."""
     if person is not None:
         robot.locate(person)  # nobody is asked whom the robot hasn't seen
@@ -187,11 +187,11 @@ def listen(
         ears.asking = ""
 
 
-class Obeying(Conversing, Presenting, Driving, Protocol):
+class ObeyingRobot(Conversing, PresentingRobot, DrivingRobot, Protocol):
     """A robot that obeys spoken commands."""
 
 
-def do_what_somebody_says(robot: Obeying) -> Steps:
+def do_what_somebody_says(robot: ObeyingRobot) -> Steps:
     """Wait for a command, ask "Shall I ...?" and do it after a yes. Fails after a no, and without an answer."""
     commands = robot.ears.commands
     if commands is None:

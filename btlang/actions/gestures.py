@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from btlang.actions.common import Driving, Watch, spot, where
+from btlang.actions.common import DrivingRobot, Watch, spot, where
 from btlang.actions.joints import take
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish
@@ -14,11 +14,11 @@ from btlang.robots.robot import Base, Gesturing, Joints
 from btlang.robots.worlds.world import said
 
 
-class Aiming(Joints, Base, Protocol):
+class AimingRobot(Joints, Base, Protocol):
     """A robot that knows where it is, so it can point at what it knows."""
 
 
-def wave(robot: Aiming, person: str | None = None) -> Steps:
+def wave(robot: AimingRobot, person: str | None = None) -> Steps:
     """Wave the right arm, towards the person if one is named, and let it hang again."""
     yield from _towards(robot, "wave", person) if person else take(robot, "wave")
 
@@ -39,17 +39,19 @@ def perform(
     yield from accomplish(robot.gesture(movement, aim=aim))
 
 
-def point_at_person(robot: Aiming, person: str) -> Steps:
+def point_at_person(robot: AimingRobot, person: str) -> Steps:
     """Stretch the right arm towards a person."""
     yield from _towards(robot, "right arm pointing", person)
 
 
-def point_at_object(robot: Aiming, object: str) -> Steps:
+def point_at_object(robot: AimingRobot, object: str) -> Steps:
     """Stretch the right arm towards an object."""
     yield from _towards(robot, "right arm pointing", object)
 
 
-def point_at_place(robot: Aiming, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
+def point_at_place(
+    robot: AimingRobot, place: str | None = None, x: float | None = None, y: float | None = None
+) -> Steps:
     """Stretch the right arm towards a place or a point."""
     yield from _towards(robot, "right arm pointing", place or spot(x, y), where(robot, place, x, y))
 
@@ -109,22 +111,24 @@ def look_down(robot: Joints) -> Steps:
     yield from take(robot, "look down")
 
 
-def look_at_person(robot: Aiming, person: str) -> Steps:
+def look_at_person(robot: AimingRobot, person: str) -> Steps:
     """Turn the head to a person. Fails if they are behind the robot."""
     yield from _towards(robot, "look at", person)
 
 
-def look_at_object(robot: Aiming, object: str) -> Steps:
+def look_at_object(robot: AimingRobot, object: str) -> Steps:
     """Turn the head to an object. Fails if it is behind the robot."""
     yield from _towards(robot, "look at", object)
 
 
-def look_at_place(robot: Aiming, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
+def look_at_place(
+    robot: AimingRobot, place: str | None = None, x: float | None = None, y: float | None = None
+) -> Steps:
     """Turn the head to a place or a point. Fails if it is behind the robot."""
     yield from _towards(robot, "look at", place or spot(x, y), where(robot, place, x, y))
 
 
-def _towards(robot: Aiming, posture: str, name: str, point: Point | None = None) -> Steps:
+def _towards(robot: AimingRobot, posture: str, name: str, point: Point | None = None) -> Steps:
     """Turn to the point, by default that of the name. Raises ActionFailed if the joint doesn't turn so far."""
     bearing = robot.pose.bearing_to(robot.locate(name) if point is None else point)
     joint = robot.body.falls_short(posture, bearing)
@@ -144,7 +148,7 @@ def bow(robot: Joints) -> Steps:
     yield from take(robot, "look ahead")
 
 
-def dance(robot: Driving) -> Steps:
+def dance(robot: DrivingRobot) -> Steps:
     """Swing from side to side on the spot, and turn once around."""
     for angle in (45.0, -90.0, 90.0, -45.0, 360.0):
         yield from turn(robot, angle)

@@ -15,15 +15,15 @@ BESIDE = 1.0
 """Metres from the robot within which an object that it doesn't hold has been put down."""
 
 
-class Reaching(Joints, Hands, Protocol):
+class ReachingRobot(Joints, Hands, Protocol):
     """Arms with hands."""
 
 
-class Placing(Base, Reaching, Protocol):
+class PlacingRobot(Base, ReachingRobot, Protocol):
     """Arms with hands on a base."""
 
 
-class Fetching(Navigation, Reaching, Protocol):
+class FetchingRobot(Navigation, ReachingRobot, Protocol):
     """Arms with hands on a base that finds its way."""
 
 
@@ -57,7 +57,7 @@ def release(robot: Hands, object: str | None = None) -> Steps:
     yield from accomplish(robot.release(_full_hand(robot, object)))
 
 
-def pick_up(robot: Fetching, object: str) -> Steps:
+def pick_up(robot: FetchingRobot, object: str) -> Steps:
     """Drive up to the object, grasp it with the right hand and lift it. Fails if one of these fails."""
     held = robot.holding("right")
     if held is not None:
@@ -68,7 +68,7 @@ def pick_up(robot: Fetching, object: str) -> Steps:
     yield from take(robot, "right arm carrying")
 
 
-def put_down(robot: Placing, object: str | None = None) -> Steps:
+def put_down(robot: PlacingRobot, object: str | None = None) -> Steps:
     """Lower the arm that holds the object (or anything) and open its hand.
 
     Fails if none does, unless the object lies within reach: then it has been put down.
@@ -91,7 +91,7 @@ def hand_with(robot: Hands, object: str | None = None) -> Hand | None:
     return None
 
 
-def _lies_here(robot: Placing, object: str) -> bool:
+def _lies_here(robot: PlacingRobot, object: str) -> bool:
     """Return whether an object lies within reach, as far as the robot knows."""
     if not robot.body.has("pose"):
         return False

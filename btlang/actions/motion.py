@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 
-from btlang.actions.common import BaseWatch, Driving, share_of, where
+from btlang.actions.common import BaseWatch, DrivingRobot, share_of, where
 from btlang.engine.leaves.leaf import ActionFailed, unheard
 from btlang.robots.geometry import wrap
 from btlang.robots.motion.progress import Approach, DriveProgress
@@ -22,7 +22,7 @@ _STRAIGHTENING = 2.0  # degrees a second for each degree off course
 
 
 def move_forward(
-    robot: Driving,
+    robot: DrivingRobot,
     distance: float,
     speed: float | None = None,
     manner: str | None = None,
@@ -33,7 +33,7 @@ def move_forward(
 
 
 def move_backward(
-    robot: Driving,
+    robot: DrivingRobot,
     distance: float,
     speed: float | None = None,
     manner: str | None = None,
@@ -43,31 +43,31 @@ def move_backward(
     yield from drive_straight(robot, -distance, _speed(robot, speed, manner), progress)
 
 
-def _speed(robot: Driving, speed: float | None, manner: str | None) -> float:
+def _speed(robot: DrivingRobot, speed: float | None, manner: str | None) -> float:
     return share_of(robot, manner) * (speed or robot.normal_speed)
 
 
-def turn_left(robot: Driving, angle: float, progress: Report = unheard) -> Steps:
+def turn_left(robot: DrivingRobot, angle: float, progress: Report = unheard) -> Steps:
     """Turn on the spot by `angle` degrees counter-clockwise, to the degree."""
     yield from turn(robot, angle, progress)
 
 
-def turn_right(robot: Driving, angle: float, progress: Report = unheard) -> Steps:
+def turn_right(robot: DrivingRobot, angle: float, progress: Report = unheard) -> Steps:
     """Turn on the spot by `angle` degrees clockwise, to the degree."""
     yield from turn(robot, -angle, progress)
 
 
-def turn_around(robot: Driving) -> Steps:
+def turn_around(robot: DrivingRobot) -> Steps:
     """Turn on the spot to where its back was."""
     yield from turn(robot, 180.0)
 
 
-def turn_once_around(robot: Driving) -> Steps:
+def turn_once_around(robot: DrivingRobot) -> Steps:
     """Turn on the spot by a full turn."""
     yield from turn(robot, 360.0)
 
 
-def stop(robot: Driving) -> Steps:
+def stop(robot: DrivingRobot) -> Steps:
     """Bring the base to rest. Fails if it does not come to rest within the patience of the robot."""
     robot.drive(0.0, 0.0)
     until = robot.time + robot.body.patience
@@ -79,22 +79,24 @@ def stop(robot: Driving) -> Steps:
         yield
 
 
-def face_place(robot: Driving, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
+def face_place(robot: DrivingRobot, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
     """Turn on the spot towards a place or a point."""
     yield from turn(robot, robot.pose.bearing_to(where(robot, place, x, y)))
 
 
-def face_person(robot: Driving, person: str) -> Steps:
+def face_person(robot: DrivingRobot, person: str) -> Steps:
     """Turn on the spot towards a person."""
     yield from turn(robot, robot.pose.bearing_to(robot.locate(person)))
 
 
-def face_object(robot: Driving, object: str) -> Steps:
+def face_object(robot: DrivingRobot, object: str) -> Steps:
     """Turn on the spot towards an object."""
     yield from turn(robot, robot.pose.bearing_to(robot.locate(object)))
 
 
-def drive_straight(robot: Driving, distance: float, speed: float | None = None, progress: Report = unheard) -> Steps:
+def drive_straight(
+    robot: DrivingRobot, distance: float, speed: float | None = None, progress: Report = unheard
+) -> Steps:
     """Drive `distance` metres along the heading (negative: backwards), keep the course, and brake."""
     start, watch = robot.pose, BaseWatch(robot)
     bounds = DriveProgress(
@@ -120,7 +122,7 @@ def drive_straight(robot: Driving, distance: float, speed: float | None = None, 
         robot.drive(0.0, 0.0)
 
 
-def turn(robot: Driving, angle: float, progress: Report = unheard) -> Steps:
+def turn(robot: DrivingRobot, angle: float, progress: Report = unheard) -> Steps:
     """Turn on the spot by `angle` degrees (left positive; more than a whole turn is fine) and brake."""
     heading, turned, watch = robot.pose.heading, 0.0, BaseWatch(robot)
     turning = robot.body.turning

@@ -7,7 +7,7 @@ from contextlib import closing, suppress
 from math import sqrt
 from typing import Protocol
 
-from btlang.actions.common import Driving, Watch
+from btlang.actions.common import DrivingRobot, Watch
 from btlang.actions.motion import Steps, drive_straight
 from btlang.actions.navigation import accomplish
 from btlang.engine.leaves.leaf import ActionFailed
@@ -21,11 +21,11 @@ _PAUSE = 2.0  # seconds before another attempt: who stands in the way may walk o
 _MARGIN = 0.02  # metres by which the scanner may be wrong
 
 
-class Homing(Navigation, Docking, Driving, Protocol):
+class HomingRobot(Navigation, Docking, DrivingRobot, Protocol):
     """A robot that finds its dock and drives into it."""
 
 
-def enter_a_dock(robot: Homing, stations: Sequence[Station]) -> Steps:
+def enter_a_dock(robot: HomingRobot, stations: Sequence[Station]) -> Steps:
     """Enter the first dock that works. Fails with the reason of the last one."""
     watch = Watch(robot)
     for station in stations:
@@ -38,7 +38,7 @@ def enter_a_dock(robot: Homing, stations: Sequence[Station]) -> Steps:
                 raise
 
 
-def enter_dock(robot: Homing, station: Station, stage: Callable[[str], object] = lambda stage: None) -> Steps:
+def enter_dock(robot: HomingRobot, station: Station, stage: Callable[[str], object] = lambda stage: None) -> Steps:
     """Drive to the staging pose, then straight into the dock, and connect; from inside, it only connects.
 
     If that fails it backs off and tries again, as often as the body says. Fails with the reason of the last attempt.
@@ -72,7 +72,7 @@ def _is_in(pose: Pose, spot: Pose, within: float) -> bool:
     return spot.distance_to((pose.x, pose.y)) <= within and abs(wrap(spot.heading - pose.heading)) <= _STRAIGHT
 
 
-def _drive_in(robot: Homing, spot: Pose, speed: float) -> Steps:
+def _drive_in(robot: HomingRobot, spot: Pose, speed: float) -> Steps:
     with closing(drive_straight(robot, robot.pose.progress_of(spot), speed)) as driving:
         for _ in driving:
             if _is_blocked(robot, robot.pose.progress_of(spot)):
@@ -80,7 +80,7 @@ def _drive_in(robot: Homing, spot: Pose, speed: float) -> Steps:
             yield
 
 
-def _is_blocked(robot: Homing, left: float) -> bool:
+def _is_blocked(robot: HomingRobot, left: float) -> bool:
     """Return whether it would run into something in the scan, driving on by `left` metres.
 
     Without a scan nobody knows: no.
@@ -103,22 +103,22 @@ def _is_blocked(robot: Homing, left: float) -> bool:
     return False
 
 
-class Undocking(Driving, Docking, Protocol):
+class UndockingRobot(DrivingRobot, Docking, Protocol):
     """A robot that can leave its dock."""
 
 
-class Charging(Homing, Power, Protocol):
+class ChargingRobot(HomingRobot, Power, Protocol):
     """A robot that finds its dock, and knows its battery."""
 
 
-def dock(robot: Homing) -> Steps:
+def dock(robot: HomingRobot) -> Steps:
     """Drive to the nearest dock and connect, or to the next one if that fails; do nothing when docked."""
     if not robot.docked:
         stations = robot.stations
         yield from accomplish(robot.dock()) if stations is None else enter_a_dock(robot, stations)
 
 
-def undock(robot: Undocking) -> Steps:
+def undock(robot: UndockingRobot) -> Steps:
     """Disconnect and back off; do nothing when not docked."""
     if robot.docked:
         backs_off = robot.stations is not None
@@ -127,7 +127,7 @@ def undock(robot: Undocking) -> Steps:
             yield from drive_straight(robot, -robot.body.dock.backs_off)
 
 
-def charge(robot: Charging, percent: float) -> Steps:
+def charge(robot: ChargingRobot, percent: float) -> Steps:
     """Dock if need be and wait until the battery has `percent`. Fails if the robot leaves the dock before."""
     yield from dock(robot)
     watch = Watch(robot)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from contextlib import closing
 from typing import Protocol
 
-from btlang.actions.common import Driving, Watch, spot, things_described
+from btlang.actions.common import DrivingRobot, Watch, spot, things_described
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, go_to, travel
 from btlang.actions.sensing import holding
@@ -23,19 +23,19 @@ COUNT = "@_count"
 _AROUND = 360.0
 
 
-class Searching(Perception, Navigation, Driving, Hands, Protocol):
+class SearchingRobot(Perception, Navigation, DrivingRobot, Hands, Protocol):
     """A robot that moves about and recognises what it sees."""
 
 
 def look_for_person(
-    robot: Searching, person: str, place: str | None = None, x: float | None = None, y: float | None = None
+    robot: SearchingRobot, person: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
     """Search a place, or all of them, until a person is in view. Fails if they are in none."""
     yield from _search(robot, person, lambda: robot.sees(person), place, x, y)
 
 
 def look_for_object(
-    robot: Searching, object: str, place: str | None = None, x: float | None = None, y: float | None = None
+    robot: SearchingRobot, object: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
     """Search a place, or all of them, until an object is in view or in a hand. Fails if it is in none."""
     if robot.body.has("holding") and holding(robot, object):
@@ -44,14 +44,14 @@ def look_for_object(
 
 
 def look_for_someone(
-    robot: Searching, place: str | None = None, x: float | None = None, y: float | None = None
+    robot: SearchingRobot, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
     """Search a place, or all of them, until anybody is in view. Fails if nobody is."""
     yield from _search(robot, None, lambda: bool(robot.seen("person")), place, x, y)
 
 
 def find_person(
-    robot: Searching, person: str, place: str | None = None, x: float | None = None, y: float | None = None
+    robot: SearchingRobot, person: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
     """Look for a person and go there."""
     yield from look_for_person(robot, person, place, x, y)
@@ -59,14 +59,16 @@ def find_person(
 
 
 def find_object(
-    robot: Searching, object: str, place: str | None = None, x: float | None = None, y: float | None = None
+    robot: SearchingRobot, object: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
     """Look for an object and go there."""
     yield from look_for_object(robot, object, place, x, y)
     yield from travel(robot, object)
 
 
-def find_someone(robot: Searching, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
+def find_someone(
+    robot: SearchingRobot, place: str | None = None, x: float | None = None, y: float | None = None
+) -> Steps:
     """Look for anybody and go there."""
     yield from look_for_someone(robot, place, x, y)
     for person in robot.seen("person")[:1]:
@@ -74,7 +76,7 @@ def find_someone(robot: Searching, place: str | None = None, x: float | None = N
 
 
 def count_people(
-    robot: Searching,
+    robot: SearchingRobot,
     blackboard: Blackboard,
     place: str | None = None,
     x: float | None = None,
@@ -85,7 +87,7 @@ def count_people(
 
 
 def count_objects(
-    robot: Searching,
+    robot: SearchingRobot,
     blackboard: Blackboard,
     place: str | None = None,
     x: float | None = None,
@@ -96,7 +98,7 @@ def count_objects(
 
 
 def count_kind(
-    robot: Searching,
+    robot: SearchingRobot,
     blackboard: Blackboard,
     kinds: str,
     place: str | None = None,
@@ -137,7 +139,7 @@ def counted(
 
 
 def _count(
-    robot: Searching,
+    robot: SearchingRobot,
     blackboard: Blackboard,
     type: str,
     place: str | None,
@@ -158,7 +160,7 @@ def _count(
 
 
 def _search(
-    robot: Searching,
+    robot: SearchingRobot,
     name: str | None,
     seen: Callable[[], bool],
     place: str | None,
@@ -178,12 +180,12 @@ def _search(
             yield
 
 
-def _look_in(robot: Searching, place: str | None, x: float | None, y: float | None) -> Steps:
+def _look_in(robot: SearchingRobot, place: str | None, x: float | None, y: float | None) -> Steps:
     yield from go_to(robot, place, x, y)
     yield from turn(robot, _AROUND)
 
 
-def _tour(robot: Searching, name: str | None) -> Steps:
+def _tour(robot: SearchingRobot, name: str | None) -> Steps:
     """Turn once around here, go where the robot knows it, and look into all places."""
     watch = Watch(robot)
     yield from turn(robot, _AROUND)

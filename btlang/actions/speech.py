@@ -23,7 +23,7 @@ _PERIOD = 0.2  # seconds to the next tick, as long as none has shown how long th
 _LATEST = 2.0  # seconds by which speech may begin later, for its first stroke
 
 
-class Presenting(Voice, Gesturing, Protocol):
+class PresentingRobot(Voice, Gesturing, Protocol):
     """A robot that speaks, and moves in step with that."""
 
 
@@ -41,7 +41,7 @@ class Strokes:
     Raises RobotError if the target of one isn't known.
     """
 
-    def __init__(self, robot: Presenting, marks: Sequence[GestureMark]) -> None:
+    def __init__(self, robot: PresentingRobot, marks: Sequence[GestureMark]) -> None:
         self._robot = robot
         self._left = [*_strokes(robot, marks)]
         self._going: list[Operation] = []
@@ -113,7 +113,7 @@ class Strokes:
             self._robot.on_event("warning", {"text": text})
 
 
-def _strokes(robot: Presenting, marks: Sequence[GestureMark]) -> Iterator[Stroke]:
+def _strokes(robot: PresentingRobot, marks: Sequence[GestureMark]) -> Iterator[Stroke]:
     """Return the strokes that the robot has. Raises RobotError if a target isn't known."""
     moves = hasattr(robot, "gesture")  # robots of other people may only speak
     for mark in marks:
@@ -124,7 +124,7 @@ def _strokes(robot: Presenting, marks: Sequence[GestureMark]) -> Iterator[Stroke
             robot.on_event("warning", {"text": f'the robot has no gesture "{mark.words}"'})
 
 
-def say(robot: Presenting, text: str, kept: dict[str, Any] | None = None) -> Steps:
+def say(robot: PresentingRobot, text: str, kept: dict[str, Any] | None = None) -> Steps:
     """Speak the text to its end, with the gestures of its marks.
 
     When halted, it falls silent and joints come to rest. Suspended, it begins again with the sentence in which it was.
@@ -151,7 +151,7 @@ def say(robot: Presenting, text: str, kept: dict[str, Any] | None = None) -> Ste
         robot.silence()
 
 
-def report_back(robot: Presenting) -> Steps:
+def report_back(robot: PresentingRobot) -> Steps:
     """Say that the robot is done."""
     yield from say(robot, "I am done.")
 

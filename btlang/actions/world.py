@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from btlang.actions.common import Driving, keep_pace, where
+from btlang.actions.common import DrivingRobot, keep_pace, where
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, over_border, travel
 from btlang.engine.leaves.leaf import ActionFailed
@@ -13,39 +13,39 @@ from btlang.robots.robot import Cautious, Handling, Messenger, Navigation, Perce
 from btlang.robots.worlds.world import said
 
 
-class Doorkeeping(Navigation, Handling, Protocol):
+class DoorRobot(Navigation, Handling, Protocol):
     """A robot that finds its way to doors and switches."""
 
 
-class Photographing(Perception, Driving, Protocol):
+class PhotographingRobot(Perception, DrivingRobot, Protocol):
     """A robot that turns its camera to things."""
 
 
-class PhotographingDoors(Photographing, Handling, Protocol):
+class DoorPhotographingRobot(PhotographingRobot, Handling, Protocol):
     """A robot that turns its camera to doors."""
 
 
-def open_door(robot: Doorkeeping, door: str) -> Steps:
+def open_door(robot: DoorRobot, door: str) -> Steps:
     """Go to a door and open it."""
     yield from _move_door(robot, door, True)
 
 
-def close_door(robot: Doorkeeping, door: str) -> Steps:
+def close_door(robot: DoorRobot, door: str) -> Steps:
     """Go to a door and close it. Fails if something is in it."""
     yield from _move_door(robot, door, False)
 
 
-def go_to_door(robot: Doorkeeping, door: str, manner: str | None = None) -> Steps:
+def go_to_door(robot: DoorRobot, door: str, manner: str | None = None) -> Steps:
     """Go to a door, on the side from which it can be reached, and face it."""
     yield from keep_pace(robot, manner, _to_door(robot, door))
 
 
-def _move_door(robot: Doorkeeping, door: str, is_open: bool) -> Steps:
+def _move_door(robot: DoorRobot, door: str, is_open: bool) -> Steps:
     yield from _to_door(robot, door)
     yield from accomplish(robot.move_door(door, is_open))
 
 
-def _to_door(robot: Doorkeeping, door: str) -> Steps:
+def _to_door(robot: DoorRobot, door: str) -> Steps:
     *others, last = robot.beside_door(door)
     for spot in others:
         try:
@@ -67,22 +67,22 @@ def door_is_closed(robot: Handling, door: str) -> bool:
     return not robot.is_open(door)
 
 
-def switch_on(robot: Doorkeeping, object: str) -> Steps:
+def switch_on(robot: DoorRobot, object: str) -> Steps:
     """Go to something and switch it on."""
     yield from _switch(robot, object, True)
 
 
-def switch_off(robot: Doorkeeping, object: str) -> Steps:
+def switch_off(robot: DoorRobot, object: str) -> Steps:
     """Go to something and switch it off."""
     yield from _switch(robot, object, False)
 
 
-def push_button(robot: Doorkeeping, object: str) -> Steps:
+def push_button(robot: DoorRobot, object: str) -> Steps:
     """Go to something and push its button: on becomes off, and off on."""
     yield from _switch(robot, object, None)
 
 
-def _switch(robot: Doorkeeping, name: str, on: bool | None) -> Steps:
+def _switch(robot: DoorRobot, name: str, on: bool | None) -> Steps:
     yield from travel(robot, name)
     yield from accomplish(robot.switch(name, on))
 
@@ -172,37 +172,37 @@ def sees_someone(robot: Perception) -> bool:
     return bool(robot.seen("person"))
 
 
-def take_picture(robot: Photographing) -> Steps:
+def take_picture(robot: PhotographingRobot) -> Steps:
     """Take a picture of what is in view."""
     yield from accomplish(robot.take_picture())
 
 
-def take_picture_of_person(robot: Photographing, person: str) -> Steps:
+def take_picture_of_person(robot: PhotographingRobot, person: str) -> Steps:
     """Turn to a person and take a picture."""
     yield from _take_picture_of(robot, person)
 
 
-def take_picture_of_object(robot: Photographing, object: str) -> Steps:
+def take_picture_of_object(robot: PhotographingRobot, object: str) -> Steps:
     """Turn to an object and take a picture."""
     yield from _take_picture_of(robot, object)
 
 
 def take_picture_of_place(
-    robot: Photographing, place: str | None = None, x: float | None = None, y: float | None = None
+    robot: PhotographingRobot, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
     """Turn to a place or a point and take a picture."""
     yield from turn(robot, robot.pose.bearing_to(where(robot, place, x, y)))
     yield from accomplish(robot.take_picture())
 
 
-def take_picture_of_door(robot: PhotographingDoors, door: str) -> Steps:
+def take_picture_of_door(robot: DoorPhotographingRobot, door: str) -> Steps:
     """Turn to a door and take a picture."""
     spots = robot.beside_door(door)
     yield from turn(robot, robot.pose.bearing_to(centre_of([(spot.x, spot.y) for spot in spots])))
     yield from accomplish(robot.take_picture())
 
 
-def _take_picture_of(robot: Photographing, name: str) -> Steps:
+def _take_picture_of(robot: PhotographingRobot, name: str) -> Steps:
     yield from turn(robot, robot.pose.bearing_to(robot.locate(name)))
     if not robot.sees(name):
         raise ActionFailed(f"I don't see {said(name)}")

@@ -52,7 +52,7 @@ _HEIGHTS = {FINALIZED: -1, UNCONFIGURED: 0, INACTIVE: 1, ACTIVE: 2}
 class Worker:
     """The requests of one robot to the component. `state` is the one that this robot led it to."""
 
-    def __init__(self, connection: Connection, life: Life) -> None:
+    def __init__(self, connection: Connection, life: ComponentLifeCycle) -> None:
         self._connection, self._life = connection, life
         self._sending = threading.Lock()
         self.questions = RobotQuestions(self)
@@ -134,7 +134,7 @@ class Worker:
         return number in self._calls or number in self._ended or number in self._begun
 
 
-class Life:
+class ComponentLifeCycle:
     """The component and its life cycle, in a thread: for one robot, or for several that share it.
 
     With several, its state is that of the robot that needs it most; a hook is called when that changes.
@@ -241,7 +241,7 @@ def _end() -> None:
     os.killpg(0, signal.SIGKILL)
 
 
-def _leave_nothing() -> None:
+def _fork_reaper() -> None:
     """Fork a process that waits for the end of this one, however it ends, and ends what this one has started."""
     waits, held = os.pipe()
     if os.fork():
@@ -258,8 +258,8 @@ def main(descriptor: int, robot: int) -> None:
     """Work for the robot whose process has the number `robot`, over an inherited socket."""
     ctypes.CDLL(None).prctl(_DIE_WITH_PARENT, signal.SIGKILL)  # also while this process is stopped
     if os.getppid() == robot:
-        _leave_nothing()
-        life = Life()
+        _fork_reaper()
+        life = ComponentLifeCycle()
         life.workers.append(worker := Worker(Connection(descriptor), life))
         worker.run()
     _end()
@@ -270,7 +270,7 @@ def main_shared(path: str) -> None:
     if os.fork():  # no robot is its parent: whoever started it may be gone before the others
         os._exit(0)
     os.setsid()
-    _leave_nothing()
+    _fork_reaper()
     with open(f"{path}.lock", "w") as lock, socket.socket(socket.AF_UNIX) as door:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -280,7 +280,7 @@ def main_shared(path: str) -> None:
             os.unlink(path)
         door.bind(path)
         door.listen()
-        life = Life(shared=True)
+        life = ComponentLifeCycle(shared=True)
         door.settimeout(_ALONE)
         while True:
             try:
@@ -296,7 +296,7 @@ def main_shared(path: str) -> None:
     _end()
 
 
-def _converse(worker: Worker, life: Life) -> None:
+def _converse(worker: Worker, life: ComponentLifeCycle) -> None:
     worker.run()
     life.workers.remove(worker)
     if life.problem:  # whoever needs it starts it again

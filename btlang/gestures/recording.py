@@ -43,7 +43,7 @@ def loose(body: Body) -> Iterator[Callable[[], dict[str, float]]]:
     servos = _Servos(body)
     try:
         try:
-            servos.let_go()
+            servos.release()
         except DeviceError as problem:
             raise unusable_robot(problem) from None
         yield servos.pose
@@ -66,7 +66,7 @@ class _Servos:
         self._done = threading.Event()
         self._thread = threading.Thread(target=self._keep, name="loose joints", daemon=True)
 
-    def let_go(self) -> None:
+    def release(self) -> None:
         """Take their torque away. Raises DeviceError if one is silent."""
         self.devices.start()
         self._thread.start()

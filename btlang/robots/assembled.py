@@ -8,7 +8,7 @@ from typing import Any
 from btlang.robots.bodies.body import Body
 from btlang.robots.command_gate import Latch
 from btlang.robots.geometry import Point, Pose
-from btlang.robots.motion.gesturing import Gestures, Turnable
+from btlang.robots.motion.gesturing import Gestures, TurnableJoints
 from btlang.robots.motion.guard.guard import Guarded
 from btlang.robots.robot import OnEvent, Operation, RobotError
 from btlang.robots.worlds.descriptions import Choices
@@ -27,7 +27,7 @@ class AssembledRobot(Guarded):
 
     power: BatteryPart
     _gestures: Gestures
-    _joints: Turnable
+    _joints: TurnableJoints
     _voice: VoicePart
     _known: Knowledge
 

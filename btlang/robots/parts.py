@@ -27,7 +27,7 @@ class BasePart(Protocol):
     bumps: int
     bumped_into: str
     grips: tuple[float, float]
-    wanted: tuple[float, float]
+    commanded: tuple[float, float]
     limits: tuple[float, float]
 
     @property

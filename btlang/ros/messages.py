@@ -106,7 +106,7 @@ _ABSURD = 1e4  # radians or metres of a joint
 _ROUNDING = 1.05  # of a limit
 
 
-class JointReach(Record):
+class JointRange(Record):
     """The limits of a joint, and of its speed, in radians or metres."""
 
     low: float
@@ -140,7 +140,7 @@ def trajectory(positions: Mapping[str, float], seconds: float) -> JointTrajector
 
 
 def motion(
-    joints: Mapping[str, JointReach],
+    joints: Mapping[str, JointRange],
     times: Sequence[float],
     rows: Sequence[tuple[Sequence[float], Sequence[float]]],
     stamp: Any,

@@ -269,7 +269,7 @@ def test_the_robot_stands_before_its_process_is_told_of_a_halt() -> None:
     order: list[str] = []
     robot = SimulatedRobot(load_world())
     host = _Process()
-    host.halt = lambda request: order.append("told, " + str(robot._base.wanted))  # type: ignore[method-assign,attr-defined]
+    host.halt = lambda request: order.append("told, " + str(robot._base.commanded))  # type: ignore[method-assign,attr-defined]
     leaf = RemoteLeaf(host, "roll", (), robot, lambda: None, set())
     leaf.start()
     host._asked({"ask": 1, "call": 1, "robot": "drive", "args": [0.3, 0.0]})
@@ -289,7 +289,7 @@ def test_a_value_nobody_expects_leaves_no_robot_driving() -> None:
     host._requests[1].end({"value": 1, "stored": {"nowhere": 1}})
     with pytest.raises(KeyError):
         leaf.tick()
-    assert robot._base.wanted == (0.0, 0.0)  # type: ignore[attr-defined]
+    assert robot._base.commanded == (0.0, 0.0)  # type: ignore[attr-defined]
     host.close()
 
 

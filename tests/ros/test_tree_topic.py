@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.ros.mission.topics import MissionProgress, RunListener, TreeTopic
+from btlang.ros.mission.topics import MissionProgress, RunUpdate, TreeTopic
 from btlang.run.bus import INLINE
 
 
@@ -35,7 +35,7 @@ def test_the_last_snapshot_has_the_last_statuses(pause: float, monkeypatch: pyte
         run = session.prepare(mission, speed="max", sinks=[Sink()])
         tree = TreeTopic(mission, run, snapshots.append, changes.append)
 
-        def reached(news: RunListener) -> None:
+        def reached(news: RunUpdate) -> None:
             tree.publish_snapshot(news, is_last=news.is_last)
 
         topics.append(MissionProgress(run.snapshot, tree.publish_changes, reached))

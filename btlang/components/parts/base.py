@@ -47,7 +47,7 @@ class DeviceBase:
         self._gap = body.base.wheel_gap if body.base is not None else 1.0
         self.travelled, self.wheels = 0.0, (0.0, 0.0)
         self.bumps, self.bumped_into = 0, ""
-        self.wanted = self._speeds = (0.0, 0.0)
+        self.commanded = self._speeds = (0.0, 0.0)
         self.limits = inf, inf
         self._velocity: tuple[float, float] | None = None
         self._seen: Wheels | None = None
@@ -94,13 +94,13 @@ class DeviceBase:
     def drive(self, linear: float, angular: float) -> None:
         """Set the wanted velocity, within the limits."""
         driving, turning = self.body.driving, self.body.turning
-        self.wanted = clip_speed(linear, driving.top_speed), clip_speed(angular, turning.top_speed)
-        if self.wanted == (0.0, 0.0):
+        self.commanded = clip_speed(linear, driving.top_speed), clip_speed(angular, turning.top_speed)
+        if self.commanded == (0.0, 0.0):
             self._idle = 0.0
 
     def brake(self) -> None:
         """Command the wheels to stand at once."""
-        self.wanted = self._speeds = (0.0, 0.0)
+        self.commanded = self._speeds = (0.0, 0.0)
         self._idle = 0.0
         self._write(WheelSpeeds())
 
@@ -124,8 +124,8 @@ class DeviceBase:
         if self._locate is not None:
             self._pose = self._locate()
         self._feel()
-        wanted = min(self.limits[0], abs(self.wanted[0]))
-        wanted += self.body.radius * radians(min(self.limits[1], abs(self.wanted[1])))
+        wanted = min(self.limits[0], abs(self.commanded[0]))
+        wanted += self.body.radius * radians(min(self.limits[1], abs(self.commanded[1])))
         way = before.distance_to((self._pose.x, self._pose.y))
         turn = abs(wrap(self._pose.heading - before.heading))
         moved = way + self.body.radius * radians(turn)
@@ -133,7 +133,7 @@ class DeviceBase:
 
     def _command(self, dt: float) -> None:
         driving, turning = self.body.driving, self.body.turning
-        wanted = tuple(limit_value(value, most) for value, most in zip(self.wanted, self.limits, strict=True))
+        wanted = tuple(limit_value(value, most) for value, most in zip(self.commanded, self.limits, strict=True))
         linear = step_towards(self._speeds[0], wanted[0], driving.acceleration * dt, driving.brake * dt)
         angular = step_towards(self._speeds[1], wanted[1], turning.acceleration * dt, turning.brake * dt)
         if self._velocity is None:

@@ -175,7 +175,7 @@ class DeviceJoints:
         return self._targets[name] - self.angle(name)
 
 
-class Gripping:
+class GripOperation:
     """A hand that closes or opens, as an Operation. `report` gets whether something is in it."""
 
     def __init__(self, name: str, device: Reads, closes: bool, report: Callable[[bool], object]) -> None:
@@ -219,7 +219,7 @@ class DeviceHands:
     def __init__(self, body: Body, devices: Mapping[str, Reads], known: SimulatedHands) -> None:
         self._body, self._devices, self._known = body, devices, known
         self.held: dict[Hand, str] = {}
-        self._grippings: dict[Hand, Gripping] = {}
+        self._grippings: dict[Hand, GripOperation] = {}
 
     def grasp(self, hand: Hand, name: str | None, pose: Pose, now: float) -> Operation:
         """Begin to close a hand. Raises RobotError if it holds something."""
@@ -268,11 +268,11 @@ class DeviceHands:
         for gripping in self._grippings.values():
             gripping.step(dt)
 
-    def _begin(self, hand: Hand, closes: bool, report: Callable[[bool], object]) -> Gripping:
+    def _begin(self, hand: Hand, closes: bool, report: Callable[[bool], object]) -> GripOperation:
         name = f"{hand} hand"
         if self._body.hand(hand) is None:
             raise RobotError(f"the robot has no {name}")
-        gripping = self._grippings[hand] = Gripping(name, reader(self._devices, name, name), closes, report)
+        gripping = self._grippings[hand] = GripOperation(name, reader(self._devices, name, name), closes, report)
         return gripping
 
 

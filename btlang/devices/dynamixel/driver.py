@@ -12,7 +12,7 @@ from btlang.devices.dynamixel import control_table as table
 from btlang.devices.dynamixel.client import LineLost, SerialLine, ServoClient
 from btlang.devices.dynamixel.control_table import STATE
 from btlang.devices.dynamixel.protocol import OVERHEAD
-from btlang.devices.dynamixel.servo import WATCHDOG_SET, Orders, Restarted, Servo, read_all
+from btlang.devices.dynamixel.servo import WATCHDOG_SET, Servo, ServoCommands, ServoRestarted, read_all
 from btlang.devices.kinds import Command, JointTarget, Reading
 from btlang.record import Record
 
@@ -155,14 +155,14 @@ class DynamixelDriver:
             servo = self._servos[id]
             try:
                 readings[servo.name] = servo.reading(state)
-            except Restarted as problem:
-                self._lose(servo, problem, pause=0.0)
+            except ServoRestarted as problem:
+                self._give_up(servo, problem, pause=0.0)
             except DeviceError as problem:
                 readings[servo.name] = problem
         self._client.flush()  # where nobody was asked
         for id in self._polling.silent():
             servo = self._servos[id]
-            self._lose(servo, DeviceSilent(f"{servo.where} doesn't answer"))
+            self._give_up(servo, DeviceSilent(f"{servo.where} doesn't answer"))
         readings.update((self._servos[id].name, absent.reason) for id, absent in self._absent.items())
         return readings
 
@@ -194,11 +194,11 @@ class DynamixelDriver:
             id = min(due)[1]
             self._find(self._servos[id], self._absent[id].tries)
 
-    def _lose(self, servo: Servo, reason: DeviceError, pause: float = _PAUSES[0]) -> None:
+    def _give_up(self, servo: Servo, reason: DeviceError, pause: float = _PAUSES[0]) -> None:
         self._polling.remove(servo.id)
         self._absent[servo.id] = _Absent(reason, time.monotonic() + pause)
 
-    def _send(self, orders: Mapping[int, Orders]) -> None:
+    def _send(self, orders: Mapping[int, ServoCommands]) -> None:
         goals, torques, stopped = {}, {}, []
         for id, order in orders.items():
             if order.goal is not None:

@@ -84,11 +84,11 @@ _COOLED = 5.0  # degrees Celsius below its limit at which a hot servo may be use
 _DEGREES = 360 / table.TICKS
 
 
-class Restarted(DeviceSilent):
+class ServoRestarted(DeviceSilent):
     """The error that a servo has lost its settings: it was without power, or somebody else wrote to it."""
 
 
-class Orders(Record):
+class ServoCommands(Record):
     """What to send to a servo in a cycle; None for nothing. `watchdog`: its watchdog stopped it and is set again."""
 
     goal: bytes | None = None
@@ -113,7 +113,10 @@ class Servo:
         self._hold: int | None = None  # where it rests
         self._refused: DeviceError | None = None
         self._target: JointTarget | None = None
-        self._orders, self._is_steady = Orders(), False  # for the target, as long as nothing happens that changes them
+        self._orders, self._is_steady = (
+            ServoCommands(),
+            False,
+        )  # for the target, as long as nothing happens that changes them
         self._fault: DeviceError | None = None
 
     @property
@@ -152,7 +155,7 @@ class Servo:
         self._hold = self._refused = self._fault = None
         self._is_steady = False
 
-    def orders(self, target: JointTarget | None) -> Orders:
+    def orders(self, target: JointTarget | None) -> ServoCommands:
         """Return what to send for a target; None means that nobody knows what it should do."""
         if target is self._target and self._is_steady:
             return self._orders
@@ -161,23 +164,23 @@ class Servo:
         self._is_steady = self._has_torque and not self._is_tripped and self._fault is None
         return self._orders
 
-    def _make_orders(self, target: JointTarget | None) -> Orders:
+    def _make_orders(self, target: JointTarget | None) -> ServoCommands:
         if self._fault is not None or (target is not None and target.loose):
             self._hold = None
-            return Orders(torque=False if self._has_torque else None, watchdog=self._is_tripped)
+            return ServoCommands(torque=False if self._has_torque else None, watchdog=self._is_tripped)
         if target is None:
-            return Orders(watchdog=self._is_tripped)
+            return ServoCommands(watchdog=self._is_tripped)
         goal, fastest = self._goal(target)
         if goal is None:
             if not self._has_torque:
-                return Orders(watchdog=self._is_tripped)
+                return ServoCommands(watchdog=self._is_tripped)
             if self._hold is None:
                 self._hold = self._position
-            return Orders(table.GOAL.pack(fastest, self._hold), watchdog=self._is_tripped)
+            return ServoCommands(table.GOAL.pack(fastest, self._hold), watchdog=self._is_tripped)
         self._hold = None
         if not self._has_torque or self._is_tripped:
             goal = self._position  # else it would leap to a goal that it had before
-        return Orders(table.GOAL.pack(fastest, goal), None if self._has_torque else True, self._is_tripped)
+        return ServoCommands(table.GOAL.pack(fastest, goal), None if self._has_torque else True, self._is_tripped)
 
     def reading(self, state: bytes) -> JointState:
         """Return the reading in its state.
@@ -188,7 +191,7 @@ class Servo:
         torque, error, watchdog, load, velocity, position, temperature = table.STATE.unpack_from(state)
         if torque > 1 or watchdog not in (WATCHDOG_SET, table.WATCHDOG_TRIPPED):
             self._has_torque = self._is_steady = False  # as far as is known; the position is none either
-            raise Restarted(f"{self.where} was without power for a moment")
+            raise ServoRestarted(f"{self.where} was without power for a moment")
         self._position, self._has_torque, self._is_tripped = position, torque == 1, watchdog == table.WATCHDOG_TRIPPED
         if error or temperature > self._hottest or self._fault is not None:
             self._fault = self._find_fault(error, temperature)

@@ -18,7 +18,7 @@ from btlang.devices.serial_board.messages import (
     BoardAnswer,
     BoardChannel,
     BoardCommands,
-    Tally,
+    UnwrappedCounter,
     answer_size,
     command_message,
     command_size,
@@ -141,7 +141,7 @@ class SerialBoard:
         self._board, self._options = read_options(port, devices)
         self.rate = self._board.rate
         self._line: BoardLine | None = None
-        self._tallies = {device.name: (Tally(), Tally()) for device in devices}
+        self._tallies = {device.name: (UnwrappedCounter(), UnwrappedCounter()) for device in devices}
         self._session = self._sequence = 0
         self._name = ""
         self._begin((), 0.0)

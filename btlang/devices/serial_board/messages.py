@@ -35,7 +35,7 @@ _LOOSE, _GOES = 1, 2  # bits of a joint
 _UNKNOWN = 2  # whether a battery is charging
 
 
-class Tally:
+class UnwrappedCounter:
     """A 32-bit counter of a board without its jumps: it goes on beyond the last bit, and after
     a restart of the board.
     """
@@ -64,7 +64,7 @@ class ReadingFormat(Record):
 
     layout: Struct
     integers: Callable[[Any], tuple[int, ...]]
-    reading: Callable[[tuple[int, ...], Sequence[Tally]], Reading]
+    reading: Callable[[tuple[int, ...], Sequence[UnwrappedCounter]], Reading]
 
 
 class CommandFormat(Record):
@@ -88,7 +88,7 @@ def _known(value: int, share: int, nothing: int) -> float | None:
     return None if value == nothing else value / share
 
 
-def _distance(values: tuple[int, ...], tallies: Sequence[Tally]) -> Distance:
+def _distance(values: tuple[int, ...], tallies: Sequence[UnwrappedCounter]) -> Distance:
     return Distance(math.inf if values[0] == _U16[1] else values[0] / 1000)
 
 
@@ -96,7 +96,7 @@ def _distance_integers(reading: Distance) -> tuple[int, ...]:
     return (_U16[1] if reading.distance == math.inf else _integer(reading.distance, 0.001, (0, _U16[1] - 1)),)
 
 
-def _wheels(values: tuple[int, ...], tallies: Sequence[Tally]) -> Wheels:
+def _wheels(values: tuple[int, ...], tallies: Sequence[UnwrappedCounter]) -> Wheels:
     left, right = (tally.count(value) / 10_000 for tally, value in zip(tallies, values, strict=False))
     return Wheels(left, right, values[2] / 1000, values[3] / 1000)
 
@@ -106,7 +106,7 @@ def _wheels_integers(reading: Wheels) -> tuple[int, ...]:
     return (*ticks, *(_integer(speed, 0.001, _I16) for speed in (reading.left_speed, reading.right_speed)))
 
 
-def _motion(values: tuple[int, ...], tallies: Sequence[Tally]) -> Motion:
+def _motion(values: tuple[int, ...], tallies: Sequence[UnwrappedCounter]) -> Motion:
     turning, *pushes, heading = values
     ahead, left, up = (_known(push, 100, _I16[0]) for push in pushes)
     known = None if heading == _I32[0] else tallies[0].count(heading) / 100
@@ -118,7 +118,7 @@ def _motion_integers(reading: Motion) -> tuple[int, ...]:
     return (_integer(reading.turning, 0.01, _I32), *pushes, _integer(reading.heading, 0.01, _I32, _I32[0]))
 
 
-def _charge(values: tuple[int, ...], tallies: Sequence[Tally]) -> Charge:
+def _charge(values: tuple[int, ...], tallies: Sequence[UnwrappedCounter]) -> Charge:
     percent, volts, amperes, temperature, charging = values
     if percent > 10_000 or charging > _UNKNOWN:
         raise DeviceError(f"it says {percent / 100} percent, charging {charging}, which can't be true")
@@ -141,13 +141,13 @@ def _charge_integers(reading: Charge) -> tuple[int, ...]:
     )
 
 
-def _pressed(values: tuple[int, ...], tallies: Sequence[Tally]) -> Pressed:
+def _pressed(values: tuple[int, ...], tallies: Sequence[UnwrappedCounter]) -> Pressed:
     if values[0] > 1:
         raise DeviceError(f"it says {values[0]}; a button is 0 or 1")
     return Pressed(values[0] == 1)
 
 
-def _joint(values: tuple[int, ...], tallies: Sequence[Tally]) -> JointState:
+def _joint(values: tuple[int, ...], tallies: Sequence[UnwrappedCounter]) -> JointState:
     position, speed, load, temperature, loose = values
     if loose > _LOOSE:
         raise DeviceError(f"its torque is {loose}; it is 0 (on) or 1 (off)")

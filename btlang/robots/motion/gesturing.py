@@ -72,7 +72,7 @@ def _out_of_reach(part: str, bearing: float) -> RobotError:
     return RobotError(f"that is {where}; the {part} can't turn that far")
 
 
-class Turnable(Protocol):
+class TurnableJoints(Protocol):
     """Joints of any robot; see SimulatedJoints."""
 
     def angle(self, name: str) -> float: ...
@@ -81,10 +81,10 @@ class Turnable(Protocol):
     def freeze(self, names: tuple[str, ...] = ...) -> None: ...
 
 
-class Stepped:
+class SteppedGesture:
     """Steps of joints without planned movements, as an Operation; the first begins after so many seconds."""
 
-    def __init__(self, joints: Turnable, steps: Sequence[tuple[float, Angles]], after: float) -> None:
+    def __init__(self, joints: TurnableJoints, steps: Sequence[tuple[float, Angles]], after: float) -> None:
         self._joints, self._steps = joints, list(steps)
         self._passed, self._names = -after, tuple({name for _, step in steps for name in step})
         self._going: tuple[str, ...] = ()
@@ -122,9 +122,9 @@ class Stepped:
 class Gestures:
     """The gestures of one robot."""
 
-    def __init__(self, body: Body, joints: Turnable) -> None:
+    def __init__(self, body: Body, joints: TurnableJoints) -> None:
         self._body, self._joints = body, joints
-        self._stepped: list[Stepped] = []
+        self._stepped: list[SteppedGesture] = []
 
     def start(
         self, name: str, pose: Callable[[], Pose], aim: Point | None, room: float | None
@@ -136,7 +136,7 @@ class Gestures:
         wanted = self._turn(name, pose, aim)
         if isinstance(self._joints, SmoothPart):
             return self._joints.play(wanted, room)
-        made = Stepped(self._joints, _steps(wanted), max(0.0, (room or 0.0) - self._lead(wanted)))
+        made = SteppedGesture(self._joints, _steps(wanted), max(0.0, (room or 0.0) - self._lead(wanted)))
         self._stepped.append(made)
         return made, 1.0
 

@@ -40,7 +40,7 @@ class SimulatedBase:
         self.limits = inf, inf
         """Metres and degrees a second that it doesn't exceed, whatever is commanded."""
         self._obstacles = obstacles
-        self.wanted = (0.0, 0.0)
+        self.commanded = (0.0, 0.0)
         self._speeds = (0.0, 0.0)
         self._hard = False
         self._contact: Pose | None = None
@@ -73,26 +73,26 @@ class SimulatedBase:
 
     def drive(self, linear: float, angular: float) -> None:
         """Set the wanted velocity, within the limits."""
-        self.wanted = (clip_speed(linear, self._driving.top_speed), clip_speed(angular, self._turning.top_speed))
+        self.commanded = (clip_speed(linear, self._driving.top_speed), clip_speed(angular, self._turning.top_speed))
         self._hard = False
-        if self.wanted == (0.0, 0.0):
+        if self.commanded == (0.0, 0.0):
             self._forget_trouble()
 
     def brake(self) -> None:
         """Come to rest as fast as the wheels can."""
-        self.wanted = (0.0, 0.0)
+        self.commanded = (0.0, 0.0)
         self._hard = True
         self._forget_trouble()
 
     def put(self, pose: Pose) -> None:
         """Put the base at a pose at once, at rest."""
-        self.pose, self.wanted, self._speeds = pose, (0.0, 0.0), (0.0, 0.0)
+        self.pose, self.commanded, self._speeds = pose, (0.0, 0.0), (0.0, 0.0)
         self._contact, self._layout = None, -1
         self._forget_trouble()
 
     def step(self, dt: float) -> None:
         """Move on by `dt` in equal pieces of at most 0.02 s."""
-        if self.wanted == (0.0, 0.0) and not self.rolling:
+        if self.commanded == (0.0, 0.0) and not self.rolling:
             self.velocity = (0.0, 0.0)
             return
         pieces = max(1, ceil(dt / _SUBSTEP - 1e-9))
@@ -125,7 +125,7 @@ class SimulatedBase:
         driving, turning = self._driving, self._turning
         brake, turn_brake = (driving.hard_brake, turning.hard_brake) if self._hard else (driving.brake, turning.brake)
         most, most_turn = self.limits
-        wanted, turn = limit_value(self.wanted[0], most), limit_value(self.wanted[1], most_turn)
+        wanted, turn = limit_value(self.commanded[0], most), limit_value(self.commanded[1], most_turn)
         if abs(linear) > most:
             brake = driving.hard_brake
         linear = step_towards(linear, wanted, driving.acceleration * h, brake * h)

@@ -136,7 +136,7 @@ class Navigator:
 
     def protect(self) -> None:
         """Limit the base to safe speeds, whoever drives it."""
-        wanted = self._base.wanted
+        wanted = self._base.commanded
         verdict = self._guard.judge(*wanted, may_touch=self.goal is None)
         most = abs(verdict.linear) if verdict.linear != wanted[0] else inf
         self._base.limits = most, abs(verdict.angular) if verdict.angular != wanted[1] else inf
@@ -165,9 +165,9 @@ class Navigator:
     def _wait(self, goal: NavigationGoal, seconds: float) -> None:
         """Count how long somebody makes the robot wait, and react to it."""
         verdict = self._guard.verdict
-        nearly_stands = self._base.wanted[0] and not goal.driven and abs(verdict.linear) < _NEARLY_STANDS
+        nearly_stands = self._base.commanded[0] and not goal.driven and abs(verdict.linear) < _NEARLY_STANDS
         goal.held_up = verdict.who if nearly_stands and verdict.cause is Cause.PERSON else ""
-        if nearly_stands and verdict.cause is Cause.ZONE and abs(self._base.wanted[0]) > 0.05:
+        if nearly_stands and verdict.cause is Cause.ZONE and abs(self._base.commanded[0]) > 0.05:
             goal.waited += seconds
             if goal.waited > GIVES_UP:
                 goal.end(f"the {verdict.who} is in the way to {said(goal.name)}")

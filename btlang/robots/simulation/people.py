@@ -13,7 +13,7 @@ from random import Random
 
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.robot import RobotError
-from btlang.robots.simulation.walker import PERIOD, Other, Walker
+from btlang.robots.simulation.walker import PERIOD, OtherBody, Walker
 from btlang.robots.worlds.obstacles import Obstacles
 from btlang.robots.worlds.world import NEVER, Person, World
 from btlang.text.time_of_day import DAY
@@ -48,7 +48,7 @@ class People:
         self._speeches = sorted(
             ((said.at, person.name, said.text) for person in world.people for said in person.says), reverse=True
         )
-        self._bodies: dict[str, Other] = {}
+        self._bodies: dict[str, OtherBody] = {}
         self._answers: list[tuple[float, str, str]] = []
         self._said: dict[str, str] = {}
         self._invited = 0
@@ -57,7 +57,7 @@ class People:
         self._robot: Point = (world.start.x, world.start.y)
         self.begin(world.seed or 0)
         if self._walkers:
-            self._arrive(0.0, Other(world.start.x, world.start.y, 0.0, 0.0, radius))
+            self._arrive(0.0, OtherBody(world.start.x, world.start.y, 0.0, 0.0, radius))
             self._show()
 
     def begin(self, seed: int) -> None:
@@ -74,7 +74,7 @@ class People:
         if not self._walkers:
             return
         heading = radians(pose.heading)
-        robot = Other(pose.x, pose.y, velocity * cos(heading), velocity * sin(heading), self._radius)
+        robot = OtherBody(pose.x, pose.y, velocity * cos(heading), velocity * sin(heading), self._radius)
         if now + 1e-9 >= self._next:
             self._next = now + PERIOD
             self._arrive(now, robot)
@@ -188,7 +188,7 @@ class People:
         for _, name, text in due:
             self._report("speak", name, text)
 
-    def _arrive(self, now: float, robot: Other) -> None:
+    def _arrive(self, now: float, robot: OtherBody) -> None:
         """Let people come at their time, as soon as there is room, and remove those who have left."""
         for name, walker in self._walkers.items():
             if not walker.present and not walker.gone and self._comes(walker, now) <= now:
@@ -231,7 +231,7 @@ class People:
         visits = walker.person.visits
         return walker.person.leaves if visits is None else self._visits.get(walker.person.name, (0.0, NEVER))[1]
 
-    def _wonder(self, walker: Walker, robot: Other) -> None:
+    def _wonder(self, walker: Walker, robot: OtherBody) -> None:
         """Ask the robot something now and then."""
         name = walker.person.name
         near = hypot(robot.x - walker.x, robot.y - walker.y) < _ASKS_WITHIN
@@ -244,13 +244,13 @@ class People:
             if walker.person.comes_later or walker.person.name not in self._world.names.people:
                 self._report("come", walker.person.name, "")
 
-    def _look(self, now: float, robot: Other) -> None:
+    def _look(self, now: float, robot: OtherBody) -> None:
         if self._ways is None:
             from btlang.robots.worlds.planning import Walkways  # numpy, which takes longer to import than many missions
 
             self._ways = Walkways(self._world, self._obstacles, _WIDEST)
         self._bodies = {name: walker.body for name, walker in self._walkers.items() if walker.present}
-        standing = [Other(x, y, 0.0, 0.0, radius) for x, y, radius in self._obstacles.discs if radius > 0.1]
+        standing = [OtherBody(x, y, 0.0, 0.0, radius) for x, y, radius in self._obstacles.discs if radius > 0.1]
         for name in self._bodies:
             others = [body for other, body in self._bodies.items() if other != name]
             self._walkers[name].look(now, self._ways, robot, (*others, *standing), self._random)

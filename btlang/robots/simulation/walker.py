@@ -44,7 +44,7 @@ _LONGEST_TRAIL = 12
 _LONGEST_WAY = 60  # points of the way of who is followed
 
 
-class Other(Record):
+class OtherBody(Record):
     """A body to keep clear of: metres, and metres a second."""
 
     x: float
@@ -89,9 +89,9 @@ class Walker:
         return hypot(self.vx, self.vy)
 
     @property
-    def body(self) -> Other:
+    def body(self) -> OtherBody:
         """The body that others have to keep clear of."""
-        return Other(self.x, self.y, self.vx, self.vy, self.radius)
+        return OtherBody(self.x, self.y, self.vx, self.vy, self.radius)
 
     @property
     def near_someone(self) -> bool:
@@ -118,7 +118,7 @@ class Walker:
         self.x, self.y, self.vx, self.vy = x, y, 0.0, 0.0
         self._path, self._trail, self._aside = [], [], None
 
-    def move(self, dt: float, others: Iterable[Other]) -> None:
+    def move(self, dt: float, others: Iterable[OtherBody]) -> None:
         """Walk on for some seconds, but not into anybody."""
         if self.vx == self.vy == 0.0:
             return
@@ -131,12 +131,12 @@ class Walker:
         if not self._trail or hypot(x - self._trail[-1][0], y - self._trail[-1][1]) > _TRAIL:
             self._trail = [*self._trail[-_LONGEST_TRAIL:], (x, y)]
 
-    def _runs_into(self, other: Other, x: float, y: float) -> bool:
+    def _runs_into(self, other: OtherBody, x: float, y: float) -> bool:
         before = hypot(other.x - self.x, other.y - self.y)
         after = hypot(other.x - x, other.y - y)
         return after < before and after < self.radius + other.radius + _ROOM / 4
 
-    def look(self, now: float, ways: Ways, robot: Other, others: Sequence[Other], random: Random) -> None:
+    def look(self, now: float, ways: Ways, robot: OtherBody, others: Sequence[OtherBody], random: Random) -> None:
         """Decide how to walk on until the next look. `others` are those nearby, without the robot."""
         target = self._target(now, ways, robot, random)
         bodies = [body for body in (*others, robot) if abs(body.x - self.x) < _LOOK and abs(body.y - self.y) < _LOOK]
@@ -164,7 +164,7 @@ class Walker:
         if self._waited > self._patience:
             self._give_way(ways, bodies, random)
 
-    def _passes(self, vx: float, vy: float, body: Other) -> bool:
+    def _passes(self, vx: float, vy: float, body: OtherBody) -> bool:
         """Return whether there is no contact within the horizon, if both go on like this."""
         px, py = body.x - self.x, body.y - self.y
         wx, wy = body.vx - vx, body.vy - vy
@@ -178,7 +178,7 @@ class Walker:
         nearest2 = (px + wx * t) ** 2 + (py + wy * t) ** 2
         return nearest2 >= room * room
 
-    def _give_way(self, ways: Ways, bodies: Sequence[Other], random: Random) -> None:
+    def _give_way(self, ways: Ways, bodies: Sequence[OtherBody], random: Random) -> None:
         """Step aside, or back to the start, so that somebody else can go on."""
         self._waited, self._patience = 0.0, random.uniform(*_PATIENCE)
 
@@ -196,7 +196,7 @@ class Walker:
         if aside is not None:
             self._aside, self._path = aside, []
 
-    def _target(self, now: float, ways: Ways, robot: Other, random: Random) -> Point | None:
+    def _target(self, now: float, ways: Ways, robot: OtherBody, random: Random) -> Point | None:
         """Return the point to walk to next."""
         if now < self._until and not (self.follows and hypot(robot.x - self.x, robot.y - self.y) < _BEHIND[0]):
             return None
@@ -254,7 +254,7 @@ class Walker:
             self._corner += 1
         return self._path[min(self._corner, len(self._path) - 1)]
 
-    def _behind(self, now: float, ways: Ways, robot: Other, random: Random) -> Point | None:
+    def _behind(self, now: float, ways: Ways, robot: OtherBody, random: Random) -> Point | None:
         """Follow the robot at some distance. Somebody who is distracted stands, and somebody who has lost it waits for
         it.
         """

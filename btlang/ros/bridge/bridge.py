@@ -121,7 +121,7 @@ class _BridgeClient:
             _check("subscriptions", len(self._subscriptions))
             deliver = lambda topic, text, most: self._send(text, topic, most)  # noqa: E731
             subscription = Subscription(self._node, topic, deliver, partial(self.fail, asked))
-        subscription.want(asked)
+        subscription.add_request(asked)
         self._subscriptions[topic] = subscription, asked
         self._look_at(topic)
 
@@ -137,7 +137,7 @@ class _BridgeClient:
         topic = asked["topic"]
         if topic not in self._subscriptions:
             raise BridgeError(f"You haven't subscribed to {topic}.")
-        if self._subscriptions[topic][0].unwant(asked.get("id")):
+        if self._subscriptions[topic][0].remove_request(asked.get("id")):
             self._subscriptions.pop(topic)[0].end()
 
     def _advertise(self, asked: Asked) -> None:

@@ -50,7 +50,7 @@ class Subscription:
         self._newest: bytes | None = None
         self._has_refused = False
 
-    def want(self, asked: dict[str, Any]) -> None:
+    def add_request(self, asked: dict[str, Any]) -> None:
         """Add a subscription of the client to the topic, or change one. Raises BridgeError."""
         rate, length = asked.get("throttle_rate") or 0, asked.get("queue_length") or 0
         for value, most, name in ((rate, _LONGEST, "throttle_rate"), (length, 1e9, "queue_length")):
@@ -66,7 +66,7 @@ class Subscription:
         self._wanted[asked.get("id")] = rate / 1000, min(int(length), _MOST_DEPTH) or _DEPTH
         self._fit()
 
-    def unwant(self, id: object) -> bool:
+    def remove_request(self, id: object) -> bool:
         """End one subscription, or all for None; return whether it was the last one. Raises BridgeError."""
         if id is not None and id not in self._wanted:
             raise BridgeError(f"There's no subscription to {self._topic} with this id.")

@@ -22,7 +22,7 @@ from btlang.ros.mission.topics import (
     WARN,
     MissionProgress,
     MissionReport,
-    RunListener,
+    RunUpdate,
     Topics,
     TreeTopic,
     report_of,
@@ -280,12 +280,12 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             return []
         tree = TreeTopic(mission, run, self._topics.tree, self._topics.tree_changes)
 
-        def changed(news: RunListener) -> None:
+        def changed(news: RunUpdate) -> None:
             self._running, self._seconds[task.id] = news.running, news.time
             tree.publish_changes(news)
             self._server.news(task.id, news)
 
-        def reached(news: RunListener) -> None:
+        def reached(news: RunUpdate) -> None:
             tree.publish_snapshot(news, is_last=news.is_last)
             self._topics.status(news)
 

@@ -25,7 +25,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.ros.mission.topics import RunListener
+    from btlang.ros.mission.topics import RunUpdate
 
     Handle = Callable[[Command | dict[str, Any]], Answer]
 
@@ -53,7 +53,7 @@ class MissionServer:
         self._worker = ThreadPoolExecutor(1, "btlang goals")  # commands may take a moment
         GoalServer(node, RunMission, "~/run_mission", self._begin, Leases(node), self._accepts)
 
-    def news(self, task: int, news: RunListener) -> None:
+    def news(self, task: int, news: RunUpdate) -> None:
         """Send the progress of a task to its client."""
         goal = self._goals.get(task)
         if goal is not None:

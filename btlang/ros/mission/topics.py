@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 _PAUSE = 0.1  # seconds of real time between two snapshots of all nodes
 
 
-class RunListener(Record):
+class RunUpdate(Record):
     """Statuses of nodes by path at a time of the mission, and the words of the running commands.
 
     `is_last` is true when the run is over.
@@ -60,8 +60,8 @@ class MissionProgress:
     def __init__(
         self,
         snapshot: Callable[[], Snapshot],
-        changed: Callable[[RunListener], object],
-        reached: Callable[[RunListener], object],
+        changed: Callable[[RunUpdate], object],
+        reached: Callable[[RunUpdate], object],
     ) -> None:
         self._snapshot, self._changed, self._reached = snapshot, changed, reached
         self._new: dict[str, int] = {}
@@ -83,11 +83,11 @@ class MissionProgress:
         now = self._snapshot()
         running = "; ".join(now.running)
         if self._new:
-            self._changed(RunListener(now.t, running, self._new))
+            self._changed(RunUpdate(now.t, running, self._new))
             self._new, self._pending = {}, True
         if all_too:
             self._pending, self._reached_at = False, time.monotonic()
-            self._reached(RunListener(now.t, running, now.statuses, is_last))
+            self._reached(RunUpdate(now.t, running, now.statuses, is_last))
 
 
 _OUTCOMES = {State.COMPLETED: "success", State.FAILED: "failure", State.ERROR: "failure"}
@@ -153,7 +153,7 @@ class Topics:
         """Publish changes of that tree."""
         self._changes.publish(String(data=changes))
 
-    def status(self, news: RunListener) -> None:
+    def status(self, news: RunUpdate) -> None:
         """Publish the nodes that have been reached."""
         self._status.publish(fill_progress(TreeStatus(), news))
 
@@ -182,7 +182,7 @@ class Topics:
         self._diagnostics.publish(array)
 
 
-def fill_progress(message: Any, news: RunListener) -> Any:
+def fill_progress(message: Any, news: RunUpdate) -> Any:
     """Fill a TreeStatus or the feedback of RunMission with the progress of a run."""
     message.time, message.running = news.time, news.running
     message.paths, message.statuses = list(news.statuses), [int(status) for status in news.statuses.values()]
@@ -212,7 +212,7 @@ class TreeTopic:
         self._published_at = time.monotonic()
         self._snapshot(json.dumps({**self._head, "sequence": 0, "time": 0.0, "statuses": {}}))
 
-    def publish_changes(self, news: RunListener) -> None:
+    def publish_changes(self, news: RunUpdate) -> None:
         """Publish the nodes with a new status."""
         self._sequence += 1
         changes = {
@@ -223,7 +223,7 @@ class TreeTopic:
         }
         self._changes(json.dumps(changes))
 
-    def publish_snapshot(self, news: RunListener, *, is_last: bool = False) -> None:
+    def publish_snapshot(self, news: RunUpdate, *, is_last: bool = False) -> None:
         """Publish all nodes that were reached."""
         now = time.monotonic()
         if is_last or now >= self._published_at + _TREE_PAUSE:
@@ -232,5 +232,5 @@ class TreeTopic:
             self._snapshot(json.dumps({**self._head, **state}))
 
 
-def _status_names(news: RunListener) -> dict[str, str]:
+def _status_names(news: RunUpdate) -> dict[str, str]:
     return {path: NAMES[status] for path, status in news.statuses.items()}

@@ -130,7 +130,7 @@ class RosBase:
         return _at_most(linear, self._fastest[0]), _at_most(angular, self._fastest[1])
 
     @property
-    def wanted(self) -> tuple[float, float]:
+    def commanded(self) -> tuple[float, float]:
         """The commanded metres and degrees a second."""
         return self._wanted
 

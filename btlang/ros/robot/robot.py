@@ -146,7 +146,7 @@ class RosRobot(AssembledRobot):
             self._rest()  # again: something else may drive the robot on, such as a server that ignores a cancel
         self._latch.step()
         if not self._driven:
-            self._judge(*self._base.wanted)
+            self._judge(*self._base.commanded)
         self._driven = False
         self._base.step(dt)
         self._voice.step(dt)

@@ -21,7 +21,7 @@ from btlang.robots.motion.movements import stay_at
 from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.motion.timeline import PlannedMotion
 from btlang.robots.robot import RobotError, joint_of
-from btlang.ros.messages import JointReach, motion, stamp
+from btlang.ros.messages import JointRange, motion, stamp
 from btlang.ros.robot.joints import TRAJECTORY, JointStates, on_wire
 from btlang.ros.subscriptions import SubscriptionCache
 
@@ -35,7 +35,7 @@ _LOST = 0.5  # seconds for which a joint may be as far from it
 _STAMPED = 1.0  # seconds that a stamp may be old; another one is from another clock
 
 
-class Sent(Record):
+class SentTrajectory(Record):
     """A movement of all joints from a second of the node's clock on, and the command for some of them."""
 
     begins: float
@@ -55,7 +55,7 @@ class Sent(Record):
         return between(self.way.rows(before), self.way.rows(min(before + 1, last)), passed - before)
 
 
-class Played:
+class TrajectoryOperation:
     """A movement as an Operation, done when the joints report that they have arrived."""
 
     def __init__(self, joints: RosSmoothJoints, play: PlannedMotion, names: Sequence[str]) -> None:
@@ -98,10 +98,10 @@ class RosSmoothJoints:
         self._smooth = SmoothJoints(body)
         self._origin = self._stepped = self._now()  # of the clock, when the timeline began and at the latest step
         self._commanded: tuple[int, ...] = ()
-        self._sent: Sent | None = None
+        self._sent: SentTrajectory | None = None
         self._way = self._smooth.timeline.plan[1]  # what was sent, or needs not be
         self._braked: tuple[float, CourseSegment] | None = None  # by `freeze`; the timeline doesn't know it yet
-        self._played: list[Played] = []
+        self._played: list[TrajectoryOperation] = []
         self._near = inf  # when all joints were last near to the plan
         self._publisher = node.create_publisher(JointTrajectory, TRAJECTORY, 10)
         node.create_timer(_RENEWED, self._renew, clock=Clock(clock_type=ClockType.STEADY_TIME))
@@ -126,11 +126,13 @@ class RosSmoothJoints:
         self._smooth.move(targets)
         self._send()
 
-    def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[Played, float]:
+    def play(
+        self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None
+    ) -> tuple[TrajectoryOperation, float]:
         """Plan a gesture, as SmoothJoints does; `room` counts from the latest step on."""
         self._begin(joints_of(wanted))
         play, slower = self._smooth.play(wanted, None if room is None else room - self._passed)
-        made = Played(self, play, self._names)
+        made = TrajectoryOperation(self, play, self._names)
         self._played.append(made)
         self._send()
         return made, slower
@@ -262,7 +264,7 @@ class RosSmoothJoints:
         except RobotError as problem:
             self._stay(str(problem))
 
-    def _off_plan(self, joint: int, sent: Sent, now: float) -> float:
+    def _off_plan(self, joint: int, sent: SentTrajectory, now: float) -> float:
         angle, said = self._states.find_stamped(self._names[joint])
         return angle - float(sent.at(said if 0.0 <= now - said < _STAMPED else now).position[joint])
 
@@ -297,7 +299,7 @@ class RosSmoothJoints:
         message = motion(
             self._reach(), [PERIOD * row for row in rows], list(zip(at, speed, strict=True)), stamp(begins)
         )
-        self._sent = sent = Sent(begins, way, message)
+        self._sent = sent = SentTrajectory(begins, way, message)
         self._publisher.publish(message)
         if self._sent is not sent:
             self._renew()  # another thread has stopped them meanwhile
@@ -307,16 +309,16 @@ class RosSmoothJoints:
         made: list[list[float]] = (values[:, joints] * self._si[joints]).tolist()
         return made
 
-    def _reach(self) -> dict[str, JointReach]:
+    def _reach(self) -> dict[str, JointRange]:
         joints = [self._body.joints[index] for index in self._commanded]
         return {
-            on_wire(joint.name): JointReach(joint.low * joint.si, joint.high * joint.si, joint.speed * joint.si)
+            on_wire(joint.name): JointRange(joint.low * joint.si, joint.high * joint.si, joint.speed * joint.si)
             for joint in joints
         }
 
     def _renew(self) -> None:
         """Send the current movement again; a joint controller goes on with it."""
-        sent: Sent | None = None
+        sent: SentTrajectory | None = None
         while sent is not self._sent:
             sent = self._sent
             if sent is not None and self._now() < sent.ends:

@@ -25,7 +25,7 @@ FAILED = 9000
 """Nav2's error code for all failures without a code of their own; `error_msg` has the reason."""
 
 
-class NavigationRide(AcceptedGoal):
+class AcceptedNavigation(AcceptedGoal):
     """A goal to navigate to a pose; one that no robot can reach fails at once."""
 
     def __init__(self, node: Node, handle: ServerGoalHandle) -> None:
@@ -50,7 +50,7 @@ class NavigationServer:
         self._robot = robot
         self._calls = calls
         self._wheels = wheels
-        self._ride: NavigationRide | None = None
+        self._ride: AcceptedNavigation | None = None
         self._plan = node.create_publisher(Path, "plan", COMMANDS)
         self._way: Sequence[Point] = ()
         self._leases = Leases(node)
@@ -92,7 +92,7 @@ class NavigationServer:
 
     async def _execute(self, handle: ServerGoalHandle) -> NavigateToPose.Result:
         """Run a goal, in the thread of the executor."""
-        ride = NavigationRide(self._node, handle)
+        ride = AcceptedNavigation(self._node, handle)
         self._calls.post(lambda: self._begin(ride))
         await ride.wait_for_end(self._leases)
         if ride.failure is None:
@@ -104,7 +104,7 @@ class NavigationServer:
         share = limit.speed_limit / (100.0 if limit.percentage else self._robot.normal_speed)
         self._robot.pace = min(1.0, share) if share > 0.0 else 1.0
 
-    def _begin(self, ride: NavigationRide) -> None:
+    def _begin(self, ride: AcceptedNavigation) -> None:
         if ride.failure is not None:
             ride.end()
             return
@@ -114,7 +114,7 @@ class NavigationServer:
             self._ride.end()  # the new goal has ended its own
         self._ride = ride
 
-    def _publish_feedback(self, ride: NavigationRide, goal: NavigationGoal, now: Moment) -> None:
+    def _publish_feedback(self, ride: AcceptedNavigation, goal: NavigationGoal, now: Moment) -> None:
         left = goal.left
         feedback = NavigateToPose.Feedback(distance_remaining=left)
         feedback.current_pose.header.stamp, feedback.current_pose.header.frame_id = now.stamp, MAP
