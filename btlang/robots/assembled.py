@@ -10,13 +10,16 @@ from btlang.robots.command_gate import Latch
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.motion.gesturing import Gestures, TurnableJoints
 from btlang.robots.motion.guard.guard import Guarded
-from btlang.robots.robot import OnEvent, Operation, RobotError
+from btlang.robots.robot import CompletedOperation, OnEvent, Operation, RobotError
 from btlang.robots.worlds.descriptions import Choices
 from btlang.robots.worlds.knowledge import Knowledge
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.parts import BatteryPart, VoicePart
+    from btlang.robots.worlds.world import World
+    from btlang.robots.zones import Zones
+    from btlang.run.robot_state import Whereabouts
     from btlang.speech.engine import Utterance
 
 STOPPED = "the robot was stopped"
@@ -68,6 +71,34 @@ class AssembledRobot(Guarded):
     def set_out_from(self) -> Pose:
         """The pose at the start of the run. Raises RobotError if it isn't known."""
         raise NotImplementedError
+
+    @property
+    def world(self) -> World:
+        """The world as far as the robot knows it."""
+        return self._known.world
+
+    @property
+    def zones(self) -> Zones:
+        """The zones of the world, as the mission has closed and opened them."""
+        return self._known.zones
+
+    @property
+    def things(self) -> tuple[Whereabouts, ...]:
+        """Where walking people and unknown things are, for observers."""
+        return self._known.whereabouts()
+
+    def place_names(self) -> list[str]:
+        """Return the names of all places, including those of the mission."""
+        return list(self.world.names.places)
+
+    def seen(self, kind: str) -> list[str]:
+        """Return the objects or people in view, nearest first. Raises RobotError if nothing reports them."""
+        raise NotImplementedError
+
+    def take_picture(self) -> Operation:
+        """Take a picture; its event names what is in view. Raises RobotError if nothing reports it."""
+        self._emit("picture", name=", ".join((*self.seen("person"), *self.seen("object"))))
+        return CompletedOperation()
 
     def locate(self, name: str) -> Point:
         """Return where a place, object or person is. Raises RobotError for an unknown or unseen one."""
@@ -144,6 +175,32 @@ class AssembledRobot(Guarded):
     def lead(self, name: str, aim: Point | None = None) -> float:
         """Implement Gesturing. Raises RobotError."""
         return self._gestures.lead(name, lambda: self.pose, aim)
+
+    def call(self, text: str) -> None:
+        """Call people for help, by an event."""
+        self._emit("call", text=text)
+
+    def say(self, text: str, after: float = 0.0) -> None:
+        """Start to speak after so many seconds. Raises RobotError if it can't."""
+        if not self._latch.refuses:
+            self._voice.say(text, after)
+            self._last_said = text
+            self._emit("say", text=text)
+
+    def speak_in(self, language: str) -> None:
+        """Speak in a language until the end of the run. Raises RobotError if it can't."""
+        if language != self._voice.language:
+            self._voice.speak_in(language)
+            self._emit("language", name=language)
+
+    def utterance(self, text: str) -> Utterance:
+        """Return the sound and the times of a text. Raises RobotError."""
+        return self._voice.utterance(text)
+
+    def print(self, text: str) -> None:
+        """Show a text at once. Raises RobotError if it can't."""
+        self._voice.print(text)
+        self._emit("print", text=text)
 
     @property
     def language(self) -> str:

@@ -24,8 +24,6 @@ from btlang.robots.simulation.parts import make_simulated_parts, stations
 from btlang.robots.simulation.surroundings import Surroundings
 from btlang.robots.worlds.obstacles import Obstacles
 from btlang.robots.worlds.world import Place, World, said
-from btlang.robots.zones import Zones
-from btlang.run.robot_state import Whereabouts
 from btlang.run.standstill import Standstill
 from btlang.text.time_of_day import DAY, weekday_after
 from btlang.vocabulary.capabilities import part_of
@@ -62,7 +60,6 @@ class SimulatedRobot(AssembledRobot):
         body = body or standard_body()
         super().__init__(body, on_event)
         self._has = cache(body.has)
-        self.world = world
         self._obstacles = obstacles or Obstacles(world)
         parts = (make_parts or make_simulated_parts)(world, self._obstacles, body)
         self._base, self.power, self._scan = parts.base, parts.power, parts.scan
@@ -237,10 +234,6 @@ class SimulatedRobot(AssembledRobot):
     def reset_localization(self) -> None:
         """Do nothing: it always knows its pose."""
 
-    def place_names(self) -> list[str]:
-        """Return the names of all places, including those of the mission."""
-        return list(self.world.names.places)
-
     def navigate_to(self, name: str) -> NavigationGoal:
         """Go to a place, an object or a person. Raises RobotError for an unknown name."""
         known = self._surroundings.known(name)
@@ -295,23 +288,12 @@ class SimulatedRobot(AssembledRobot):
     def take_picture(self) -> Operation:
         """Take a picture; its event names what is in view. Raises RobotError without a camera."""
         self._need("perception")
-        self._emit("picture", name=", ".join((*self.seen("person"), *self.seen("object"))))
-        return CompletedOperation()
-
-    @property
-    def things(self) -> tuple[Whereabouts, ...]:
-        """Where walking people and unknown things are, for observers."""
-        return self._surroundings.whereabouts()
+        return super().take_picture()
 
     @property
     def surroundings(self) -> Surroundings:
         """The surroundings, and who lives there."""
         return self._surroundings
-
-    @property
-    def zones(self) -> Zones:
-        """The zones of the world and the mission."""
-        return self._surroundings.zones
 
     @property
     def ears(self) -> Ears:
@@ -365,10 +347,6 @@ class SimulatedRobot(AssembledRobot):
         self._surroundings.switch(name, on, self.pose)
         return CompletedOperation()
 
-    def call(self, text: str) -> None:
-        """Call people for help, by an event."""
-        self._emit("call", text=text)
-
     @property
     def held_up(self) -> str:
         """The person in its way, "" if nobody makes it wait."""
@@ -381,7 +359,6 @@ class SimulatedRobot(AssembledRobot):
     def name_places(self, places: Iterable[Place]) -> None:
         """Set the places of a mission, in addition to those of the world."""
         self._surroundings.name_places(places)
-        self.world = self._surroundings.world
         self._navigator.name_places(self.world.places)
 
     def move_thing(self, name: str, x: float, y: float) -> None:
@@ -458,28 +435,22 @@ class SimulatedRobot(AssembledRobot):
     def say(self, text: str, after: float = 0.0) -> None:
         """Start to speak after so many seconds, for as long as the voice of the body takes. Raises RobotError."""
         self._need("voice")
-        if not self._latch.refuses:
-            self._voice.say(text, after)
-            self._last_said = text
-            self._emit("say", text=text)
+        super().say(text, after)
 
     def speak_in(self, language: str) -> None:
         """Speak in a language until the end of the run. Raises RobotError if it can't."""
         self._need("voice")
-        if language != self._voice.language:
-            self._voice.speak_in(language)
-            self._emit("language", name=language)
+        super().speak_in(language)
 
     def utterance(self, text: str) -> Utterance:
         """Return the sound and the times of a text. Raises RobotError."""
         self._need("voice")
-        return self._voice.utterance(text)
+        return super().utterance(text)
 
     def print(self, text: str) -> None:
         """Show a text at once."""
         self._need("screen")
-        self._voice.print(text)
-        self._emit("print", text=text)
+        super().print(text)
 
     def _need(self, need: str) -> None:
         """Raise RobotError if the body lacks a part."""

@@ -45,6 +45,10 @@ class Knowledge:
         """Set the places of a mission, in addition to those of the world."""
         self.world = self._given_world.with_places(places)
 
+    def whereabouts(self) -> tuple[Whereabouts, ...]:
+        """Return where walking people and unknown things are, to the centimetre, and whether they are in view."""
+        raise NotImplementedError
+
     def known(self, name: str) -> str:
         """Return the name as the world spells it."""
         names = self.world.names

@@ -23,7 +23,6 @@ from btlang.robots.motion.guard.guard import Cause, Guard, Verdict
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, Station
 from btlang.robots.voice import Synthesizer
 from btlang.robots.worlds.world import Place, World, said
-from btlang.robots.zones import Zones
 from btlang.ros.available import optional_interface
 from btlang.ros.clocks import AWAKE
 from btlang.ros.node import ExecutorThread
@@ -39,13 +38,12 @@ from btlang.ros.robot.services import Services
 from btlang.ros.robot.speech import RosEars, RosSpeech
 from btlang.ros.robot.zones import RosZones
 from btlang.ros.subscriptions import SubscriptionCache
-from btlang.run.robot_state import Whereabouts
 from btlang.run.standstill import Standstill
 from btlang.text.time_of_day import DAY, local, weekday_after
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.speech.engine import Utterance
+    pass
 
 CALL, FOLLOW = "call", "follow"
 _STOP = "stop"
@@ -375,10 +373,6 @@ class RosRobot(AssembledRobot):
     def pace(self, share: float) -> None:
         self._zones.pace = share
 
-    def place_names(self) -> list[str]:
-        """Return the names of all places, including those of the mission."""
-        return list(self.world.names.places)
-
     def reset_localization(self) -> None:
         """Call the service that resets the localization, if there is one."""
         self._services.fire(_LOCALIZE)
@@ -387,11 +381,6 @@ class RosRobot(AssembledRobot):
     def scan(self) -> npt.NDArray[np.float64]:
         """Return the nearest echo in each degree. Raises RobotError if the scanner is silent."""
         return self._senses.scan()
-
-    @property
-    def world(self) -> World:
-        """The world as far as the robot knows it."""
-        return self._places.world
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """Begin a run, whose random choices follow from the seed; `made` of them have been made already."""
@@ -414,16 +403,6 @@ class RosRobot(AssembledRobot):
         """Return the objects or people in view, nearest first. Raises RobotError if nothing reports them."""
         return self._perception.seen(kind, self.pose)
 
-    def take_picture(self) -> Operation:
-        """Report what is in view as an event. Raises RobotError if nothing reports it."""
-        self._emit("picture", name=", ".join((*self.seen("person"), *self.seen("object"))))
-        return CompletedOperation()
-
-    @property
-    def things(self) -> tuple[Whereabouts, ...]:
-        """Where walking people and unknown things were last seen, for observers."""
-        return self._places.whereabouts()
-
     def guide(self, person: str, follow: bool) -> None:
         """Let somebody follow the robot from now on, or no longer.
 
@@ -435,11 +414,6 @@ class RosRobot(AssembledRobot):
         if FOLLOW not in self._optional:
             raise RobotError(f"there is no service {self._node.resolve_service_name(FOLLOW)}")
         self._services.call(FOLLOW, lambda message: None, person=known, follow=follow)
-
-    @property
-    def zones(self) -> Zones:
-        """The zones of the world and the mission."""
-        return self._zones.zones
 
     held_up = ""
     """Always "": no topic reports who is in its way."""
@@ -544,29 +518,7 @@ class RosRobot(AssembledRobot):
     def call(self, text: str) -> None:
         """Call people for help, by an event and a topic."""
         self._calls.publish(String(data=text))
-        self._emit("call", text=text)
-
-    def say(self, text: str, after: float = 0.0) -> None:
-        """Start to speak after so many seconds. Raises RobotError if nobody listens."""
-        if not self._latch.refuses:
-            self._voice.say(text, after)
-            self._last_said = text
-            self._emit("say", text=text)
-
-    def speak_in(self, language: str) -> None:
-        """Speak in a language until the end of the run. Raises RobotError if it can't."""
-        if language != self._voice.language:
-            self._voice.speak_in(language)
-            self._emit("language", name=language)
-
-    def utterance(self, text: str) -> Utterance:
-        """Return the sound and the times of a text. Raises RobotError."""
-        return self._voice.utterance(text)
-
-    def print(self, text: str) -> None:
-        """Show a text at once. Raises RobotError if nobody listens."""
-        self._voice.print(text)
-        self._emit("print", text=text)
+        super().call(text)
 
     def _offer(self, name: str, kind: str) -> bool:
         """Make the client of a service whose type may not be installed; return whether it is."""

@@ -67,12 +67,6 @@ class OdometryReading(SensorReading):
     """Seconds by the clock of its source, if it has one: `stamp` may be the time of a late arrival."""
 
 
-class JointReading(SensorReading):
-    """The position of a joint: degrees, or metres if it slides."""
-
-    position: float = 0.0
-
-
 ObstacleReading = ScanReading | RangeReading | ContactReading
 """A reading of what is near."""
 Sensors = Callable[[], "list[ObstacleReading]"]
