@@ -191,7 +191,7 @@ class RemoteRobot:
 
 
 class RemoteOperation:
-    """See btlang.robots.robot.Operation."""
+    """An operation of the robot as a method of a component gets it."""
 
     def __init__(self, call: MethodCall, number: int) -> None:
         self._call, self._number = call, number

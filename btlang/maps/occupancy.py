@@ -108,7 +108,7 @@ _MODES = ("trinary", "scale", "raw")
 
 
 class OccupancyMap(Record):
-    """Which cells are occupied, a row from the south for each first index.
+    """The occupied cells of a map, a row from the south for each first index.
 
     A cell has sides of `resolution` metres; `origin` is the corner of the first cell and the direction of its row.
     """

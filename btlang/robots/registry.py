@@ -87,7 +87,7 @@ def runs_in_real_time(body: Body, over: str, simulate: Sequence[str] = ()) -> bo
 
 
 class Connector(Record):
-    """Connects a robot in a world to what it runs on: `over`, a name in ROBOTS."""
+    """A function that connects a robot in a world to what it runs on: `over`, a name in ROBOTS."""
 
     body: Body
     over: str

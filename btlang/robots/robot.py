@@ -60,7 +60,7 @@ class CompletedOperation:
 
 
 class Machine(Protocol):
-    """What every robot is. Only `stop` and `disable` may be called from other threads.
+    """A robot, whatever it has. Only `stop` and `disable` may be called from other threads.
 
     `on_event(kind, data)` is called for each event. Kinds: say, print, choose, navigate, arrive, bump, stuck, stop,
     grasp, release, drop, joint, dock, undock, battery, fault, hear, ask, see, come, leave, call, door, switch, give,

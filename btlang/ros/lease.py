@@ -48,7 +48,7 @@ class Lease:
 
 
 class Leases:
-    """What the servers of a node know of their clients, for the thread that spins the node."""
+    """The leases of the clients of a node's servers, for the thread that spins the node."""
 
     def __init__(self, node: Node) -> None:
         self._node = node

@@ -27,7 +27,7 @@ class SpeechError(Exception):
 
 
 class Settings(Record):
-    """How to speak: a `language` such as "en", a `variant` of its voice, words a minute, and a pitch from 0 to 100.
+    """The settings of a voice: a `language` such as "en", a `variant`, words a minute, and a pitch from 0 to 100.
 
     An engine without sound takes `text` seconds for each text, and `character` for each character.
     """

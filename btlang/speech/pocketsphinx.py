@@ -65,7 +65,7 @@ _UNSURE = {"open": -0.5, "wake": -2.0, "addressed": -6.0, "pushed": -math.inf}
 
 
 class PocketSphinx:
-    """See btlang.speech.recogniser.Recogniser."""
+    """The recogniser `pocketsphinx`."""
 
     def __init__(self, settings: RecogniserSettings) -> None:
         if find_spec("pocketsphinx") is None:

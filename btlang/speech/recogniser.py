@@ -49,7 +49,7 @@ class RecogniserSettings(Record):
 
 
 class Expected(Record):
-    """What is listened for: `phrases` and their `names` as in this module, and with `anything` all else too.
+    """The speech that is expected: `phrases` and their `names` as in this module, and with `anything` all else too.
 
     Recognisers that always find the nearest phrase know `others` too, which aren't heard: what could be taken for the
     contrary of a phrase. In the `mode` "open" anybody may say anything, in "wake" all phrases begin with the wake word,

@@ -29,7 +29,7 @@ class _Asked:
 
 
 class Polling:
-    """Which servos are asked, and how.
+    """The order in which servos are asked.
 
     Servos that can answer with one common packet do; those whose answer is missing are asked last, since in a chain of
     answers each waits for the one before.

@@ -93,7 +93,7 @@ def _words(*values: int) -> bytes:
 
 
 class PacketReader:
-    """Finds packets in a stream of bytes, whatever is between them, and drops those with a wrong checksum.
+    """A reader of packets in a stream of bytes, whatever is between them, which drops those with a wrong checksum.
 
     After a fast sync read, `parts` is how many servos were asked for how many bytes, `segment`: the parts of their
     common answer come out as a status packet of each servo; of a damaged answer, those before the damage.

@@ -89,7 +89,9 @@ class ServoRestarted(DeviceSilent):
 
 
 class ServoCommands(Record):
-    """What to send to a servo in a cycle; None for nothing. `watchdog`: its watchdog stopped it and is set again."""
+    """The values to send to a servo in a cycle; None for nothing. `watchdog`: its watchdog
+    stopped it and is set again.
+    """
 
     goal: bytes | None = None
     torque: bool | None = None

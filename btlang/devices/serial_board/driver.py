@@ -129,7 +129,7 @@ class _Known(Record):
 
 
 class SerialBoard:
-    """See btlang.devices.driver.Driver."""
+    """The driver `serial-board`."""
 
     kinds: Sequence[str] = tuple(KIND_NUMBERS)
     needs_port = True

@@ -57,7 +57,7 @@ def decode_frame(frame: bytes) -> bytes | None:
 
 
 class FrameReader:
-    """Finds the messages in the bytes of a line, in pieces of any size. It keeps at most one frame."""
+    """A reader of messages from the bytes of a line, in pieces of any size. It keeps at most one frame."""
 
     def __init__(self) -> None:
         self._rest = b""

@@ -57,7 +57,7 @@ class UnwrappedCounter:
 
 
 class ReadingFormat(Record):
-    """How a kind's readings are written: their struct, the integers of a reading, and a reading of those.
+    """The format of a kind's readings: their struct, the integers of a reading, and a reading of those.
 
     `tallies` are two for each device: its counters. Raises DeviceError for values that can't be true.
     """
@@ -68,7 +68,7 @@ class ReadingFormat(Record):
 
 
 class CommandFormat(Record):
-    """How a kind's commands are written. Packing raises DeviceError for values that aren't numbers."""
+    """The format of a kind's commands. Packing raises DeviceError for values that aren't numbers."""
 
     layout: Struct
     pack: Callable[[Any], bytes]

@@ -24,7 +24,7 @@ Vector = tuple[float, float, float]
 
 
 class SpeedLimits(Record):
-    """How fast the base drives, in metres and seconds, or turns, in degrees and seconds.
+    """The speeds of a base: for driving in metres and seconds, or for turning in degrees and seconds.
 
     `speed` is the default for missions, `slowing` the deceleration before a goal, `hard_brake` that of a stop.
     """
@@ -51,7 +51,7 @@ TOLERANCE = 0.5
 
 
 class NavigationSpec(Record):
-    """How near the robot goes to objects (within reach of its hands) and to people, in metres between centres.
+    """The distances of navigation to objects (within reach of the hands) and to people, in metres between centres.
 
     A navigation server that reports success is believed within `tolerance` metres of the goal.
     """
@@ -156,7 +156,7 @@ class Battery(Record):
 
 
 class Dock(Record):
-    """How the robot docks. Distances are in metres from the dock.
+    """The docking of a robot, with distances in metres from the dock. Distances are in metres from the dock.
 
     It connects `within`, has left the dock `beyond`, and `backs_off` so far when it undocks. It drives straight in from
     `staging` metres in front of the dock, at `speed` m/s, and tries again `retries` times.
@@ -171,7 +171,7 @@ class Dock(Record):
 
 
 class VoiceSpec(Record):
-    """How the robot speaks, and with which engine: "espeak", the name of an installed one, or `module:Class`.
+    """The voice of a robot and its engine: "espeak", the name of an installed one, or `module:Class`.
 
     "" is an engine without sound.
     """
@@ -181,7 +181,7 @@ class VoiceSpec(Record):
 
 
 class Mouth(Record):
-    """What shows the shapes of the mouth: a `joint` that is open at its high end, a `display`, or both."""
+    """The mouth of a robot: a `joint` that is open at its high end, a `display`, or both."""
 
     joint: str = ""
     display: str = ""
@@ -196,14 +196,14 @@ class Breathing(Record):
 
 
 class Idle(Record):
-    """What the robot does with joints that nothing else moves; see btlang.robots.motion.gesturing."""
+    """The motion of joints that nothing else moves; see btlang.robots.motion.gesturing."""
 
     breathing: Breathing | None = None
     look_at_speaker: bool = False
 
 
 class EarsSpec(Record):
-    """What the robot understands: speech up to `within` metres away, by a recogniser for microphones, "" for none.
+    """The ears of a robot: they understand speech up to `within` metres away, by a recogniser, "" for none.
 
     Without a `wake` word and `settings.push` it listens all the time.
     """

@@ -32,7 +32,7 @@ _SLOWED = 1.02  # times as long: less is not worth a word
 
 
 class Course(Record):
-    """What some joints do from a tick on; the stroke is `stroke` seconds after the first tick of all."""
+    """A plan for some joints from a tick on; the stroke is `stroke` seconds after the first tick of all."""
 
     joints: Sequence[int]
     begins: int
@@ -42,7 +42,7 @@ class Course(Record):
 
 
 class MotionPlanner:
-    """Plans movements for all joints of a body."""
+    """A planner of movements for all joints of a body."""
 
     def __init__(self, limits: JointLimits) -> None:
         self._limits = limits

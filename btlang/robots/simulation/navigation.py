@@ -76,7 +76,7 @@ class NavigationGoal:
 
 
 class Navigator:
-    """Drives the base to the current goal.
+    """The navigation of a base to the current goal.
 
     `patience` is the seconds it waits for somebody in its way before it looks for another way; without one it gives up
     after GIVES_UP more. `pace` is the share of the normal speed.

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from typing import Protocol
 
     class Ways(Protocol):
-        """See btlang.robots.worlds.planning.Walkways."""
+        """The ways through a world; see btlang.robots.worlds.planning.Walkways."""
 
         def path(self, start: Point, goal: Point) -> list[Point]: ...
         def is_clear(self, a: Point, b: Point) -> bool: ...
@@ -55,7 +55,7 @@ class OtherBody(Record):
 
 
 class Walker:
-    """Where somebody is and what they do now. `follows` is whether they follow the robot."""
+    """A person who walks: where they are and what they do now. `follows` is whether they follow the robot."""
 
     def __init__(self, person: Person, places: Sequence[Point]) -> None:
         self.person = person

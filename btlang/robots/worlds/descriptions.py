@@ -67,7 +67,7 @@ def _describe_thing(value: str) -> str:
 
 
 class Relations:
-    """Judges relations in one world.
+    """The relations between the things of one world.
 
     `things` are its objects and people, `where` returns the point of a name. `is_seen` returns whether the robot has a
     name in view, `holder` who holds it.

@@ -142,7 +142,7 @@ _GOAL_SEARCH = 0.15
 
 
 class PathPlanner:
-    """Plans for a round robot among standing obstacles, around zones to keep out of.
+    """A planner for a round robot among standing obstacles, around zones to keep out of.
 
     Slow zones cost as much as they slow it. Raises RobotError if the world is too large.
     """

@@ -16,7 +16,7 @@ _DEGREES = np.radians(np.arange(360.0))
 
 
 class Scanner:
-    """Computes a scan when it is first read from a pose, and keeps it until something moves."""
+    """A scanner that computes a scan when it is first read from a pose, and keeps it until something moves."""
 
     def __init__(self, obstacles: Obstacles, reach: float) -> None:
         self._reach = reach

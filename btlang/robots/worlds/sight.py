@@ -14,7 +14,7 @@ _FRESH = 2.0  # seconds for which somebody seen counts as still there
 
 
 class Sight:
-    """What is in view, and what the robot knows of the positions of people and objects.
+    """The things in view, and what the robot knows of the positions of people and objects.
 
     `find` returns the point of a name if the robot at a pose has it in view, else None; `report` gets the name of what
     is seen for the first time.

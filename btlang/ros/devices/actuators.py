@@ -159,7 +159,7 @@ _RATE = "rate"
 
 
 class MicrophoneTranslation(Translation):
-    """Samples of 16 bits; the size of the second dimension, "rate", says how many of them are a second."""
+    """Sound of 16 bits; the size of the second dimension, "rate", is the number of samples a second."""
 
     reads = Int16MultiArray
 

@@ -11,7 +11,7 @@ COMMANDS = "command"
 
 
 class Setting(Record):
-    """What messages need to know of a device.
+    """The properties of a device that its messages depend on.
 
     `joint` is the name of a joint or a hand in messages, and `slides` whether its position is in metres; `wheel_gap` is
     the metres between two wheels, `range` the metres that a sensor sees, `frame` the frame that it is in.

@@ -38,7 +38,7 @@ _MOVED, _TURNED = 0.05, 5.0  # metres and degrees that it has to move
 
 
 class GoalTask(Record):
-    """What a server is asked for.
+    """A task for a server.
 
     It has the `sort` of server, the `name` of the target, and both in sentences, such as "the navigation to the lab",
     "navigate to the lab" and " on the way to the lab". `reasons` are those of its error codes. `regular` is whether it

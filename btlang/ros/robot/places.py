@@ -31,8 +31,8 @@ _DOCK = "dock"
 
 
 class RosPlaces(Knowledge):
-    """What the robot knows of its world, in metres on the map of the world file. Objects move with a robot that carries
-    them.
+    """The knowledge of a ROS 2 robot about its world, in metres on the map of the world file. Objects move with a robot
+    that carries them.
 
     `notice` takes what is in view: people who walk and unknown things are where they were last seen. `report` gets each
     name when it is first seen.

@@ -124,7 +124,9 @@ KINDS = ("person", "object")
 
 
 class RosPerception:
-    """Passes what is in view on to `places`. Raises SensorSilent if nothing reports it."""
+    """The perception of a ROS 2 robot, which passes what is in view on to `places`. Raises SensorSilent if nothing
+    reports it.
+    """
 
     def __init__(self, node: Node, subscriptions: SubscriptionCache, places: RosPlaces) -> None:
         self._node, self._subscriptions, self._places = node, subscriptions, places

@@ -179,7 +179,7 @@ WORDLESS = "..."
 
 
 class RosEars:
-    """What was heard, in `ears`, from the topic or typed.
+    """The ears of a ROS 2 robot: what was heard, in `ears`, from the topic or typed.
 
     The topic of questions publishes the open one, and to whom; the topic of expected phrases has one on each line.
     `emit` gets an event for what is heard and for questions. Without btlang's interfaces it hears only what is typed.

@@ -27,7 +27,7 @@ _TOLERANCE = 1.05  # of a limit
 
 
 class JointPlayer:
-    """Plays trajectories. A new one replaces the rest of the old one.
+    """A player of trajectories. A new one replaces the rest of the old one.
 
     One with a stamp has to be sent again while it is played, as velocities have to be: if its sender is silent, the
     joints brake. `clocks` returns the second of each clock that a stamp may be of, at the simulated second `now` of the

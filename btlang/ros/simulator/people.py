@@ -20,7 +20,7 @@ from btlang.ros.simulator.shared import COMMANDS, CallQueue, Moment, PeriodicPub
 
 
 class HearingTopics:
-    """Passes questions to the people of the world, and publishes what they say."""
+    """The topics of hearing: questions go to the people of the world, and what they say is published."""
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot
@@ -44,7 +44,7 @@ class HearingTopics:
 
 
 class SightTopics:
-    """Publishes what is in view, if the body has perception; people follow and take what they are given."""
+    """The topics of sight: what is in view, if the body has perception; people follow and take what they are given."""
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot

@@ -45,7 +45,7 @@ def await_server(clients: RosClients, client: Any, cls: Any, name: str, limit: f
 
 
 class Judge:
-    """Judges whether an answer is a success, by the fields that the table names.
+    """A judge of answers: whether one is a success, by the fields that the table names.
 
     If it names none, they are `success`, `error_code` and `message` or `error_msg`, as far as these exist. Raises
     MissionError (BT105).

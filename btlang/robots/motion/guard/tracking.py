@@ -29,7 +29,7 @@ _DROVE, _TURNED = "shows {:.2f} m where {:.2f} m were commanded", "shows {:.0f} 
 
 
 class OdometryCheck:
-    """Compares what was sent to the base with what its odometry shows, over a sliding window."""
+    """A comparison of what was sent to the base with what its odometry shows, over a sliding window."""
 
     def __init__(self, body: Body) -> None:
         self._body = body

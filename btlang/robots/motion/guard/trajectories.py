@@ -18,7 +18,7 @@ _JERK = 1.02  # of the limit, for differences of sampled accelerations
 
 
 class TrajectoryCheck:
-    """Checks the planned movements of one body."""
+    """A check of the planned movements of one body."""
 
     def __init__(self, body: Body, kinematics: Kinematics) -> None:
         self._body = body
