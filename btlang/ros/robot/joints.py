@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import ceil
-from typing import Protocol
 
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
@@ -51,19 +50,6 @@ class JointStates:
 def on_wire(name: str) -> str:
     """Return the name of a joint in messages."""
     return name.replace(" ", "_")
-
-
-class JointsOverRos(Protocol):
-    """Joints of any kind. `freeze`, which is for all joints if none are named, may be called from any thread."""
-
-    @property
-    def moving(self) -> bool: ...
-    def find_unreported(self) -> list[str]: ...
-    def angle(self, name: str) -> float: ...
-    def move(self, targets: Mapping[str, float]) -> None: ...
-    def at_target(self, names: tuple[str, ...]) -> bool: ...
-    def freeze(self, names: tuple[str, ...] = ()) -> None: ...
-    def step(self) -> None: ...
 
 
 class RosJoints:

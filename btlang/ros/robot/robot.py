@@ -29,7 +29,7 @@ from btlang.ros.node import ExecutorThread
 from btlang.ros.robot.base import RosBase
 from btlang.ros.robot.hands import RosHands
 from btlang.ros.robot.interface import VELOCITY
-from btlang.ros.robot.joints import JointsOverRos, RosJoints
+from btlang.ros.robot.joints import RosJoints
 from btlang.ros.robot.navigation import Pursuit, RosNavigation, ServerGoal, ServerGoals
 from btlang.ros.robot.places import RosDoors, RosPlaces
 from btlang.ros.robot.power import RosDocking, RosPower
@@ -43,7 +43,8 @@ from btlang.text.time_of_day import DAY, local, weekday_after
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    pass
+    from btlang.ros.robot.smooth_joints import RosSmoothJoints
+
 
 CALL, FOLLOW = "call", "follow"
 _STOP = "stop"
@@ -68,7 +69,7 @@ class RosRobot(AssembledRobot):
 
     moves_by_itself = True
     power: RosPower
-    _joints: JointsOverRos
+    _joints: RosJoints | RosSmoothJoints
     _voice: RosSpeech
 
     def __init__(
@@ -528,7 +529,7 @@ class RosRobot(AssembledRobot):
         return found is not None
 
 
-def ros_joints(node: Node, subscriptions: SubscriptionCache, body: Body) -> JointsOverRos:
+def ros_joints(node: Node, subscriptions: SubscriptionCache, body: Body) -> RosJoints | RosSmoothJoints:
     """Return the joints of a body: smooth ones plan their movements."""
     if not body.is_smooth:
         return RosJoints(node, subscriptions, body)
