@@ -9,6 +9,10 @@ from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Point
 from btlang.robots.robot import Base, Machine, Power, RobotError, Sensors
 
+_SHARES = {"slowly": 0.5, "carefully": 0.5, "quietly": 0.4}
+"""Shares of the normal speed. "Quickly" is as fast as the robot can."""
+STUCK = "the wheels turn but the robot doesn't move"
+
 
 def where(robot: Base, place: str | None, x: float | None, y: float | None) -> Point:
     """Return the metres on the map. Raises RobotError for an unknown place, and without a place and a point."""
@@ -32,10 +36,6 @@ def things_described(robot: Base, type: str, **parts: str) -> list[str]:
     return robot.described(type, {name: text for name, text in parts.items() if text})
 
 
-_SHARES = {"slowly": 0.5, "carefully": 0.5, "quietly": 0.4}
-"""Shares of the normal speed. "Quickly" is as fast as the robot can."""
-
-
 def keep_pace(robot: Base, manner: str | None, steps: Generator[None, None, None]) -> Generator[None, None, None]:
     """Do the steps in this manner, without one at the current pace; when halted, halt them."""
     if manner is None:
@@ -51,9 +51,6 @@ def keep_pace(robot: Base, manner: str | None, steps: Generator[None, None, None
 def share_of(robot: Base, manner: str | None) -> float:
     """Return the share of the normal speed; 1 without a manner."""
     return 1.0 if manner is None else _SHARES.get(manner, robot.max_speed / robot.normal_speed)
-
-
-STUCK = "the wheels turn but the robot doesn't move"
 
 
 class DrivingRobot(Base, Sensors, Power, Protocol):

@@ -13,6 +13,8 @@ from btlang.robots.geometry import Point
 from btlang.robots.robot import Base, Gesturing, Joints
 from btlang.robots.worlds.world import said
 
+_BOWED = 1.0  # seconds
+
 
 class AimingRobot(Joints, Base, Protocol):
     """A robot that knows where it is, so it can point at what it knows."""
@@ -136,9 +138,6 @@ def _towards(robot: AimingRobot, posture: str, name: str, point: Point | None = 
         where = "behind the robot" if abs(bearing) > 90.0 else "too far to the side"
         raise ActionFailed(f"{said(name)} is {where}; the {joint.part} can't turn that far")
     yield from take(robot, posture, bearing=bearing)
-
-
-_BOWED = 1.0  # seconds
 
 
 def bow(robot: Joints) -> Steps:

@@ -17,6 +17,10 @@ from btlang.robots.worlds.world import said
 PASSED = 0.5
 """Metres from a place within which the robot has passed it."""
 _SPOTS = 12  # that are tried to get in or out of a zone
+_BESIDE = 1.0
+"""Metres from a thing at which a robot that goes to a side of it stops."""
+_AHEAD = {"front": (-1.0, 0.0), "behind": (1.0, 0.0), "left": (0.0, 1.0), "right": (0.0, -1.0)}
+"""The direction of each side: along the robot's line of sight, and to the left of it."""
 
 
 def go_to(
@@ -130,12 +134,6 @@ def accomplish(operation: Operation) -> Steps:
         operation.cancel()
     if operation.failure is not None:
         raise ActionFailed(operation.failure)
-
-
-_BESIDE = 1.0
-"""Metres from a thing at which a robot that goes to a side of it stops."""
-_AHEAD = {"front": (-1.0, 0.0), "behind": (1.0, 0.0), "left": (0.0, 1.0), "right": (0.0, -1.0)}
-"""The direction of each side: along the robot's line of sight, and to the left of it."""
 
 
 def go_to_side(

@@ -41,6 +41,8 @@ _RECORDS = {
     if issubclass(each, Reading | Command | Pose)
 }
 _RECORD, _BYTES = "record", "bytes"
+_PERIOD = 0.05  # seconds that a `yield` waits
+_AGAIN = 0.2  # seconds after which a question to the robot is asked once more
 
 
 def pack(message: object) -> bytes:
@@ -90,10 +92,6 @@ def _record(data: dict[str, Any]) -> Any:
         return kind(**{name: value for name, value in data.items() if name != _RECORD})
     except TypeError as problem:
         raise ValueError(str(problem)) from None
-
-
-_PERIOD = 0.05  # seconds that a `yield` waits
-_AGAIN = 0.2  # seconds after which a question to the robot is asked once more
 
 
 class RobotQuestions:

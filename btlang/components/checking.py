@@ -27,6 +27,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_DESCRIBE = 30.0  # seconds that a class gets to be loaded and to say what it is
+
 
 def circle(needs: Mapping[str, Collection[str]]) -> list[str]:
     """Return names that need each other in a circle, with the first one again at the end; none without a circle."""
@@ -59,9 +61,6 @@ def levels(needs: Mapping[str, Collection[str]]) -> list[list[str]]:
         for name in group:
             del left[name]
     return found
-
-
-_DESCRIBE = 30.0  # seconds that a class gets to be loaded and to say what it is
 
 
 def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:

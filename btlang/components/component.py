@@ -16,6 +16,10 @@ if TYPE_CHECKING:
 
 
 UNCONFIGURED, INACTIVE, ACTIVE, FINALIZED = STATES = "unconfigured", "inactive", "active", "finalized"
+UPWARDS = ("configure", "activate")
+"""The transitions from unconfigured to active."""
+SHARED = "--shared"
+"""The option of a process that several robots share, before the path of its socket."""
 
 
 class Transition(Record):
@@ -42,8 +46,6 @@ TRANSITIONS = {
     )
 }
 """The transitions by name."""
-UPWARDS = ("configure", "activate")
-"""The transitions from unconfigured to active."""
 
 
 class ComponentError(ActionFailed):
@@ -198,10 +200,6 @@ class Component:
         if name not in self._devices:
             raise ComponentError(f'{self.name} has no device "{name}"; name it among its needs')
         return self._devices[name]
-
-
-SHARED = "--shared"
-"""The option of a process that several robots share, before the path of its socket."""
 
 
 class Host(Protocol):

@@ -40,6 +40,9 @@ if TYPE_CHECKING:
     from btlang.vocabulary.entry import Entry
     from btlang.vocabulary.lexicon import Lexicon
 
+_WAITING = 1000  # events between two ticks: what is more is lost, but nothing of a component hides another change
+_UP = 30.0  # seconds that all components get to come up before the first mission; who is later is waited for no more
+
 
 class DeviceGate:
     """Devices for components. A device that moves and isn't commanded again comes to rest by itself."""
@@ -60,10 +63,6 @@ class DeviceGate:
     def silent(self, name: str) -> str | None:
         """Return why it is silent."""
         return self._devices.silent(name)
-
-
-_WAITING = 1000  # events between two ticks: what is more is lost, but nothing of a component hides another change
-_UP = 30.0  # seconds that all components get to come up before the first mission; who is later is waited for no more
 
 
 class ComponentConnection:

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from btlang.text.source import Source
     from btlang.vocabulary.entry import Entry
 
+_SERVICES = ("robot", "halted")
+"""Parameters of methods that no slot fills."""
+
 
 def robot_words(robot: str | Source) -> list[str]:
     """Return the keyword files of a robot as --robot names it. Raises as `words_of` and `body_of`."""
@@ -44,10 +47,6 @@ def words_of(body: Body) -> list[str]:
 
         files.append(gesture_words(body))
     return [file for file in dict.fromkeys(files) if file is not None]
-
-
-_SERVICES = ("robot", "halted")
-"""Parameters of methods that no slot fills."""
 
 
 def check_words(path: str, methods: Mapping[str, Mapping[str, Any]]) -> Iterator[Diagnostic]:

@@ -17,6 +17,16 @@ if TYPE_CHECKING:
 
 
 __all__ = ["Device", "DeviceError", "DeviceSilent", "Driver", "MakesDriver"]
+SIMULATED = "simulated"
+DRIVERS = {
+    "serial-board": "btlang.devices.serial_board.driver:SerialBoard",
+    "camera": "btlang.devices.media:Camera",
+    "sound": "btlang.devices.media:SoundCard",
+    "dynamixel": "btlang.devices.dynamixel.driver:DynamixelDriver",
+    "topic": "btlang.ros.devices.driver:TopicDriver",
+}
+"""The classes of drivers by name. SIMULATED devices have none, since they act in the world of the simulated robot."""
+ENTRY_POINTS = "btlang.drivers"
 
 
 class DeviceError(RobotError):
@@ -63,18 +73,6 @@ class MakesDriver(Protocol):
 
     def __call__(self, port: str, devices: Sequence[Device]) -> Driver:
         """Return a driver that isn't open yet. Raises DeviceError for unusable options, naming the device."""
-
-
-SIMULATED = "simulated"
-DRIVERS = {
-    "serial-board": "btlang.devices.serial_board.driver:SerialBoard",
-    "camera": "btlang.devices.media:Camera",
-    "sound": "btlang.devices.media:SoundCard",
-    "dynamixel": "btlang.devices.dynamixel.driver:DynamixelDriver",
-    "topic": "btlang.ros.devices.driver:TopicDriver",
-}
-"""The classes of drivers by name. SIMULATED devices have none, since they act in the world of the simulated robot."""
-ENTRY_POINTS = "btlang.drivers"
 
 
 def driver_class(name: str, folder: str = "") -> MakesDriver:

@@ -8,6 +8,8 @@ from collections.abc import Sequence
 
 from btlang.record import Record
 
+_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+
 
 class Reading(Record):
     """A reading of a device. None stands for a quantity that it doesn't measure."""
@@ -211,9 +213,6 @@ KINDS = {
     )
 }
 """The kinds by name."""
-
-
-_SIGNATURE = b"\x89PNG\r\n\x1a\n"
 
 
 def png(image: Image) -> bytes:

@@ -15,6 +15,11 @@ from btlang.engine.leaves.leaf import described
 from btlang.robots.motion.guard.readings import ChargeCheck
 
 _NUMBERS, _NO_NUMBER, _NOT_FINITE = ("float", "int"), "not a number", "not finite"
+SILENCE = 0.2
+"""Seconds after which a command no longer counts, and after which a device that moves is silent."""
+_RETRY = 0.25  # seconds until a lost port is opened again
+_JOIN = 2.0
+_NOT_YET, _NOTHING_NEW, _CLOSED = "it has not answered yet", "it reports nothing new", "its loop is closed"
 
 
 def wrong_field(record: Reading | Command) -> tuple[str, str] | None:
@@ -65,13 +70,6 @@ def _number_fields(kind: type[Reading | Command]) -> tuple[tuple[str, bool], ...
     """Return the fields that are numbers, and whether each may be None."""
     kinds = ((name, str(kind.__annotations__.get(name, "")).split(" | ")) for name in kind.fields)
     return tuple((name, "None" in each) for name, each in kinds if each[0] in _NUMBERS)
-
-
-SILENCE = 0.2
-"""Seconds after which a command no longer counts, and after which a device that moves is silent."""
-_RETRY = 0.25  # seconds until a lost port is opened again
-_JOIN = 2.0
-_NOT_YET, _NOTHING_NEW, _CLOSED = "it has not answered yet", "it reports nothing new", "its loop is closed"
 
 
 class DeviceLoop:

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 
 
 _JOIN = 1.0  # seconds that a camera gets to give the picture that it is about to give
+_OPTIONS = ("width", "height", "rate", "repeat")
+_RATE = 16_000
+_LONGEST = 5 * _RATE * 2  # bytes that wait for somebody who listens
+_PIECE = 0.05  # seconds that are written at once
 
 
 def missing_av(extra: str) -> DeviceError:
@@ -91,9 +95,6 @@ class MediaSource:
                 container.close()
 
 
-_OPTIONS = ("width", "height", "rate", "repeat")
-
-
 class Camera:
     """The driver `camera`. The port is a device such as /dev/video0, or a video or picture file.
 
@@ -148,11 +149,6 @@ class Camera:
 
     def _take(self, frame: Any) -> None:
         self._newest = frame
-
-
-_RATE = 16_000
-_LONGEST = 5 * _RATE * 2  # bytes that wait for somebody who listens
-_PIECE = 0.05  # seconds that are written at once
 
 
 class SoundCard:

@@ -41,6 +41,10 @@ if TYPE_CHECKING:
 
 _WIDTH, _HEIGHT = 160, 120
 _RATE = 16_000
+_OPTIONS = {
+    "range": ("cone", "range"), "camera": ("view",), "joint": ("part",), "hand": ("part",),
+    "button": ("bumper",), "gauge": ("value",),
+}  # fmt: skip
 
 
 class SimulatedDevice:
@@ -256,10 +260,6 @@ _VALUES: dict[str, tuple[Callable[[Any], bool], str]] = {
     "bumper": (lambda value: isinstance(value, bool), "true or false"),
 }
 """The valid values of options that aren't numbers."""
-_OPTIONS = {
-    "range": ("cone", "range"), "camera": ("view",), "joint": ("part",), "hand": ("part",),
-    "button": ("bumper",), "gauge": ("value",),
-}  # fmt: skip
 _READ: dict[str, Callable[[SimulatedDevice], Reading]] = {
     "range": SimulatedDevice._distance,
     "lidar": SimulatedDevice._scan,

@@ -26,6 +26,11 @@ _EACH = 0.1  # seconds between two commands that keep servos loose
 _WAITS = 2.0  # seconds until servos must have let go, or hold again
 _LOOKS = 0.02  # seconds between two looks at them meanwhile
 _SLOW = 5.0  # degrees a second at most until a servo holds
+Pose = dict[str, float]
+_LEAST = 0.5  # seconds between two poses
+_SMOOTH = 2.2  # times as long as at top speed, for a smooth start and end
+_HELP = "Enter takes the pose, 'end' writes the file."
+_TYPED = "Type joints with their angles, such as: head tilt = -15, head turn = 20. 'end' writes the file."
 
 
 def servos_of(body: Body) -> tuple[Device, ...]:
@@ -131,13 +136,6 @@ def _is_so(reached: Callable[[str], bool], name: str) -> bool:
 
 def _ignore(kind: str, data: Mapping[str, object]) -> None:
     """Ignore that devices fall silent: reading reports it."""
-
-
-Pose = dict[str, float]
-_LEAST = 0.5  # seconds between two poses
-_SMOOTH = 2.2  # times as long as at top speed, for a smooth start and end
-_HELP = "Enter takes the pose, 'end' writes the file."
-_TYPED = "Type joints with their angles, such as: head tilt = -15, head turn = 20. 'end' writes the file."
 
 
 def record(name: str, path: str, body: Body, over: str) -> int:

@@ -29,6 +29,11 @@ if TYPE_CHECKING:
     from btlang.diagnostics.diagnostic import Diagnostic
     from btlang.robots.bodies.body import Body
 
+_BAD_INPUT = 2
+_ROWS = 10  # that the map leaves for the names
+_GIVEN = {"picture": "--picture", "out": "-o", "to": "--to", "start": "--start", "resolution": "--resolution"}
+_TAKES = {"": {"picture"}, "check": set[str](), "import": {"out", "start"}, "export": {"out", "to", "resolution"}}
+
 
 def summary(world: World) -> Iterator[str]:
     """Return a line for the size and the start of a world, and one for each kind of things with their names."""
@@ -75,12 +80,6 @@ def _unknown(known: bool) -> str:
 
 def _zone(zone: Zone) -> str:
     return _with(zone.name, zone.kind if zone.is_closed else f"{zone.kind}, {zone.speed:g} m/s")
-
-
-_BAD_INPUT = 2
-_ROWS = 10  # that the map leaves for the names
-_GIVEN = {"picture": "--picture", "out": "-o", "to": "--to", "start": "--start", "resolution": "--resolution"}
-_TAKES = {"": {"picture"}, "check": set[str](), "import": {"out", "start"}, "export": {"out", "to", "resolution"}}
 
 
 def serve(options: argparse.Namespace) -> int:

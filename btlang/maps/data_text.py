@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 
 _MOST_YAML = 1_000_000  # characters; reading so many takes seconds
+_LONGEST = 40  # characters of a value in a message
+_KEY = "world"
 
 
 class ForeignFileError(DataFileError):
@@ -87,9 +89,6 @@ def missing_package(what: str, package: str) -> MissionError:
     return MissionError([diagnostic("BT087", NOWHERE, what=what, package=package)])
 
 
-_LONGEST = 40  # characters of a value in a message
-
-
 def shown(value: object) -> str:
     """Return a value in a message, cut short."""
     # a long number has no text, and that of a large list takes long to make
@@ -122,9 +121,6 @@ def yaw(what: str, x: float, y: float, z: float, w: float) -> float:
     if length < 1e-9:
         raise Problem(f"{what} must be a quaternion, and this one has the length 0")
     return wrap(degrees(atan2(2 * (w * z + x * y), length - 2 * (y * y + z * z))))
-
-
-_KEY = "world"
 
 
 def notation(world: World, to: str) -> str:

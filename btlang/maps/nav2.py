@@ -19,6 +19,41 @@ if TYPE_CHECKING:
     Cells = npt.NDArray[np.bool_]
 
 _MARGIN = 10.5  # cells around everything; the half puts walls at round coordinates in the middle of cells
+_OCCUPIED, _FREE, _UNKNOWN = 0, 254, 205  # grey, as map_saver writes them
+_MAP = """image: {image}
+mode: {mode}
+resolution: {resolution}
+origin: [{x}, {y}, 0.0]
+negate: 0
+occupied_thresh: 0.65
+free_thresh: 0.196
+"""
+_FILTERS = """# For nav2_map_server (the masks) and nav2_costmap_2d (the filters).
+keepout_filter_mask_server:
+  ros__parameters:
+    yaml_filename: keepout_mask.yaml
+    topic_name: keepout_filter_mask
+    frame_id: map
+keepout_costmap_filter_info_server:
+  ros__parameters:
+    type: 0
+    filter_info_topic: keepout_costmap_filter_info
+    mask_topic: keepout_filter_mask
+    base: 0.0
+    multiplier: 1.0
+speed_filter_mask_server:
+  ros__parameters:
+    yaml_filename: speed_mask.yaml
+    topic_name: speed_filter_mask
+    frame_id: map
+speed_costmap_filter_info_server:
+  ros__parameters:
+    type: 1  # percent of the full speed, which is {speed:g} m/s here
+    filter_info_topic: speed_costmap_filter_info
+    mask_topic: speed_filter_mask
+    base: 100.0  # a cell with the value v in the mask is for 100 - v percent
+    multiplier: -1.0
+"""
 
 
 class GridTooLarge(ValueError):
@@ -87,43 +122,6 @@ def walls_in(grid: CellGrid, world: World) -> Cells:
         right, high = grid.cell((box.x + box.width / 2, box.y + box.height / 2))
         cells[low : high + 1, left : right + 1] = True
     return cells
-
-
-_OCCUPIED, _FREE, _UNKNOWN = 0, 254, 205  # grey, as map_saver writes them
-_MAP = """image: {image}
-mode: {mode}
-resolution: {resolution}
-origin: [{x}, {y}, 0.0]
-negate: 0
-occupied_thresh: 0.65
-free_thresh: 0.196
-"""
-_FILTERS = """# For nav2_map_server (the masks) and nav2_costmap_2d (the filters).
-keepout_filter_mask_server:
-  ros__parameters:
-    yaml_filename: keepout_mask.yaml
-    topic_name: keepout_filter_mask
-    frame_id: map
-keepout_costmap_filter_info_server:
-  ros__parameters:
-    type: 0
-    filter_info_topic: keepout_costmap_filter_info
-    mask_topic: keepout_filter_mask
-    base: 0.0
-    multiplier: 1.0
-speed_filter_mask_server:
-  ros__parameters:
-    yaml_filename: speed_mask.yaml
-    topic_name: speed_filter_mask
-    frame_id: map
-speed_costmap_filter_info_server:
-  ros__parameters:
-    type: 1  # percent of the full speed, which is {speed:g} m/s here
-    filter_info_topic: speed_costmap_filter_info
-    mask_topic: speed_filter_mask
-    base: 100.0  # a cell with the value v in the mask is for 100 - v percent
-    multiplier: -1.0
-"""
 
 
 def nav2_files(world: World, resolution: float, full_speed: float) -> dict[str, bytes]:

@@ -31,6 +31,10 @@ _MOST_IN_TEXT = 4_000_000  # pixels; each is an object while it is read
 _MOST_BYTES = 60_000_000
 _GAP = rb"(?:\s|#[^\n]*\n)+"
 _PGM = re.compile(rb"P([25])" + _GAP + rb"(\d{1,6})" + _GAP + rb"(\d{1,6})" + _GAP + rb"(\d{1,5})(?:#[^\n]*\n|\s)")
+_MODES = ("trinary", "scale", "raw")
+_MOST_SIDES = 2_000_000  # of cells, on outlines; following so many takes seconds
+_NEAR = 1.0  # cells; walls are this near to the outlines
+_RIGHT, _AHEAD, _LEFT = 3, 0, 1  # quarters of a turn to the left
 
 
 class MapImage(Record):
@@ -104,9 +108,6 @@ def _check_size(width: int, height: int) -> None:
         raise Problem(f"an image must have from 1 to {MOST_CELLS:,} pixels, not {width:,} x {height:,}")
 
 
-_MODES = ("trinary", "scale", "raw")
-
-
 class OccupancyMap(Record):
     """The occupied cells of a map, a row from the south for each first index.
 
@@ -168,11 +169,6 @@ def _find_occupied(image: MapImage, mode: str, negate: bool, above: float) -> np
     if mode == "scale" and alpha is not None:
         found &= alpha == 1
     return found
-
-
-_MOST_SIDES = 2_000_000  # of cells, on outlines; following so many takes seconds
-_NEAR = 1.0  # cells; walls are this near to the outlines
-_RIGHT, _AHEAD, _LEFT = 3, 0, 1  # quarters of a turn to the left
 
 
 def walls_of(occupancy: OccupancyMap) -> tuple[tuple[Point, ...], ...]:

@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 
     T = TypeVar("T")
 
+_LONGEST = 100
+"""Bytes of the path of a Unix socket; Linux takes 107, macOS 103."""
+
 
 class DataFileError(Exception):
     """The reason why a file can't be used: `message` includes what to write instead.
@@ -159,10 +162,6 @@ def class_of(place: str, group: str, folder: str, noun: str, example: str) -> An
         return getattr(module_of(module, folder), name)
     except Exception as problem:  # whatever somebody's module raises
         raise ValueError(f"{place} can't be loaded: {type(problem).__name__}: {problem}") from problem
-
-
-_LONGEST = 100
-"""Bytes of the path of a Unix socket; Linux takes 107, macOS 103."""
 
 
 def socket_folder() -> str:

@@ -28,6 +28,12 @@ if TYPE_CHECKING:
     from btlang.tree.node import Node, Tree
     from btlang.vocabulary.lexicon import Lexicon
 
+_TYPE = "spoken_language"
+"""The type of slots for a language, such as "es"."""
+_OPENS = "OpenZone"
+"""The id of the word that lets the robot into a zone."""
+_LITERAL = re.compile(r"'([^']*)'")
+
 
 def needs_of(node: Node, vocabulary: Lexicon) -> tuple[str, ...]:
     """Return what a leaf needs, by the keyword entry that does its work."""
@@ -73,10 +79,6 @@ def lack(body: Body, parts: Sequence[str], node: Node, span: Span | None = None,
     return diagnostic("BT072", place, words=words_of(node), parts=listed, robot=body.name, help=help)
 
 
-_TYPE = "spoken_language"
-"""The type of slots for a language, such as "es"."""
-
-
 def check_languages(body: Body, tree: Tree, vocabulary: Lexicon) -> None:
     """Raise MissionError with each language that the robot can't speak, at its first leaf (BT072).
 
@@ -96,10 +98,6 @@ def check_languages(body: Body, tree: Tree, vocabulary: Lexicon) -> None:
             problems.append(lack(body, [f'voice for the language "{language}"'], node))
     if problems:
         raise MissionError(problems)
-
-
-_OPENS = "OpenZone"
-"""The id of the word that lets the robot into a zone."""
 
 
 def check_zones(world: World, tree: Tree, vocabulary: Lexicon) -> None:
@@ -135,9 +133,6 @@ def _goals(node: Node, places: dict[str, Point], vocabulary: Lexicon) -> Iterato
         yield float(node.port("x")), float(node.port("y"))
     except ValueError:
         return
-
-
-_LITERAL = re.compile(r"'([^']*)'")
 
 
 class SaidGesture(Record):

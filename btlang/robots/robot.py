@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 
     from btlang.speech.engine import Utterance
 
+Hand = Literal["left", "right"]
+OnEvent = Callable[[str, Mapping[str, Any]], None]
+__all__ = ["CompletedOperation", "Hand", "OnEvent", "Operation", "Robot", "RobotError", "SensorSilent"]
+
 
 class Station(Record):
     """A dock by its name. A connected robot stands at its `spot`, and drives straight in from `staging`."""
@@ -28,10 +32,6 @@ class Station(Record):
     name: str
     spot: Pose
     staging: Pose
-
-
-Hand = Literal["left", "right"]
-OnEvent = Callable[[str, Mapping[str, Any]], None]
 
 
 class Operation(Protocol):
@@ -449,9 +449,6 @@ class Conversing(Listening, Voice, Base, Protocol):
 
 class Robot(Leading, Cautious, Handling, Messenger, Sensors, Joints, Hands, Conversing, Power, Docking, Protocol):
     """A robot that can do all of this. If its body lacks a part, using the part raises RobotError."""
-
-
-__all__ = ["CompletedOperation", "Hand", "OnEvent", "Operation", "Robot", "RobotError", "SensorSilent"]
 
 
 class RobotError(ActionFailed):

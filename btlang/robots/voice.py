@@ -21,6 +21,10 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.run.events import Sink
 
+_LONGEST = 24 * 3600.0  # seconds; WAV ends at 4 GB
+_USUAL_RATE = 22_050
+_PIECE = 1 << 16
+
 
 class Synthesizer:
     """The engine of a body's voice, in one language at a time. Raises MissionError (BT071) if it can't be used."""
@@ -137,11 +141,6 @@ class TimedVoice:
             with suppress(RobotError):  # speech goes on where the jaw is silent
                 self._move_joints({self._joint.name: self._joint.low + SHAPES[shape] * width})
         self.show(shape)
-
-
-_LONGEST = 24 * 3600.0  # seconds; WAV ends at 4 GB
-_USUAL_RATE = 22_050
-_PIECE = 1 << 16
 
 
 @contextmanager

@@ -13,6 +13,14 @@ from btlang.run.pace import Pace
 HEARTBEAT = 0.2
 """Seconds after which each node looks at the clock, so that a longer pause was none of the tick's."""
 _ASLEEP = 1.5  # seconds in which no thread looks
+STANDING = 1.0
+"""Real seconds for which a clock may stand still, as that of a simulator does between its ticks."""
+_SLOWEST = 100.0  # a clock that goes on more slowly than a hundredth of real time stands still
+_LEAP, _FASTEST = 10.0, 1000.0  # seconds that a clock may be ahead of a look, and how often as fast it may be
+_LOOK = 0.01  # seconds between two looks
+_SLOW = 6.0  # how often as long as it says the time after a run may take: a simulator may be slow
+_ENDING = 1.0  # real seconds that it may take in sum where the clock has failed
+_CLOCK_LOOK = 0.002  # seconds between two looks at a clock that may run faster than the system's
 
 
 def _real() -> float:
@@ -66,12 +74,6 @@ AWAKE = AwakeClock()
 """The clock of this process."""
 
 
-STANDING = 1.0
-"""Real seconds for which a clock may stand still, as that of a simulator does between its ticks."""
-_SLOWEST = 100.0  # a clock that goes on more slowly than a hundredth of real time stands still
-_LEAP, _FASTEST = 10.0, 1000.0  # seconds that a clock may be ahead of a look, and how often as fast it may be
-
-
 class SteadyTime:
     """Seconds that follow the clock `read` and never go back; for any thread.
 
@@ -117,19 +119,11 @@ class SteadyTime:
             self._said(what)
 
 
-_LOOK = 0.01  # seconds between two looks
-
-
 def wait_until(holds: Callable[[], object], limit: float) -> None:
     """Block until something holds, for at most `limit` real seconds. It is checked at least once."""
     until = time.monotonic() + limit
     while not holds() and time.monotonic() < until:
         time.sleep(_LOOK)
-
-
-_SLOW = 6.0  # how often as long as it says the time after a run may take: a simulator may be slow
-_ENDING = 1.0  # real seconds that it may take in sum where the clock has failed
-_CLOCK_LOOK = 0.002  # seconds between two looks at a clock that may run faster than the system's
 
 
 class RosPace(Pace):

@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     from btlang.tree.node import Tree
     from btlang.vocabulary.lexicon import Lexicon
 
+_PACKAGES = ("geometry_msgs", "nav_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs")
+_COMPILE = "Compile it: python -m btlang.ros.interfaces tests/ros/composition_interfaces, in a clone of btlang"
+
 
 class EndingSignals:
     """The signals that have come; each calls `on_arrival`."""
@@ -59,11 +62,6 @@ def keep_ending_signals() -> Iterator[EndingSignals]:
     finally:
         for number in taken:
             signal.signal(number, before[number])
-
-
-_PACKAGES = ("geometry_msgs", "nav_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs")
-
-_COMPILE = "Compile it: python -m btlang.ros.interfaces tests/ros/composition_interfaces, in a clone of btlang"
 
 
 def connect_ros(world: World, **options: Any) -> RosConnection:

@@ -16,15 +16,14 @@ from unique_identifier_msgs.msg import UUID
 
 from btlang.ros.lease import Leases
 
+_MANY = QoSProfile(depth=1000)  # of requests at once; more than ten get lost by default
+GONE = "its client is gone"
+"""Why a goal is cancelled when its client has died."""
+
 
 def goal_handle(client: Any, goal_id: UUID) -> ClientGoalHandle:
     """Return a handle of a goal that was sent and not answered, to cancel it or to get its result."""
     return ClientGoalHandle(client, goal_id, SimpleNamespace(accepted=True))
-
-
-_MANY = QoSProfile(depth=1000)  # of requests at once; more than ten get lost by default
-GONE = "its client is gone"
-"""Why a goal is cancelled when its client has died."""
 
 
 class HeldGoal:

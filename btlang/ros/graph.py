@@ -17,6 +17,12 @@ if TYPE_CHECKING:
 
 
 _LONGEST = 50
+_NOBODY = {
+    "publisher": "nobody publishes {name}",
+    "listener": "nobody listens to {name}",
+    "service": "there is no service server {name}",
+    "action": "there is no action server {name}",
+}
 
 
 def graph_names(names: Iterable[str], kind: str) -> dict[str, str]:
@@ -45,14 +51,6 @@ def is_connected(node: Node, name: str) -> bool:
     heard = (publisher.get_subscription_count() > 0 for publisher in node.publishers if publisher.topic_name == name)
     served = (client.service_is_ready() for client in node.clients if client.service_name == name)
     return all(heard) and all(served)
-
-
-_NOBODY = {
-    "publisher": "nobody publishes {name}",
-    "listener": "nobody listens to {name}",
-    "service": "there is no service server {name}",
-    "action": "there is no action server {name}",
-}
 
 
 def full_name(node: Any, kind: str, name: str) -> str:

@@ -19,6 +19,12 @@ from btlang.robots.geometry import Pose
 from btlang.robots.motion.guard.guard import check_velocity
 from btlang.robots.robot import RobotError
 
+MAP, ODOM, BASE = "map", "odom", "base_link"
+"""The frames of navigation, of odometry, and of the robot."""
+_TOUCHING = 0.01  # metres of an echo that is too close, where a scanner measures from 0 on
+_ABSURD = 1e4  # radians or metres of a joint
+_ROUNDING = 1.05  # of a limit
+
 
 def duration(seconds: float) -> Duration:
     """Return seconds as builtin_interfaces/Duration."""
@@ -47,10 +53,6 @@ def type_name(cls: Any) -> str:
         return cls
     package, module = cls.__module__.split(".")[:2]
     return f"{package}/{module}/{cls.__name__.replace('_', ' ')}"
-
-
-MAP, ODOM, BASE = "map", "odom", "base_link"
-"""The frames of navigation, of odometry, and of the robot."""
 
 
 def pose_message(pose: Pose) -> PoseMessage:
@@ -84,9 +86,6 @@ def yaw_of(quaternion: Any) -> float:
     return atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
 
 
-_TOUCHING = 0.01  # metres of an echo that is too close, where a scanner measures from 0 on
-
-
 def echoes(scan: Any) -> npt.NDArray[np.float64]:
     """Return the metres of each beam by REP 117: inf if nothing is in range, NaN if the beam has no measurement.
 
@@ -100,10 +99,6 @@ def echoes(scan: Any) -> npt.NDArray[np.float64]:
     ranges[~(ranges >= scan.range_min) | (ranges <= 0.0)] = np.nan
     ranges[close] = max(scan.range_min, _TOUCHING)
     return ranges
-
-
-_ABSURD = 1e4  # radians or metres of a joint
-_ROUNDING = 1.05  # of a limit
 
 
 class JointRange(Record):

@@ -24,6 +24,12 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import TracebackType
 
+_LAST_DOMAIN = 232
+_TASKS_OF_AN_ANSWER = 3  # one starts the next: the goal ends, its future is done, the result is sent
+_DELIVERY = 0.2  # seconds
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+"""A quality of service by which late subscribers get the last message."""
+
 
 class ExecutorThread:
     """A queue of callables for the thread that spins a node. `problems` has errors that
@@ -53,14 +59,6 @@ class ExecutorThread:
             except Exception as problem:  # it would end the thread that spins
                 self.problems.append(described(problem))
             self._posted.popleft()  # only now, so that it counts as left until it is done
-
-
-_LAST_DOMAIN = 232
-_TASKS_OF_AN_ANSWER = 3  # one starts the next: the goal ends, its future is done, the result is sent
-_DELIVERY = 0.2  # seconds
-
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""A quality of service by which late subscribers get the last message."""
 
 
 class SpunNode:

@@ -28,6 +28,13 @@ _UNIT = 0.05  # how far the length of a quaternion may be from 1
 _JUMP = 1.0  # metres that a pose may jump, besides what the fastest robot drives meanwhile
 _TURNS = 100.0  # radians that no scanner turns
 _NOT_FINITE = "sends numbers that are not finite"
+AGE = 5.0
+"""Seconds after which the latest message no longer counts, unless a table gives another age."""
+_KEPT = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_MOST = 1000  # messages of one topic that wait for a tick; older ones are forgotten
+_NONSENSE = 2.0  # seconds in which only what is refused has come, however slow the topic is
+QOS = {"events": QoSProfile(depth=100), "state": _KEPT}
+"""How to listen to a topic: each event counts, late listeners get a state too; those of a sensor may be lost."""
 
 
 class MessageGate:
@@ -104,10 +111,6 @@ def _scan(scan: Any) -> str:
     if not abs(scan.angle_min) <= _TURNS or not 0.0 < abs(scan.angle_increment) <= _TURNS:
         return "doesn't say where its beams point"
     return "has no valid beam" if np.isnan(echoes(scan)).all() else ""
-
-
-AGE = 5.0
-"""Seconds after which the latest message no longer counts, unless a table gives another age."""
 
 
 class NodeClock:
@@ -238,13 +241,6 @@ class LatestJoints(Latest):
 def latest_of(cls: type) -> type[Latest]:
     """Return the class that keeps the latest messages of a type."""
     return LatestJoints if type_name(cls) == "sensor_msgs/msg/JointState" else Latest
-
-
-_KEPT = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-_MOST = 1000  # messages of one topic that wait for a tick; older ones are forgotten
-_NONSENSE = 2.0  # seconds in which only what is refused has come, however slow the topic is
-QOS = {"events": QoSProfile(depth=100), "state": _KEPT}
-"""How to listen to a topic: each event counts, late listeners get a state too; those of a sensor may be lost."""
 
 
 class SubscriptionCache:

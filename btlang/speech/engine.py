@@ -20,6 +20,15 @@ if TYPE_CHECKING:
 
 
 WORD = re.compile(r"\S+")
+SHAPES = {"rest": 0.0, "closed": 0.0, "teeth": 0.2, "narrow": 0.3, "round": 0.5, "wide": 0.6, "open": 1.0}
+"""How far the mouth is open in each shape, 0 to 1."""
+_LETTERS = {
+    letter: shape
+    for shape, letters in {
+        "closed": "pbmM", "teeth": "fv", "round": "ouwOUWyY", "wide": "eiEIj", "open": "aAVQ03@&",
+    }.items()
+    for letter in letters
+}  # fmt: skip
 
 
 class SpeechError(Exception):
@@ -92,17 +101,6 @@ def words_at(text: str, starts: Sequence[tuple[int, float]], seconds: float) -> 
     return tuple(
         Word(match[0], *match.span(), time, max(0.0, times[at + 1] - time)) for at, (match, time) in enumerate(found)
     )
-
-
-SHAPES = {"rest": 0.0, "closed": 0.0, "teeth": 0.2, "narrow": 0.3, "round": 0.5, "wide": 0.6, "open": 1.0}
-"""How far the mouth is open in each shape, 0 to 1."""
-_LETTERS = {
-    letter: shape
-    for shape, letters in {
-        "closed": "pbmM", "teeth": "fv", "round": "ouwOUWyY", "wide": "eiEIj", "open": "aAVQ03@&",
-    }.items()
-    for letter in letters
-}  # fmt: skip
 
 
 def shape_of(phoneme: str) -> str:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 
 _AWAKE = 8.0  # seconds in which something may follow the wake word
+_LONGEST = 5 * RATE * 2  # bytes of sound that wait for a slow recogniser
+_PIECE = RATE // 5  # bytes that are decoded at once: the tick never waits longer for the interpreter
 
 
 class Attention:
@@ -51,10 +53,6 @@ class Attention:
         if understood.sure:
             self._until = now + _AWAKE
         return None
-
-
-_LONGEST = 5 * RATE * 2  # bytes of sound that wait for a slow recogniser
-_PIECE = RATE // 5  # bytes that are decoded at once: the tick never waits longer for the interpreter
 
 
 class Listener:

@@ -27,6 +27,17 @@ _PIECE = re.compile("|".join(sorted(_LETTERS, key=len, reverse=True)))
 _AT_THE_END = {"a": "AH", "o": "OW", "i": "IY", "u": "UW"}
 _VOWEL = "aeiou"
 _BRITISH = ((re.compile(r"\bOW\b"), "AH UW"), (re.compile(r"\bER$"), "AH"))
+_WINDOW, _RATIO = 0.24, 0.9  # of the endpointer: seconds, and their part without speech that ends a sentence
+_LONGEST = 10.0  # seconds of a sentence: what is longer is none, or the hall is loud
+_BASE = math.log(1.0001)  # of the scores of a decoder
+_VARIANT = re.compile(r"\(\d+\)$")
+_SAME_PHONES, _SCORE, _CONSTANT = 15.5, 0.11, -1.7
+"""The coefficients of a logistic regression over the training samples of tests/speech/ears,
+with noise of 20 and 30 dB.
+"""
+_SURE = {"open": 1.0, "wake": -1.0, "addressed": -3.0, "pushed": -math.inf}
+_UNSURE = {"open": -0.5, "wake": -2.0, "addressed": -6.0, "pushed": -math.inf}
+"""The confidence from which a sentence is sure, and from which it is worth a question, by the mode of expectation."""
 
 
 def guess_phones(word: str) -> str:
@@ -49,19 +60,6 @@ def vary_accents(phones: str) -> list[str]:
     for pattern, said in _BRITISH:
         other = pattern.sub(said, other)
     return [] if other == phones else [other]
-
-
-_WINDOW, _RATIO = 0.24, 0.9  # of the endpointer: seconds, and their part without speech that ends a sentence
-_LONGEST = 10.0  # seconds of a sentence: what is longer is none, or the hall is loud
-_BASE = math.log(1.0001)  # of the scores of a decoder
-_VARIANT = re.compile(r"\(\d+\)$")
-_SAME_PHONES, _SCORE, _CONSTANT = 15.5, 0.11, -1.7
-"""The coefficients of a logistic regression over the training samples of tests/speech/ears,
-with noise of 20 and 30 dB.
-"""
-_SURE = {"open": 1.0, "wake": -1.0, "addressed": -3.0, "pushed": -math.inf}
-_UNSURE = {"open": -0.5, "wake": -2.0, "addressed": -6.0, "pushed": -math.inf}
-"""The confidence from which a sentence is sure, and from which it is worth a question, by the mode of expectation."""
 
 
 class PocketSphinx:

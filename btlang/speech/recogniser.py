@@ -35,6 +35,14 @@ if TYPE_CHECKING:
 Mode = Literal["open", "wake", "addressed", "pushed"]
 RATE = 16_000
 """Samples a second for recognisers."""
+_TOKEN = re.compile(r"[\[\]]|\{\w+\}|[^\s\[\]{}]+")
+_WORD = re.compile(r"[a-z']*[a-z][a-z']*|[0-9]+")
+_ONES = (
+    "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
+    "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen",
+)  # fmt: skip
+_TENS = ("twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety")
+_NOTHING = "<VOID>"
 
 
 class RecogniserError(Exception):
@@ -77,16 +85,6 @@ class RecognisedSpeech(Record):
 
     text: str
     sure: bool = True
-
-
-_TOKEN = re.compile(r"[\[\]]|\{\w+\}|[^\s\[\]{}]+")
-_WORD = re.compile(r"[a-z']*[a-z][a-z']*|[0-9]+")
-_ONES = (
-    "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
-    "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen",
-)  # fmt: skip
-_TENS = ("twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety")
-_NOTHING = "<VOID>"
 
 
 def spoken(text: str) -> str:

@@ -28,6 +28,12 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from serial import Serial
 
+PATIENCE = 0.008
+"""Seconds that an adapter and a busy computer may add to an answer."""
+LONGEST_DELAY = 0.000508
+"""The longest answer delay in seconds that a servo can be set to, which is also that of a new one."""
+_TRIES = 5
+
 
 class LineLost(DeviceError):
     """The error that a port can't be opened, or can't be read or written any more."""
@@ -110,13 +116,6 @@ class SerialLine:
 def _reason(problem: Exception) -> str:
     number = getattr(problem, "errno", None)
     return os.strerror(number) if isinstance(number, int) else str(problem)
-
-
-PATIENCE = 0.008
-"""Seconds that an adapter and a busy computer may add to an answer."""
-LONGEST_DELAY = 0.000508
-"""The longest answer delay in seconds that a servo can be set to, which is also that of a new one."""
-_TRIES = 5
 
 
 class ServoClient:

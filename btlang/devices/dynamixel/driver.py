@@ -20,6 +20,11 @@ _SILENCE = 0.15  # seconds without an answer after which a servo is no longer as
 _BLAMES = 3  # ... if it was the first that didn't answer as often, since those behind it wait for its answer
 _LENGTHS = 4  # a question after one that was not answered in full has another length, so late answers don't fit it
 _PLAIN = 1.0  # seconds for which each answers with a packet of its own after a common answer was damaged
+_RATE = 100.0
+_MORE_TRIES = 2  # to find a servo when the line is opened
+_PAUSES = (0.1, 0.2, 0.4, 1.0)
+"""Seconds until a servo that can't be used is tried again; the last one repeats."""
+_PACKET = 14  # bytes of a packet to all servos, beside those of each
 
 
 class _Asked:
@@ -90,13 +95,6 @@ class Polling:
             if fast:
                 self._plain_until = now + _PLAIN
         return found
-
-
-_RATE = 100.0
-_MORE_TRIES = 2  # to find a servo when the line is opened
-_PAUSES = (0.1, 0.2, 0.4, 1.0)
-"""Seconds until a servo that can't be used is tried again; the last one repeats."""
-_PACKET = 14  # bytes of a packet to all servos, beside those of each
 
 
 class _Absent(Record):

@@ -37,6 +37,7 @@ _INDIRECT_COUNT = 20  # those of the smallest models
 _FAILED, _RANGE, _LIMIT, _ACCESS = 1, 4, 6, 7
 _DATA_LENGTH = 5
 _SIZE = 300
+_UNKNOWN = 2
 
 
 class FakeServo:
@@ -163,9 +164,6 @@ class FakeServo:
         self._exact += step
         velocity = 0 if step == 0 else fastest if step > 0 else -fastest
         pack_into("<ii", self.memory, table.VELOCITY, velocity, round(self._exact))
-
-
-_UNKNOWN = 2
 
 
 class FakeBus:

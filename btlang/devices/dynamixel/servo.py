@@ -13,6 +13,10 @@ from btlang.devices.kinds import JointState, JointTarget
 from btlang.record import Record
 
 _HIGHEST_BAUD = 4_500_000
+WATCHDOG_SET = round(0.2 / table.WATCHDOG_UNIT)
+"""The setting of a servo's watchdog: it stops after 200 ms without an instruction on the line."""
+_COOLED = 5.0  # degrees Celsius below its limit at which a hot servo may be used again
+_DEGREES = 360 / table.TICKS
 
 
 class ServoOptions(Record):
@@ -76,12 +80,6 @@ def _is_whole(value: object, low: int, high: int) -> bool:
 
 def _is_number(value: object) -> bool:
     return value is None or (isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value))
-
-
-WATCHDOG_SET = round(0.2 / table.WATCHDOG_UNIT)
-"""The setting of a servo's watchdog: it stops after 200 ms without an instruction on the line."""
-_COOLED = 5.0  # degrees Celsius below its limit at which a hot servo may be used again
-_DEGREES = 360 / table.TICKS
 
 
 class ServoRestarted(DeviceSilent):

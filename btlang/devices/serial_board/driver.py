@@ -29,6 +29,13 @@ from btlang.record import Record
 _SEARCHED = "board "
 _BOARD = {"baud": 115_200, "rate": 50.0, "board": ""}
 _CHANNEL = ("channel", "frozen")
+_SHARE = 0.8  # of what a line carries that is used
+_SLOWEST = 12.5  # cycles a second, so that a board that moves hears a few before it stops alone
+_PATIENCE = 1 / _SLOWEST  # seconds that one cycle waits at most
+_OLD = 0.1  # seconds after which an answer isn't used any more
+_LOST = 0.5  # seconds without an answer after which the port is opened again
+_FROZEN_SAMPLES, _FROZEN = 3, 0.15  # intervals, and seconds at least, without a new sample
+_BITS = 10  # of each byte on the line
 
 
 class BoardOptions(Record):
@@ -100,15 +107,6 @@ def _board(port: str, options: Mapping[str, Any]) -> BoardOptions:
     if name and searched and name != searched:
         raise DeviceError(f"board = {name}, but the port says '{port}'")
     return BoardOptions(searched or name, "" if searched else port, baud, float(rate))
-
-
-_SHARE = 0.8  # of what a line carries that is used
-_SLOWEST = 12.5  # cycles a second, so that a board that moves hears a few before it stops alone
-_PATIENCE = 1 / _SLOWEST  # seconds that one cycle waits at most
-_OLD = 0.1  # seconds after which an answer isn't used any more
-_LOST = 0.5  # seconds without an answer after which the port is opened again
-_FROZEN_SAMPLES, _FROZEN = 3, 0.15  # intervals, and seconds at least, without a new sample
-_BITS = 10  # of each byte on the line
 
 
 class _Sent(Record):

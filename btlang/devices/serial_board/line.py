@@ -24,6 +24,15 @@ MOST = 250
 MOST_MESSAGE = MOST - 2
 FRAMING = 4
 """Bytes of a frame in addition to its message: the CRC, one of COBS, the zero."""
+HELLO_WAIT = 3.0
+"""Seconds for a board to say hello; some restart when their port is opened, which takes two."""
+_ASKED_EVERY = 0.1
+_LOOK = 0.01  # seconds that a read blocks at most
+_MOST_BYTES = 4096  # between two messages to a board, which answers each with one frame
+_CLOSED, _LOST = "can't be opened", "is lost"
+_MISSING = (
+    "serial-board needs the Python package pyserial, which isn't installed. Install it: pip install 'btlang[serial]'"
+)
 
 
 def crc16(data: bytes) -> int:
@@ -72,17 +81,6 @@ class FrameReader:
         found = [message for message in messages if message is not None]
         self.damaged += len(messages) - len(found)
         return found
-
-
-HELLO_WAIT = 3.0
-"""Seconds for a board to say hello; some restart when their port is opened, which takes two."""
-_ASKED_EVERY = 0.1
-_LOOK = 0.01  # seconds that a read blocks at most
-_MOST_BYTES = 4096  # between two messages to a board, which answers each with one frame
-_CLOSED, _LOST = "can't be opened", "is lost"
-_MISSING = (
-    "serial-board needs the Python package pyserial, which isn't installed. Install it: pip install 'btlang[serial]'"
-)
 
 
 class BoardLine:

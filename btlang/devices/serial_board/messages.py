@@ -33,6 +33,17 @@ TEXT = 32
 _U8, _U16, _I8, _I16, _I32 = (0, 0xFF), (0, 0xFFFF), (-0x80, 0x7F), (-0x8000, 0x7FFF), (-(2**31), 2**31 - 1)
 _LOOSE, _GOES = 1, 2  # bits of a joint
 _UNKNOWN = 2  # whether a battery is charging
+_SPEEDS, _TARGET, _COLOUR, _SHOWN = Struct("<hh"), Struct("<BiH"), Struct("<BBB"), Struct(f"<{TEXT}s")
+VERSION = 1
+"""The version of the protocol."""
+ASK_HELLO, TELL, STOP = 0x01, 0x02, 0x03
+"""Types of messages to a board."""
+HELLO, ANSWER = 0x81, 0x82
+"""Types of messages of a board."""
+KINDS_BY_NUMBER = {number: kind for kind, number in KIND_NUMBERS.items()}
+_ASK_HELLO, _TELL = Struct("<BBH"), Struct("<BHH")
+_HELLO, _ANSWER = Struct("<HH"), Struct("<BHHI")
+_CHANNEL, _READING, _COMMAND = Struct("<BBH"), Struct("<BBB"), Struct("<BB")
 
 
 class UnwrappedCounter:
@@ -171,9 +182,6 @@ READINGS = {
 """The formats of readings by kind; the other kinds measure nothing."""
 
 
-_SPEEDS, _TARGET, _COLOUR, _SHOWN = Struct("<hh"), Struct("<BiH"), Struct("<BBB"), Struct(f"<{TEXT}s")
-
-
 def _pack_speeds(command: WheelSpeeds) -> bytes:
     return _SPEEDS.pack(_integer(command.left, 0.001, _I16), _integer(command.right, 0.001, _I16))
 
@@ -217,18 +225,6 @@ COMMANDS = {
     "display": CommandFormat(_SHOWN, _pack_shown, _unpack_shown),
 }
 """The formats of commands by kind; the other kinds take no commands."""
-
-
-VERSION = 1
-"""The version of the protocol."""
-ASK_HELLO, TELL, STOP = 0x01, 0x02, 0x03
-"""Types of messages to a board."""
-HELLO, ANSWER = 0x81, 0x82
-"""Types of messages of a board."""
-KINDS_BY_NUMBER = {number: kind for kind, number in KIND_NUMBERS.items()}
-_ASK_HELLO, _TELL = Struct("<BBH"), Struct("<BHH")
-_HELLO, _ANSWER = Struct("<HH"), Struct("<BHHI")
-_CHANNEL, _READING, _COMMAND = Struct("<BBH"), Struct("<BBB"), Struct("<BB")
 
 
 class BoardChannel(Record):

@@ -50,6 +50,28 @@ from btlang.text.output import show
 
 _TURN = 0.002  # seconds between two turns of the board
 _BITS = 10
+SILENCE = 0.18
+"""Seconds without a command after which a channel comes to rest: everything is at rest in 0.2 s."""
+CHANNELS = (
+    BoardChannel(1, "range", 0.05),
+    BoardChannel(2, "drive", 0.02),
+    BoardChannel(3, "imu", 0.02),
+    BoardChannel(4, "battery", 0.5),
+    BoardChannel(5, "button", 0.02),
+    BoardChannel(6, "joint", 0.02),
+    BoardChannel(7, "light", 0.0),
+    BoardChannel(8, "display", 0.0),
+)
+"""One channel of each kind."""
+_FIRST: dict[str, Reading] = {
+    "range": Distance(1.0),
+    "drive": Wheels(0.0, 0.0, 0.0, 0.0),
+    "imu": Motion(0.0, 0.0, 0.0, 9.81, 0.0),
+    "battery": Charge(80.0, 12.0, -1.0, 25.0, False),
+    "button": Pressed(False),
+    "joint": JointState(0.0, 0.0, 10.0, 30.0),
+}
+_JOINT_SPEED = 90.0  # degrees a second
 
 
 class BoardModel(Protocol):
@@ -180,30 +202,6 @@ class SimulatedLine:
         if self.baud and data:
             time.sleep(len(data) * _BITS / self.baud)
         return data
-
-
-SILENCE = 0.18
-"""Seconds without a command after which a channel comes to rest: everything is at rest in 0.2 s."""
-CHANNELS = (
-    BoardChannel(1, "range", 0.05),
-    BoardChannel(2, "drive", 0.02),
-    BoardChannel(3, "imu", 0.02),
-    BoardChannel(4, "battery", 0.5),
-    BoardChannel(5, "button", 0.02),
-    BoardChannel(6, "joint", 0.02),
-    BoardChannel(7, "light", 0.0),
-    BoardChannel(8, "display", 0.0),
-)
-"""One channel of each kind."""
-_FIRST: dict[str, Reading] = {
-    "range": Distance(1.0),
-    "drive": Wheels(0.0, 0.0, 0.0, 0.0),
-    "imu": Motion(0.0, 0.0, 0.0, 9.81, 0.0),
-    "battery": Charge(80.0, 12.0, -1.0, 25.0, False),
-    "button": Pressed(False),
-    "joint": JointState(0.0, 0.0, 10.0, 30.0),
-}
-_JOINT_SPEED = 90.0  # degrees a second
 
 
 class SimulatedBoard:

@@ -21,6 +21,8 @@ PATIENCE = 5.0
 """Seconds in which what moves has to make progress, unless a robot file gives another time."""
 Vector = tuple[float, float, float]
 """Metres ahead, left and up."""
+TOLERANCE = 0.5
+"""Metres from the goal of a journey, unless a robot file gives another distance."""
 
 
 class SpeedLimits(Record):
@@ -44,10 +46,6 @@ class BaseSpec(Record):
     turning: SpeedLimits
     wheel_gap: float
     contact_speed: float = 0.1
-
-
-TOLERANCE = 0.5
-"""Metres from the goal of a journey, unless a robot file gives another distance."""
 
 
 class NavigationSpec(Record):

@@ -16,6 +16,15 @@ from btlang.text.toml_table import Problem, Problems, Table
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, spelled
 
 _SIDES = {"left": "right", "right": "left"}
+TARGET = "target"
+"""The slot of phrases for the target of a gesture."""
+ARTICLES = frozenset(("the", "a", "an"))
+NEARER = "nearer"
+_SHORTEST = 0.05  # seconds to a key frame
+_LONGEST = 60.0  # seconds of a gesture
+_MOST_FRAMES = 500
+_MOST_ROUNDS = 50
+_FRAME_KEYS = ("at", "hold")
 
 
 def swap_sides(words: str) -> str:
@@ -62,17 +71,6 @@ def _sense(joint: Joint, known: Mapping[str, Joint]) -> float:
     (x, y, z), axis = joint.axis, other.axis
     image = (x, -y, z) if joint.slides else (-x, y, -z)
     return 1.0 if sum(one * another for one, another in zip(image, axis, strict=True)) > 0.0 else -1.0
-
-
-TARGET = "target"
-"""The slot of phrases for the target of a gesture."""
-ARTICLES = frozenset(("the", "a", "an"))
-NEARER = "nearer"
-_SHORTEST = 0.05  # seconds to a key frame
-_LONGEST = 60.0  # seconds of a gesture
-_MOST_FRAMES = 500
-_MOST_ROUNDS = 50
-_FRAME_KEYS = ("at", "hold")
 
 
 class GestureError(DataFileError):

@@ -36,6 +36,7 @@ TOPIC = "gestures"
 _CALL = "btlang.actions.gestures:perform"
 _TARGETS = ("person", "object", "place")
 _POINT = {"x": "length", "y": "length"}
+_kept: list[TemporaryDirectory[str]] = []  # until the process ends
 
 
 def gesture_words(body: Body) -> str | None:
@@ -183,6 +184,3 @@ def _folder() -> str:
         _kept.append(TemporaryDirectory(prefix="btlang-"))
         return _kept[0].name
     return folder
-
-
-_kept: list[TemporaryDirectory[str]] = []  # until the process ends

@@ -19,6 +19,9 @@ BASE = "base"
 """The name in files for the link that wheels carry; in a body its name is ""."""
 _LEAST = 0.001
 _FRAME = ("link", "parent", "at", "axis")
+LOOK_AT = "look at"
+"""The posture in which the robot looks at somebody."""
+_EVERY = (1.0, 60.0)  # seconds
 
 
 def joint(table: Table) -> Joint:
@@ -148,11 +151,6 @@ def _in_circle(link: str, parents: Mapping[str, str]) -> bool:
         if not at:
             return False
     return True
-
-
-LOOK_AT = "look at"
-"""The posture in which the robot looks at somebody."""
-_EVERY = (1.0, 60.0)  # seconds
 
 
 def read_idle(top: Table, body: Body) -> Idle:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 ESPEAK = "espeak"
 _FOREIGN = 'only "{}" may be the engine of a robot file that isn\'t on this computer: others run code'
+POCKETSPHINX = "pocketsphinx"
 
 
 def read_voice(top: Table, may_load: bool) -> VoiceSpec | None:
@@ -72,9 +73,6 @@ def engine_of(body: Body, language: str = "") -> SpeechEngine:
         raise SpeechError(str(problem)) from problem
     engine: SpeechEngine = make(settings)
     return engine
-
-
-POCKETSPHINX = "pocketsphinx"
 
 
 def read_ears(top: Table, may_load: bool) -> EarsSpec | None:

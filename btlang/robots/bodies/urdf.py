@@ -19,6 +19,12 @@ from btlang.text.source import Source
 ROOT_LINK = "base_link"
 _EFFORT = 100  # newton metres: a robot file says nothing of it, and URDF needs it
 _THIN = 1e-9  # metres
+_MOVES = ("revolute", "continuous", "prismatic")
+_KINDS = (*_MOVES, "fixed")
+_AROUND = pi  # radians to both sides of a joint without limits
+_SAME = 1e-6  # metres
+_WIDTH = 0.2  # metres, where the base has no shape
+_MOST = 1e6
 
 
 def urdf(body: Body) -> str:
@@ -84,14 +90,6 @@ def _numbers(vector: Vector) -> str:
 
 def _number(value: float) -> str:
     return f"{value:.12g}"
-
-
-_MOVES = ("revolute", "continuous", "prismatic")
-_KINDS = (*_MOVES, "fixed")
-_AROUND = pi  # radians to both sides of a joint without limits
-_SAME = 1e-6  # metres
-_WIDTH = 0.2  # metres, where the base has no shape
-_MOST = 1e6
 
 
 class _UrdfElement:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 PERIOD = 0.01
 """Seconds between two samples."""
 _EXACT = 1e-9
+_TINY = 1e-9
 
 
 class MotionState(Record):
@@ -126,9 +127,6 @@ def to_state(start: MotionState, end: MotionState, limits: JointLimits, least: f
         return MotionState(*(np.array([state[k] for state in states]).reshape(shape) for k in range(3)))
 
     return CourseSegment(float(found.duration), at)
-
-
-_TINY = 1e-9
 
 
 class Brake(Record):

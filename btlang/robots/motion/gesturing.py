@@ -18,6 +18,12 @@ HEIGHT = 1.0
 _FAR = 90.0  # degrees to the side beyond which something is behind
 
 Angles = Mapping[str, float]
+_LOOKS = 4.0  # seconds at somebody who has spoken
+_TURNS = 0.5  # seconds at least until the head has turned
+_OFF = 5.0  # degrees from where it should look
+_SAME = 1e-3  # degrees
+_AGAIN = 0.5  # seconds until something that can't be done is tried again
+_COARSE = 1.0  # seconds between two steps from which on nobody watches
 
 
 def turn_to_point(
@@ -175,14 +181,6 @@ def _steps(wanted: Gesture | Sequence[Angles]) -> list[tuple[float, Angles]]:
     begins = [0.0, *(frame.at + frame.hold for frame in wanted.frames)]
     angles = [{name: float(value) for name, value in frame.joints.items()} for frame in wanted.frames]
     return list(zip(begins, angles, strict=False))
-
-
-_LOOKS = 4.0  # seconds at somebody who has spoken
-_TURNS = 0.5  # seconds at least until the head has turned
-_OFF = 5.0  # degrees from where it should look
-_SAME = 1e-3  # degrees
-_AGAIN = 0.5  # seconds until something that can't be done is tried again
-_COARSE = 1.0  # seconds between two steps from which on nobody watches
 
 
 class Idling:

@@ -12,6 +12,13 @@ from btlang.record import Record
 from btlang.robots.bodies.body import Body, Joint, Vector
 
 Array = npt.NDArray[np.float64]
+_TINY = 1e-12
+_ROUNDS = 60
+_NUDGE = 0.01  # degrees or metres, for slopes
+_DAMPING = 0.02
+_SHOULDER = 0.05  # metres around the first joint
+_MOST = 15.0  # degrees in a round
+_STRAIGHT = 0.02  # sine of the angle between where it points and where it should
 
 
 class LinkFrames(Record):
@@ -65,9 +72,6 @@ def _parents_first(by_link: Mapping[str, tuple[int, Joint]]) -> Sequence[tuple[i
             link = by_link[link][1].parent
         ordered.update((each, by_link[each]) for each in reversed(chain))
     return list(ordered.values())
-
-
-_TINY = 1e-12
 
 
 class Collisions:
@@ -133,14 +137,6 @@ def segment_distances(start: Array, along: Array, other_start: Array, other: Arr
 def _dot(one: Array, other: Array) -> Array:
     found: Array = one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
     return found
-
-
-_ROUNDS = 60
-_NUDGE = 0.01  # degrees or metres, for slopes
-_DAMPING = 0.02
-_SHOULDER = 0.05  # metres around the first joint
-_MOST = 15.0  # degrees in a round
-_STRAIGHT = 0.02  # sine of the angle between where it points and where it should
 
 
 class AimSolver:

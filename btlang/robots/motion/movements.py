@@ -18,6 +18,7 @@ _ROUNDS = 30
 _SAFE = 0.999  # of a limit
 _BEYOND = 1.001  # slower than needed: without it each round comes nearer to the limits, and none within them
 _SHORTEST = 0.01  # seconds between two key frames
+_SAME = 1e-9
 
 
 class FrameTimes(Record):
@@ -108,9 +109,6 @@ def _by_ends() -> MotionState:
 
 
 _BY_ENDS = _by_ends()
-
-
-_SAME = 1e-9
 
 
 class Tail(Record):

@@ -29,6 +29,8 @@ from btlang.robots.robot import RobotError
 
 _EXACT = 1e-6
 _SLOWED = 1.02  # times as long: less is not worth a word
+_SAME = 6  # digits of positions that are the same
+_MOST = 100  # idle movements that are known to be safe
 
 
 class Course(Record):
@@ -118,10 +120,6 @@ class MotionPlanner:
     ) -> tuple[Tail, CourseSegment | None]:
         tail = movement.tail(start, share, rests)
         return tail, to_state(start, tail.first, limits, tail.approach)
-
-
-_SAME = 6  # digits of positions that are the same
-_MOST = 100  # idle movements that are known to be safe
 
 
 class PlannedMotion:

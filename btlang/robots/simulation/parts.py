@@ -20,6 +20,13 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.worlds.scan import Array, Scanner
 
+_DIRECTIONS = (0, 30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180)
+_ENDLESS = Battery(0.0, 0.0, 0.0)  # of a robot whose file knows of no battery
+_NO_DOCK = Dock(0.0, 0.0, 0.0)
+_SHARES = (1.0, 0.75, 0.5, 0.25)  # of the way in front of a dock for which a wall may leave room
+NO_CONTACT = "the dock doesn't connect"
+_NOWHERE = "there is no dock in this world"
+
 
 class SimulatedJoints:
     """Joints in degrees; each begins at rest and turns at most as fast as the body allows."""
@@ -61,9 +68,6 @@ class SimulatedJoints:
                 self._targets.pop(name, None)
             else:
                 self._angles[name] += copysign(most, left)
-
-
-_DIRECTIONS = (0, 30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180)
 
 
 class SimulatedHands:
@@ -144,13 +148,6 @@ class SimulatedHands:
             if apart and not self._obstacles.wall_between((pose.x, pose.y), (x, y)):
                 return x, y
         return pose.ahead(distance)
-
-
-_ENDLESS = Battery(0.0, 0.0, 0.0)  # of a robot whose file knows of no battery
-_NO_DOCK = Dock(0.0, 0.0, 0.0)
-_SHARES = (1.0, 0.75, 0.5, 0.25)  # of the way in front of a dock for which a wall may leave room
-NO_CONTACT = "the dock doesn't connect"
-_NOWHERE = "there is no dock in this world"
 
 
 class SimulatedPower:

@@ -33,6 +33,9 @@ _TOGETHER = frozenset(("on", "inside", "at", "off", "part_of"))
 _WORDS = {"inside": "in", "off": "on", "in_front_of": "in front of", "left_of": "left of", "right_of": "right of",
           "beside": "next to", "part_of": "of", "other_than": "different from", "seen_by": "seen by",
           "held_by": "held by"}  # fmt: skip
+PICKY = ("seen", "largest", "smallest")
+"""The ways to choose that depend on what something is like."""
+_AHEAD = 90.0  # degrees to either side
 
 
 def without_relations(parts: Mapping[str, str]) -> dict[str, str]:
@@ -217,11 +220,6 @@ def _is_on_side(relation: str, one: Point, point: Point, pose: Pose) -> bool:
     left = sight[0] * offset[1] - sight[1] * offset[0]
     side = {"behind": ahead, "in_front_of": -ahead, "left_of": left, "right_of": -left}[relation]
     return side > 0 and side >= max(abs(ahead), abs(left)) - 1e-9
-
-
-PICKY = ("seen", "largest", "smallest")
-"""The ways to choose that depend on what something is like."""
-_AHEAD = 90.0  # degrees to either side
 
 
 class Choices:

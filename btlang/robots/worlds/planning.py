@@ -22,6 +22,16 @@ Bools = npt.NDArray[np.bool_]
 
 _MARGIN = 1.0
 _MOST_AREA = 40_000  # square metres: the grid of a planner takes 250 MB
+CELL = 0.1
+_NEEDED, _COMFORTABLE = 0.04, 0.2  # metres beside the robot
+_USUAL_SPEED = 0.5  # metres a second: how much a slow zone costs
+_START_SEARCH = 0.5
+_GOAL_SEARCH = 0.15
+_CELL = 0.2
+_ROOM = 0.05  # metres beside the widest person
+_MOST_GOALS = 200
+_TIGHT = 3
+_SEARCH = 2.0  # metres to the nearest free cell
 
 
 class ClearanceGrid:
@@ -132,13 +142,6 @@ def smooth(points: list[Point], is_clear: Callable[[Point, Point], bool]) -> lis
         at = far
         kept.append(points[at])
     return kept
-
-
-CELL = 0.1
-_NEEDED, _COMFORTABLE = 0.04, 0.2  # metres beside the robot
-_USUAL_SPEED = 0.5  # metres a second: how much a slow zone costs
-_START_SEARCH = 0.5
-_GOAL_SEARCH = 0.15
 
 
 class PathPlanner:
@@ -262,13 +265,6 @@ def _evenly(points: list[Point]) -> list[Point]:
         pieces = max(1, ceil(hypot(b[0] - a[0], b[1] - a[1]) / CELL))
         spaced += [(a[0] + (b[0] - a[0]) * i / pieces, a[1] + (b[1] - a[1]) * i / pieces) for i in range(1, pieces + 1)]
     return spaced
-
-
-_CELL = 0.2
-_ROOM = 0.05  # metres beside the widest person
-_MOST_GOALS = 200
-_TIGHT = 3
-_SEARCH = 2.0  # metres to the nearest free cell
 
 
 class Walkways:

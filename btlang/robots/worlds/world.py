@@ -19,6 +19,14 @@ if TYPE_CHECKING:
 
 _LEAST, _MOST = 0.5, 1.5  # of the time that a visit usually takes
 _WEEK = 7
+KEEP_OUT, SLOW, AREA = "keep out", "slow", "area"
+PERSON_RADIUS = 0.25
+OBJECT_RADIUS = 0.05
+NEVER = float("inf")
+_UNDRAWN = (
+    "comes", "leaves", "says", "answers", "answers_after", "follows", "again", "uses", "walks", "visits", "asks",
+    "sized", "state", "owner", "content", "having",
+)  # fmt: skip
 
 
 class Visits(Record):
@@ -47,16 +55,6 @@ class Visits(Record):
                 if comes >= now:
                     return comes, comes + stays
             day += 1
-
-
-KEEP_OUT, SLOW, AREA = "keep out", "slow", "area"
-PERSON_RADIUS = 0.25
-OBJECT_RADIUS = 0.05
-NEVER = float("inf")
-_UNDRAWN = (
-    "comes", "leaves", "says", "answers", "answers_after", "follows", "again", "uses", "walks", "visits", "asks",
-    "sized", "state", "owner", "content", "having",
-)  # fmt: skip
 
 
 class Place(Record):

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     Fail: TypeAlias = Callable[[str], object]
 
 _LOOK = 0.02  # seconds between two looks
+_FOUND = 5.0  # seconds in which a server is found
+_ANSWERED, _LONGEST = 10.0, 600.0  # seconds for an answer: by default, and at most
+_SETTLE = 0.3  # seconds: a server that hasn't found its new client yet drops the answer, and nothing reports when
 
 
 class _Wait(Record):
@@ -76,11 +79,6 @@ class Waits:
             return False
         wait.late(wait.reason())
         return True
-
-
-_FOUND = 5.0  # seconds in which a server is found
-_ANSWERED, _LONGEST = 10.0, 600.0  # seconds for an answer: by default, and at most
-_SETTLE = 0.3  # seconds: a server that hasn't found its new client yet drops the answer, and nothing reports when
 
 
 class Servers:

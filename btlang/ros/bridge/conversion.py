@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 _TYPE = re.compile(r"([a-z][a-z0-9_]{0,99})/(?:(msg|srv|action)/)?([A-Z][A-Za-z0-9_]{0,99})")
 _FORMS = {"msg": "a type of messages", "srv": "a type of services", "action": "a type of actions"}
+_FLOATS, _BYTES = ("float", "double"), ("octet", "uint8")
+_HEADER = "std_msgs/Header"
 
 
 @cache
@@ -54,10 +56,6 @@ def _is_interfaces(package: str) -> bool:
     spec = PathFinder.find_spec(package)
     folders = (spec.submodule_search_locations or ()) if spec is not None else ()
     return any(any(Path(folder).glob("*__rosidl_typesupport_c*")) for folder in folders)
-
-
-_FLOATS, _BYTES = ("float", "double"), ("octet", "uint8")
-_HEADER = "std_msgs/Header"
 
 
 def as_data(message: Any) -> dict[str, Any]:

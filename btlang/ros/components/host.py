@@ -69,6 +69,7 @@ _DOUBT = 0.3  # seconds that it gets to answer where DDS says that it is dead
 _ALIVE = QoSProfile(
     depth=1, liveliness=LivelinessPolicy.AUTOMATIC, liveliness_lease_duration=Duration(seconds=0.5)
 )  # fmt: skip
+_LAST_ANSWERS = 2.0  # seconds that goals which were halted get to end
 
 
 class NodeHost:
@@ -290,9 +291,6 @@ class NodeHost:
 def _label(answer: Any) -> str:
     """Return the label of a state as in STATES."""
     return "" if answer is None else str(answer.current_state.label)
-
-
-_LAST_ANSWERS = 2.0  # seconds that goals which were halted get to end
 
 
 class ComponentNodes:

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     T = TypeVar("T")
 
 _DONE = 10.0  # seconds within which the thread that spins gets to something, on a busy computer
+_DISCOVERY = 7.0  # seconds in which a container that is there is found
+_UNLOAD = 3.0
+_NAMES = {"LoadNode": "load_node", "UnloadNode": "unload_node", "ListNodes": "list_nodes"}
 
 
 class AwaitedReply:
@@ -87,10 +90,6 @@ class ServiceCaller:
         return any(f"{namespace.rstrip('/')}/{node}" == name for node, namespace in nodes)
 
 
-_DISCOVERY = 7.0  # seconds in which a container that is there is found
-_UNLOAD = 3.0
-
-
 class Container:
     """The container of one node. Each method waits for the answer for at most `limit` seconds."""
 
@@ -142,6 +141,3 @@ class Container:
         if answer is None:
             raise ComponentError(f"{name} has not answered within {limit:g} s")
         return answer
-
-
-_NAMES = {"LoadNode": "load_node", "UnloadNode": "unload_node", "ListNodes": "list_nodes"}

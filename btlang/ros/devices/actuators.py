@@ -24,6 +24,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_RATE = "rate"
+
 
 class DriveTranslation(Translation):
     """A base as Odometry and Twist; the distances that its wheels have rolled follow from their gap, and back."""
@@ -153,9 +155,6 @@ class HandTranslation(Translation):
 
     def command(self, message: Any) -> Command:
         return kinds.GripTarget(None if isnan(message.data) else min(1.0, max(0.0, message.data)))
-
-
-_RATE = "rate"
 
 
 class MicrophoneTranslation(Translation):

@@ -66,6 +66,8 @@ TRANSLATIONS: dict[str, type[Translation]] = {
 
 _MOST = 50  # messages of one topic that wait for a cycle
 _LAST_WORD = 0.1  # seconds that the last command gets to be heard
+_RATES = {"camera": 5.0, "lidar": 10.0, "battery": 2.0}  # messages a second; others come with each call
+_COMPLAIN = 5.0  # seconds between two complaints
 
 
 class TopicClient:
@@ -163,10 +165,6 @@ class DeviceClient:
             client.rest()
         time.sleep(_LAST_WORD)
         self._spun.close()
-
-
-_RATES = {"camera": 5.0, "lidar": 10.0, "battery": 2.0}  # messages a second; others come with each call
-_COMPLAIN = 5.0  # seconds between two complaints
 
 
 class ShownDevice:

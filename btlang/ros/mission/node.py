@@ -46,6 +46,12 @@ if TYPE_CHECKING:
     from btlang.run.events import Sink
     from btlang.session import Run
 
+_SUCCESS, _FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
+_PERSON = "ROS 2"
+_MOST = 1000  # tasks on ~/tasks
+_OWN = "node"
+"""The label of the node's own mission."""
+
 
 class Setup(Record):
     """The options of a mission node. `robot` and `over` are as for Session.
@@ -111,13 +117,6 @@ class StopNode(Node):  # type: ignore[misc]  # rclpy is seen as untyped
         response.success = self._do()
         response.message = "" if response.success else "there is no robot, and its latch can't be written"
         return response
-
-
-_SUCCESS, _FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
-_PERSON = "ROS 2"
-_MOST = 1000  # tasks on ~/tasks
-_OWN = "node"
-"""The label of the node's own mission."""
 
 
 class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as untyped

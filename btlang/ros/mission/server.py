@@ -31,6 +31,12 @@ if TYPE_CHECKING:
 
 LABEL = "goal"
 """The label of tasks that live as long as their goals."""
+_PLAIN = (
+    messages.Pause, messages.Step, messages.Release, messages.Status, messages.Components, messages.InviteVisitor,
+)  # fmt: skip
+_OF_A_TASK = (
+    messages.Cancel, messages.Kill, messages.Interrupt, messages.Resume, messages.Skip, messages.Again, messages.Show,
+)  # fmt: skip
 
 
 class MissionServer:
@@ -110,14 +116,6 @@ def _result(task: int, report: MissionReport) -> Any:
     return RunMission.Result(
         success=report.success, outcome=report.outcome, reason=report.reason, seconds=report.seconds, task=task
     )
-
-
-_PLAIN = (
-    messages.Pause, messages.Step, messages.Release, messages.Status, messages.Components, messages.InviteVisitor,
-)  # fmt: skip
-_OF_A_TASK = (
-    messages.Cancel, messages.Kill, messages.Interrupt, messages.Resume, messages.Skip, messages.Again, messages.Show,
-)  # fmt: skip
 
 
 def create_services(node: Node, handle: Handle) -> None:

@@ -34,6 +34,12 @@ if TYPE_CHECKING:
 
 
 _PAUSE = 0.1  # seconds of real time between two snapshots of all nodes
+_OUTCOMES = {State.COMPLETED: "success", State.FAILED: "failure", State.ERROR: "failure"}
+_PHRASES = {"success": "succeeded", "failure": "failed", "skipped": "had nothing to do", "stopped": "was stopped"}
+OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
+_OF_A_TASK = ("id", "state", "priority", "mission", "person", "labels", "waits")
+_PERIOD = 1.0  # seconds between two diagnostics
+_TREE_PAUSE = 1.0  # seconds of real time between two snapshots while statuses change
 
 
 class RunUpdate(Record):
@@ -90,10 +96,6 @@ class MissionProgress:
             self._reached(RunUpdate(now.t, running, now.statuses, is_last))
 
 
-_OUTCOMES = {State.COMPLETED: "success", State.FAILED: "failure", State.ERROR: "failure"}
-_PHRASES = {"success": "succeeded", "failure": "failed", "skipped": "had nothing to do", "stopped": "was stopped"}
-
-
 class MissionReport(Record):
     """How a mission ended: `outcome` is "success", "failure", "skipped" or "stopped",
     `seconds` those of the mission.
@@ -118,11 +120,6 @@ def report_of(task: Task, seconds: float) -> MissionReport:
     if task.state is State.COMPLETED and task.reason == NOTHING_TO_DO:
         return MissionReport("skipped", "", seconds)
     return MissionReport(_OUTCOMES.get(task.state, "stopped"), task.reason, seconds)
-
-
-OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
-_OF_A_TASK = ("id", "state", "priority", "mission", "person", "labels", "waits")
-_PERIOD = 1.0  # seconds between two diagnostics
 
 
 class Topics:
@@ -187,9 +184,6 @@ def fill_progress(message: Any, news: RunUpdate) -> Any:
     message.time, message.running = news.time, news.running
     message.paths, message.statuses = list(news.statuses), [int(status) for status in news.statuses.values()]
     return message
-
-
-_TREE_PAUSE = 1.0  # seconds of real time between two snapshots while statuses change
 
 
 class TreeTopic:

@@ -13,6 +13,13 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.vocabulary.lexicon import Lexicon
 
+VELOCITY = "cmd_vel"
+"""The topic of velocities; its type is Twist, or TwistStamped if the robot listens to that."""
+ONE_SOURCE = ("odom", "clock", "battery_state", "docked")
+"""Topics on which two publishers would contradict one another."""
+_HAND = "std_srvs/srv/SetBool"
+_HOLDING = "std_msgs/msg/String"
+
 
 class Interface(Record):
     """An interface of the robot: `kind` is "publisher" or "listener" of a topic, "service", "action" or "node".
@@ -32,17 +39,11 @@ class Interface(Record):
         return "topic" if self.kind in ("publisher", "listener") else self.kind
 
 
-VELOCITY = "cmd_vel"
-"""The topic of velocities; its type is Twist, or TwistStamped if the robot listens to that."""
 CLOCK = Interface("publisher", "/clock", "rosgraph_msgs/msg/Clock", flows=True)
-ONE_SOURCE = ("odom", "clock", "battery_state", "docked")
-"""Topics on which two publishers would contradict one another."""
 _BASE = (
     Interface("listener", VELOCITY, "geometry_msgs/msg/Twist"),
     Interface("publisher", "odom", "nav_msgs/msg/Odometry", flows=True),
 )
-_HAND = "std_srvs/srv/SetBool"
-_HOLDING = "std_msgs/msg/String"
 _JOINTS = (
     Interface("listener", "joint_trajectory", "trajectory_msgs/msg/JointTrajectory"),
     Interface("publisher", "joint_states", "sensor_msgs/msg/JointState", flows=True),

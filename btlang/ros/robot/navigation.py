@@ -35,6 +35,9 @@ _SERVER = 2.0  # seconds that a server gets to be there
 _ANSWER = 5.0  # seconds that it gets to accept or reject, and between two of its feedbacks
 _MUTE, _STANDS = 15.0, 60.0  # seconds without any feedback, and with it, in which the robot does not move
 _MOVED, _TURNED = 0.05, 5.0  # metres and degrees that it has to move
+ACTION = "navigate_to_pose"
+_WALKED = 0.5  # metres
+_AGAIN = 2.0  # seconds between two goals
 
 
 class GoalTask(Record):
@@ -302,9 +305,6 @@ class ServerGoals:
             goal.withdrawn.wait(max(0.0, until - time.monotonic()))
 
 
-ACTION = "navigate_to_pose"
-
-
 class RosNavigation(ServerGoals):
     """The client of the navigation server, and the current goal."""
 
@@ -333,10 +333,6 @@ class RosNavigation(ServerGoals):
         task = GoalTask("navigation", name, *nouns, goal=pose, tolerance=self._tolerance)
         request = self._type.Goal(pose=stamped_pose(pose, self._node.get_clock().now().to_msg()))
         return self.begin(task, self._client, self._server, request)
-
-
-_WALKED = 0.5  # metres
-_AGAIN = 2.0  # seconds between two goals
 
 
 class Pursuit:

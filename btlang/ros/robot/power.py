@@ -31,6 +31,16 @@ _REASONS = {
 }
 _DOCKING = {**_REASONS, 905: "the robot couldn't be driven into the dock", 907: "docking took too long"}
 _UNDOCKING = {**_REASONS, 905: "the robot couldn't be driven out of the dock", 907: "undocking took too long"}
+BATTERY, DOCKED, DOCK, UNDOCK = "battery_state", "docked", "dock", "undock"
+STATUS = "battery status"
+"""The key of what the battery reports besides its percentage; a robot may leave it out."""
+_SILENT = 30.0  # seconds without word of the battery
+_SETTLED = 5.0  # seconds after which the battery reports a dock that was entered or left
+_AT_CHARGER = {
+    BatteryState.POWER_SUPPLY_STATUS_CHARGING: True,
+    BatteryState.POWER_SUPPLY_STATUS_FULL: True,
+    BatteryState.POWER_SUPPLY_STATUS_DISCHARGING: False,
+}
 
 
 class RosDocking(ServerGoals):
@@ -70,18 +80,6 @@ class RosDocking(ServerGoals):
         task = GoalTask("docking", "dock", "undocking", "undock", " on the way out of the dock", _UNDOCKING, False)
         server = self._node.resolve_service_name(UNDOCK_ROBOT)
         return self.begin(task, self._undock, server, self._undock_type.Goal())
-
-
-BATTERY, DOCKED, DOCK, UNDOCK = "battery_state", "docked", "dock", "undock"
-STATUS = "battery status"
-"""The key of what the battery reports besides its percentage; a robot may leave it out."""
-_SILENT = 30.0  # seconds without word of the battery
-_SETTLED = 5.0  # seconds after which the battery reports a dock that was entered or left
-_AT_CHARGER = {
-    BatteryState.POWER_SUPPLY_STATUS_CHARGING: True,
-    BatteryState.POWER_SUPPLY_STATUS_FULL: True,
-    BatteryState.POWER_SUPPLY_STATUS_DISCHARGING: False,
-}
 
 
 class RosPower:

@@ -28,6 +28,13 @@ SCAN, BUMP = "scan", "bump"
 _SILENT = 2.0  # seconds without a scan
 _LOOK_AGAIN = 1.0  # seconds between two looks for a publisher
 _FREE_AGAIN = 0.03  # metres from where it bumped
+SIGHTINGS = "sightings"
+SIGHTINGS_TYPE = "btlang_interfaces/msg/Sightings"
+_SIGHT_SILENT = 2.0  # seconds without word of what is in view
+_MOST = 1000  # things in one message
+_LONGEST = 100  # letters of a name
+KINDS = ("person", "object")
+"""The kinds of what is recognised."""
 
 
 class RosSensors:
@@ -112,15 +119,6 @@ class RosSensors:
         angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
         at = CENTRE if frame == BASE else self._scanner.pose
         return around(ranges, angles, at, abs(np.degrees(scan.angle_increment)))
-
-
-SIGHTINGS = "sightings"
-SIGHTINGS_TYPE = "btlang_interfaces/msg/Sightings"
-_SIGHT_SILENT = 2.0  # seconds without word of what is in view
-_MOST = 1000  # things in one message
-_LONGEST = 100  # letters of a name
-KINDS = ("person", "object")
-"""The kinds of what is recognised."""
 
 
 class RosPerception:

@@ -29,6 +29,12 @@ SPEECH, SPEAKING, PRINT, LANGUAGE = "speech", "speaking", "print", "language"
 _BEGINS = 0.5  # seconds of real time that it gets to begin
 _YOUNG = 2.0  # seconds in which a listener may not have found this node yet: what it misses then is sent again
 _LATEST = 5.0  # how many times as long as expected it may speak
+HEARD, ASKING, LISTENING = "heard", "asking", "listening"
+HEARD_TYPE, QUESTION_TYPE = "btlang_interfaces/msg/Heard", "btlang_interfaces/msg/Question"
+ANYTHING = "*"
+"""The line in the topic of expected phrases that stands for any words."""
+WORDLESS = "..."
+"""The text of a question without words: the robot only listens."""
 
 
 class RosSpeech:
@@ -168,14 +174,6 @@ class RosSpeech:
                 f"it has been speaking for {self._age:.0f} s: {self._subscriptions.shown(SPEAKING)} does not change"
             )
         return self._asked
-
-
-HEARD, ASKING, LISTENING = "heard", "asking", "listening"
-HEARD_TYPE, QUESTION_TYPE = "btlang_interfaces/msg/Heard", "btlang_interfaces/msg/Question"
-ANYTHING = "*"
-"""The line in the topic of expected phrases that stands for any words."""
-WORDLESS = "..."
-"""The text of a question without words: the robot only listens."""
 
 
 class RosEars:

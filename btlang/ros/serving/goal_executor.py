@@ -37,6 +37,12 @@ if TYPE_CHECKING:
 
 _PAUSE = 0.1  # seconds of the mission between two words to the caller
 _PATIENCE = 0.2  # real seconds that background leaves get to end after a halt, in which nothing else is ticked
+BUSY = 0.5
+"""Real seconds that a goal waits for a busy resource: the request that cancels the other goal
+may come a moment later.
+"""
+REST = 2.0
+"""Seconds of the mission that a robot gets to come to rest before the end of a cancelled goal is reported."""
 
 
 class LeafGoal:
@@ -125,14 +131,6 @@ class LeafGoal:
 
     def _progress(self, share: float, state: str = "") -> None:
         self._news = max(0.0, min(1.0, float(share))), state or self.words
-
-
-BUSY = 0.5
-"""Real seconds that a goal waits for a busy resource: the request that cancels the other goal
-may come a moment later.
-"""
-REST = 2.0
-"""Seconds of the mission that a robot gets to come to rest before the end of a cancelled goal is reported."""
 
 
 class GoalExecutor:

@@ -24,6 +24,7 @@ from btlang.ros.simulator.shared import COMMANDS, CallQueue, LatchedPublisher, M
 
 _SILENCE = 0.5  # simulated seconds without a command after which the robot brakes
 _ON_THE_WAY = 0.3  # real seconds for which velocities that were sent before a goal may still arrive
+_SCANS = 10
 
 
 class BaseTopics:
@@ -88,9 +89,6 @@ class BaseTopics:
         if self._driven or rolls:
             self._driven, self._rolls, self._commanded_at = True, rolls, self._robot.time
             self._robot.drive(linear, angular)
-
-
-_SCANS = 10
 
 
 class SensorTopics:

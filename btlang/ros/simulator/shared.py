@@ -21,6 +21,11 @@ from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.ros.lease import Leases
 from btlang.ros.node import LATCHED
 
+_OFF = "the simulated robot is shutting down"
+COMMANDS = 10
+"""How many commands of a topic may wait."""
+_BRAKING = 1.0  # simulated seconds that a cancelled goal waits at most until the robot stands still
+
 
 class CallQueue:
     """Work for the thread that calls `work`, which does it in order. `post` and `ask` are for all other threads."""
@@ -85,13 +90,6 @@ class CallQueue:
             answer.cancel()
 
 
-_OFF = "the simulated robot is shutting down"
-
-
-COMMANDS = 10
-"""How many commands of a topic may wait."""
-
-
 class Moment(Record):
     """The seconds of simulated time since the start, and the stamp for messages of this moment."""
 
@@ -130,9 +128,6 @@ class LatchedPublisher:
         if value != self._value:
             self._value = value
             self._publisher.publish(self._kind(data=value))
-
-
-_BRAKING = 1.0  # simulated seconds that a cancelled goal waits at most until the robot stands still
 
 
 class AcceptedGoal:

@@ -33,6 +33,9 @@ _TIMES = ("builtin_interfaces/Duration", "builtin_interfaces/Time")
 _REDUCERS: dict[str, Callable[[list[Any]], Any]] = {
     "min": min, "max": max, "sum": sum, "any": any, "all": all, "mean": lambda values: sum(values) / len(values)
 }  # fmt: skip
+NOW = "now"
+"""The value for a field of type builtin_interfaces/Time."""
+_POINTS = ("Point", "Point32", "Pose", "PoseStamped", "Pose2D")
 
 
 def field_types(cls: Any) -> dict[str, str]:
@@ -138,11 +141,6 @@ def _make_reducer(
 def _within(scan: Any, at: int, low: float, high: float) -> bool:
     angle = math.degrees(scan.angle_min + at * scan.angle_increment)
     return (angle - low) % 360 <= (high - low) + 1e-6
-
-
-NOW = "now"
-"""The value for a field of type builtin_interfaces/Time."""
-_POINTS = ("Point", "Point32", "Pose", "PoseStamped", "Pose2D")
 
 
 def make_filler(word: RosWord, cls: Any, fields: Fields | None, now: Now) -> Make:

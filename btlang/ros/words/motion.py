@@ -29,6 +29,10 @@ _GAIN = 3.0  # speed per way that is left; twice as much would swing where odome
 _SLOWEST = (0.03, 0.08)  # metres and radians a second that still move a robot
 _CLOSE = (0.01, math.radians(1.0))
 _ODOMETRY_AGE = 1.0  # seconds; a robot that does not know where it is should not drive on
+_DURATION = 2.0  # seconds for the way
+_JOINTS_CLOSE = 0.05  # radians or metres
+_OTHERS = 0.5  # seconds in which the messages with other joints come
+_PATIENCE = 5.0  # seconds beyond the duration
 
 
 def drive_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
@@ -106,12 +110,6 @@ def _measure_drive(start: tuple[float, float, float], pose: tuple[float, float, 
 def _measure_turn(start: tuple[float, float, float], pose: tuple[float, float, float]) -> float:
     """Return the radians to the left, less than half a turn."""
     return math.remainder(pose[2] - start[2], math.tau)
-
-
-_DURATION = 2.0  # seconds for the way
-_JOINTS_CLOSE = 0.05  # radians or metres
-_OTHERS = 0.5  # seconds in which the messages with other joints come
-_PATIENCE = 5.0  # seconds beyond the duration
 
 
 def joints_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:

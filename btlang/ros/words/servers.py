@@ -33,6 +33,10 @@ ANSWER = 5.0
 """Seconds that the server of an action gets to accept a goal or to reject it."""
 _REASONS = ("message", "error_msg", "error_string", "reason", "status_message")
 _PAUSE = 0.5  # real seconds between two looks at a server
+LIMIT = 10.0
+"""Real seconds that an answer may take, unless a table gives another time."""
+_GONE = 1.0  # seconds without a server, after which it counts as lost
+_REFUSED = (CancelGoal.Response.ERROR_REJECTED, CancelGoal.Response.ERROR_NONE)  # rclpy says the latter
 
 
 def await_server(clients: RosClients, client: Any, cls: Any, name: str, limit: float) -> Generator[None]:
@@ -102,11 +106,6 @@ def do_nothing() -> None:
     """Do nothing, in place of the `wake` of a run."""
 
 
-LIMIT = 10.0
-"""Real seconds that an answer may take, unless a table gives another time."""
-_GONE = 1.0  # seconds without a server, after which it counts as lost
-
-
 def service_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
     """Return a generator leaf. A call can't be taken back: when it is halted, the answer is ignored."""
     cls, name = word.interface(), word.ros.name
@@ -154,9 +153,6 @@ def await_answer(
     if isinstance(answers[0], str):
         raise ActionFailed(answers[0])
     return answers[0]
-
-
-_REFUSED = (CancelGoal.Response.ERROR_REJECTED, CancelGoal.Response.ERROR_NONE)  # rclpy says the latter
 
 
 class ActionGoal:

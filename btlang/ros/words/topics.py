@@ -25,6 +25,8 @@ _HOLDS: dict[str, Callable[[Any, Any], bool]] = {
     "equal": operator.eq, "not_equal": operator.ne,
 }  # fmt: skip
 _NUMBERS = (int, float)
+RATE = 10.0
+"""Messages a second of repeated publishing, unless a table gives another rate."""
 
 
 def topic_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:
@@ -109,10 +111,6 @@ def _limit(word: RosWord, cls: Any, given: Any) -> Callable[[Mapping[str, Any]],
         return value * factor if isinstance(value, _NUMBERS) else value
 
     return limit
-
-
-RATE = 10.0
-"""Messages a second of repeated publishing, unless a table gives another rate."""
 
 
 def publish_leaf(word: RosWord, clients: RosClients) -> Callable[..., Any]:

@@ -12,6 +12,17 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.worlds.scan import Array
 
+Sensors = Callable[[], "list[ObstacleReading]"]
+"""A function that returns the current readings of all sensors for obstacles."""
+_LATE = 0.7  # seconds more than usual that a message may be under way
+_EARLY = 0.3  # seconds before its measurement that a message seems to arrive: its clock has been set
+_BACK = 1e-6
+_LEARNING = 2.0  # seconds from the first message in which one may show that the ones before were held up
+_AGAIN = 3.0  # seconds in which stamps go on steadily after a jump, until they are believed again
+_JUMP, _FASTEST = 10.0, 1.0  # percent that a gauge may jump, and a second that a battery gains or loses at most
+_HOLDS = 0.9  # seconds that another charge has to be reported for: drivers may repeat a sample
+_COUNTS = 3.0  # seconds
+
 
 class SensorReading(Record):
     """A reading of a sensor. `source` is its name, `stamp` the second of the guard's clock at which it was measured.
@@ -69,15 +80,6 @@ class OdometryReading(SensorReading):
 
 ObstacleReading = ScanReading | RangeReading | ContactReading
 """A reading of what is near."""
-Sensors = Callable[[], "list[ObstacleReading]"]
-"""A function that returns the current readings of all sensors for obstacles."""
-
-
-_LATE = 0.7  # seconds more than usual that a message may be under way
-_EARLY = 0.3  # seconds before its measurement that a message seems to arrive: its clock has been set
-_BACK = 1e-6
-_LEARNING = 2.0  # seconds from the first message in which one may show that the ones before were held up
-_AGAIN = 3.0  # seconds in which stamps go on steadily after a jump, until they are believed again
 
 
 class StampCheck:
@@ -128,11 +130,6 @@ class StampCheck:
             self._offset, self._steady_since = under_way, None
             return ""
         return reason
-
-
-_JUMP, _FASTEST = 10.0, 1.0  # percent that a gauge may jump, and a second that a battery gains or loses at most
-_HOLDS = 0.9  # seconds that another charge has to be reported for: drivers may repeat a sample
-_COUNTS = 3.0  # seconds
 
 
 class ChargeCheck:

@@ -15,6 +15,9 @@ _APPROACH = 0.6  # metres a second at which people may come nearer while it brak
 _DELAY = 0.05  # seconds until it brakes
 _AHEAD = cos(radians(75.0))
 _LOOK = 2.0  # metres
+_EDGE = 0.02  # metres that stay free before a border
+_PROBE = 0.05  # metres ahead
+_RIM = tuple((cos(radians(side)), sin(radians(side))) for side in range(-90, 91, 30))  # the front half of the rim
 
 
 class WalkingPeople(Protocol):
@@ -49,11 +52,6 @@ def safe_among(people: WalkingPeople, pose: Pose, backward: bool, radius: float,
         if safe < most and not people.wall_between((pose.x, pose.y), (x, y)):
             most, who = safe, name
     return most, who
-
-
-_EDGE = 0.02  # metres that stay free before a border
-_PROBE = 0.05  # metres ahead
-_RIM = tuple((cos(radians(side)), sin(radians(side))) for side in range(-90, 91, 30))  # the front half of the rim
 
 
 class Regions:

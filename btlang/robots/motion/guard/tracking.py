@@ -26,6 +26,7 @@ _KEPT = 100  # commands
 _STANDING = 0.3  # seconds without motion
 STANDS = "shows that the robot doesn't move"
 _DROVE, _TURNED = "shows {:.2f} m where {:.2f} m were commanded", "shows {:.0f} degrees where {:.0f} were commanded"
+_NEARER = 0.5  # of what is close enough counts as nearer
 
 
 class OdometryCheck:
@@ -167,9 +168,6 @@ def _disagreement(measured: float, commanded: list[float], slack: float) -> tupl
 def _towards(value: float, target: float, more: float, less: float) -> float:
     limit = less if abs(target) < abs(value) or target * value < 0.0 else more
     return max(value - limit, min(value + limit, target))
-
-
-_NEARER = 0.5  # of what is close enough counts as nearer
 
 
 class JointProgress:
