@@ -243,7 +243,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
         if robot:
             from btlang.robots.preflight import check_mission
             from btlang.robots.registry import body_of
-            from btlang.robots.world_problem import read_world
+            from btlang.robots.worlds.world_file import read_world
 
             body = body_of(robot)
             check_mission(read_world(self.world, body), body, self.tree, self.vocabulary)

@@ -24,16 +24,16 @@ def robot_on(platforms: Sequence[str]) -> Callable[[str], str]:
     """What runs missions: one of these names, or a robot file."""
 
     def robot(text: str) -> str:
-        from btlang.robots.body_file import shipped_bodies
+        from btlang.robots.bodies.body_file import shipped_bodies
         from btlang.robots.platforms import ROBOTS
-        from btlang.robots.registry import installed_robot
+        from btlang.robots.registry import find_installed_robot
 
         if text in platforms:
             return text
         names = (*platforms, *shipped_bodies())
         if text in names or text.endswith(".toml") or (os.path.exists(text) and text not in ROBOTS):
             return text
-        if installed_robot(text) is not None:
+        if find_installed_robot(text) is not None:
             return text
         raise argparse.ArgumentTypeError(f"expected {', '.join(names)} or a robot file, not '{text}'")
 

@@ -74,7 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from btlang.robots.world_problem import read_world
+    from btlang.robots.worlds.world_file import read_world
     from btlang.ros.command import chosen_robot, print_preflight
 
     robot = chosen_robot(options)
@@ -97,8 +97,8 @@ def _run_shown(options: argparse.Namespace, mission: Mission, robot: Connector, 
     """Runs a mission with its pictures and its recording; `monitors` show it elsewhere."""
     from btlang.pictures.command import pictures_of
     from btlang.recording.options import recording
-    from btlang.robots.answers_file import read_answers
-    from btlang.robots.voice_track import voice_track
+    from btlang.robots.ears import read_answers
+    from btlang.robots.voice import voice_track
     from btlang.run.command import run_mission
     from btlang.session import Session
 
@@ -273,7 +273,7 @@ def _repl(options: argparse.Namespace) -> int:
 
 def _completion(options: argparse.Namespace) -> int:
     from btlang.examples import all_examples
-    from btlang.robots.body_file import shipped_bodies
+    from btlang.robots.bodies.body_file import shipped_bodies
     from btlang.robots.platforms import ROBOTS
     from btlang.shell_completion import completion_script
     from btlang.vocabulary.items import items

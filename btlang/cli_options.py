@@ -26,7 +26,7 @@ from btlang.cli_reading import (
 )
 from btlang.frontends.mission.reader import DEFAULT_PARSER
 from btlang.option_parser import OptionParser
-from btlang.robots.options import add_robot_words
+from btlang.robots.platforms import add_robot_words
 from btlang.run.limits import RATES
 from btlang.text.spelling import respellings
 from btlang.vocabulary.shipped import ENGLISH

@@ -7,7 +7,7 @@ import argparse
 from btlang.arguments import picture
 from btlang.diagnostics.report import CHECK_FORMATS, FORMATS
 from btlang.frontends.mission.reader import DEFAULT_PARSER, PARSERS
-from btlang.robots.options import add_world
+from btlang.robots.platforms import add_world
 from btlang.vocabulary.shipped import ENGLISH
 
 TYPE_CHECKING = False

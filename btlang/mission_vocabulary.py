@@ -135,12 +135,12 @@ _names: dict[str, tuple[dict[str, tuple[str, ...]], Features]] = {}  # by the te
 
 
 def _names_by_type(world: str | Source | None) -> tuple[dict[str, tuple[str, ...]], Features]:
-    from btlang.robots.world_file import WorldError, world_names
+    from btlang.robots.worlds.world_file import WorldError, world_names
 
     try:
         names = world_names(world)
     except WorldError as error:
-        from btlang.robots.data_file import as_mission_error
+        from btlang.robots.files import as_mission_error
 
         raise as_mission_error(error) from None
     return names.by_type, names.features

@@ -19,11 +19,11 @@ from btlang.engine.engine import Engine, EngineError
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.saving import SaveError
 from btlang.engine.timing import Stopwatch
-from btlang.robots.proxy import RobotProxy
+from btlang.robots.command_gate import RobotProxy
 from btlang.robots.registry import connector
-from btlang.robots.spoken import SpokenCommands, choices
-from btlang.robots.world import Place
-from btlang.robots.world_problem import read_world
+from btlang.robots.spoken_commands import SpokenCommands, choices
+from btlang.robots.worlds.world import Place
+from btlang.robots.worlds.world_file import read_world
 from btlang.run.bus import Bus
 from btlang.run.controls import Controls, disable
 from btlang.run.failure_history import FailureHistory
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
     from btlang.engine.instance import Hooks
     from btlang.pictures.terminal_map import TerminalMap
-    from btlang.robots.body import Body
+    from btlang.robots.bodies.body import Body
     from btlang.robots.registry import Connect
     from btlang.run.connection import Connection
     from btlang.run.events import Event, Sink

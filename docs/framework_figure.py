@@ -21,15 +21,15 @@ LAYERS = (
     ),
     (
         "Component layer", "what the robot can do",
-        ("actions", "robots/capabilities.py", "robots/motion", "components/manager.py"), "readings and commands",
+        ("actions", "robots/robot.py", "robots/motion", "components/manager.py"), "readings and commands",
     ),
     (
         "Hardware layer", "motors, sensors, speakers",
-        ("devices/kinds.py", "devices/loop.py", "devices/drivers.py", "ros/devices"), "",
+        ("devices/kinds.py", "devices/loop.py", "devices/driver.py", "ros/devices"), "",
     ),
 )  # fmt: skip
 """From top to bottom: what each is, what it decides, its modules below btlang, and what goes to the next one."""
-STOP = ("task/socket_server.py", "task/emergency.py", "run/controls.py", "robots/latch.py")
+STOP = ("task/socket_server.py", "task/emergency.py", "run/controls.py", "robots/command_gate.py")
 """The modules on the way of the emergency stop."""
 _FILL, _EDGE, _ALARM, _PALE = "#f8faf8", "#4f7d62", "#c0440c", "#fde4da"
 

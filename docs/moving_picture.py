@@ -26,8 +26,8 @@ from btlang.pictures.tree_layout import Layout, laid_out
 from btlang.pictures.tree_picture import _TreePicture
 from btlang.pictures.world_map import OBJECT, WorldMap
 from btlang.robots.geometry import Pose, wrap
-from btlang.robots.world import Thing, World
-from btlang.robots.world_file import load_world
+from btlang.robots.worlds.world import Thing, World
+from btlang.robots.worlds.world_file import load_world
 from btlang.run.events import StatusesChanged
 from btlang.text.source import Span
 

@@ -187,7 +187,7 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
         return
     patch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")
     for waited in ("_DISCOVERY", "_AGAIN"):
-        patch.setattr(f"btlang.ros.connection.{waited}", 0.5)  # seconds: it finds nobody
+        patch.setattr(f"btlang.ros.robot.connection.{waited}", 0.5)  # seconds: it finds nobody
 
 
 @cache

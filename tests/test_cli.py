@@ -220,7 +220,7 @@ def test_a_second_check_reads_no_keyword_file(tmp_path: Path) -> None:
     script = (
         "import sys; before = set(sys.modules)\n"
         "from btlang.cli import main; main(['check', '-c', 'go to the lab then wave'])\n"
-        "makers = {'tomllib', 'copy', 'shutil', 'btlang.vocabulary.keyword_file', 'btlang.robots.world_file'}\n"
+        "makers = {'tomllib', 'copy', 'shutil', 'btlang.vocabulary.keyword_file', 'btlang.robots.worlds.world_file'}\n"
         "print(sorted(makers & sys.modules.keys() - before))"
     )
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}

@@ -11,7 +11,7 @@ import pytest
 
 import btlang
 from btlang.cli import main
-from btlang.components.plain import packed
+from btlang.components.calls import pack
 from btlang.maps.data_text import ForeignFileError, read_data
 from btlang.recording.channels import messages
 from btlang.run.events import RobotEvent, Sampled
@@ -131,7 +131,7 @@ def test_deep_values_are_not_written_where_a_deep_tree_has_raised_the_limit_of_r
             with pytest.raises(ValueError, match="nested too deep"):
                 dump_json(value)
             with pytest.raises(TypeError, match="nested too deeply"):
-                packed(value)
+                pack(value)
         with (
             open_store(str(tmp_path / "tasks.db")) as store,
             pytest.raises(btlang.MissionError, match="nested so deep"),

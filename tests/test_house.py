@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 
 import btlang
-from btlang.robots import world_file
-from btlang.robots.body import Body
+from btlang.robots.bodies.body import Body
+from btlang.robots.worlds import world_file
 from btlang.vocabulary import keyword_file, language_tables
 from btlang.vocabulary.capabilities import CAPABILITIES
 
@@ -39,14 +39,14 @@ LONG: dict[str, str] = {
     "btlang/task/commands.schema.json": "made from the classes of commands",
     "examples/guide/robot.toml": "all of a humanoid",
     "btlang/web/package-lock.json": "made by npm",
-    "btlang/robots/capabilities.py": "what robots can do, one capability after the other",
+    "btlang/robots/robot.py": "what robots can do, one capability after the other",
     "btlang/builders.py": "made from the catalogue",
     "docs/cli.md": "made from the help of the commands",
     "docs/api.md": "made from the docstrings",
     "btlang/session.py": "a session, and the runs that it makes",
-    "btlang/robots/simulated.py": "the robot, one capability after the other",
+    "btlang/robots/simulation/robot.py": "the robot, one capability after the other",
     "btlang/run/events.py": "the classes of events, from which the schema of logs is made",
-    "btlang/ros/robot.py": "the same over ROS 2",
+    "btlang/ros/robot/robot.py": "the same over ROS 2",
     "btlang/testing/words.toml": "the words of tests",
     "btlang/vocabulary/keyword_file.py": "what may stand in a keyword file, one table after the other",
     "btlang/vocabulary/lexicon.py": "all that the words of a language are made into, which is then frozen",

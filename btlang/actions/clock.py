@@ -1,4 +1,4 @@
-"""What the clock says."""
+"""Conditions and quantities of the time of day."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def time_of_day(
     at_least: str | None = None,
     at_most: str | None = None,
 ) -> bool | Failed:
-    """Whether it is after or before a time of this day, or between two, which may be before and after midnight."""
+    """Return whether it is after or before a time of this day, or between two, possibly across midnight."""
     now = clock.time_of_day
     begun = at_least is None or now >= seconds_of(at_least)
     lasts = at_most is None or now <= seconds_of(at_most)
@@ -28,7 +28,7 @@ def time_of_day(
 
 
 def today_is(clock: Clock, days: str) -> bool | Failed:
-    """Whether it is one of some weekdays: names of days, `weekdays` or `weekends`, between semicolons."""
+    """Return whether it is one of some weekdays: names of days, `weekdays` or `weekends`, between semicolons."""
     today = WEEKDAYS[clock.weekday]
     kind = "weekends" if clock.weekday in WEEKEND else "weekdays"
     wanted = {day.strip().lower() for day in days.split(";")}
@@ -36,5 +36,5 @@ def today_is(clock: Clock, days: str) -> bool | Failed:
 
 
 def time_now(clock: Clock) -> str:
-    """The time of this day, as 18:05."""
+    """Return the time of day, as 18:05."""
     return shown(clock.time_of_day)

@@ -1,4 +1,4 @@
-"""People to be with: following, guiding, greeting and waiting for them."""
+"""Actions with people: following, guiding, greeting and waiting for them."""
 
 from __future__ import annotations
 
@@ -6,28 +6,24 @@ from collections.abc import Generator
 from math import dist, inf
 from typing import Any, Protocol
 
-from btlang.actions.gestures import Aiming, wave
-from btlang.actions.manner import paced
+from btlang.actions.common import DrivingRobot, Watch, keep_pace, where
+from btlang.actions.gestures import AimingRobot, wave
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import go_to, travel
-from btlang.actions.points import where
-from btlang.actions.speech import say
-from btlang.actions.strokes import Presenting
-from btlang.actions.watch import Driving, Watch
+from btlang.actions.speech import PresentingRobot, say
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Leading, Listening, Navigation, Perception
 from btlang.robots.geometry import Point
-from btlang.robots.robot import Operation
-from btlang.robots.world import said
+from btlang.robots.robot import Leading, Listening, Navigation, Operation, Perception
+from btlang.robots.worlds.world import said
 
 LOST = 5.0
-"""Seconds without a sight of somebody, where he or she was seen last, after which the robot has lost him or her."""
+"""Seconds out of sight, at the last position of a person, after which the robot has lost them."""
 WAITS = 10.0
-"""Seconds that a robot that guides waits for who has fallen behind, before it goes back."""
+"""Seconds that a guiding robot waits for a person who has fallen behind, before it goes back."""
 BEHIND = 3.0
-"""Metres from the robot at which who is guided has fallen behind."""
+"""Metres from the robot from which a guided person has fallen behind."""
 RETURNS = 4
-"""How often it goes back for somebody."""
+"""How often it goes back for a person."""
 
 _TURNED = 30.0  # degrees to the side at which it turns to who it follows
 _STEP = 0.4  # metres that who is followed may go before it sets out
@@ -36,69 +32,69 @@ _ARRIVED, _MOVED = 2.0, 0.2  # metres
 _TRIES, _PAUSE = 3, 1.0  # journeys that fail one after the other, and the seconds between them
 
 
-class Meeting(Perception, Listening, Navigation, Protocol):
-    """It goes to people that it sees or hears."""
+class MeetingRobot(Perception, Listening, Navigation, Protocol):
+    """A robot that goes to people whom it sees or hears."""
 
 
-class Following(Meeting, Driving, Protocol):
-    """It goes where somebody goes."""
+class FollowingRobot(MeetingRobot, DrivingRobot, Protocol):
+    """A robot that follows people."""
 
 
-class Guiding(Leading, Following, Presenting, Protocol):
-    """It asks people to follow."""
+class GuidingRobot(Leading, FollowingRobot, PresentingRobot, Protocol):
+    """A robot that asks people to follow."""
 
 
-class Greeting(Navigation, Presenting, Aiming, Protocol):
-    """It goes to people, waves and speaks."""
+class GreetingRobot(Navigation, PresentingRobot, AimingRobot, Protocol):
+    """A robot that goes to people, waves and speaks."""
 
 
-class Telling(Navigation, Presenting, Protocol):
-    """It goes to people and speaks."""
+class TellingRobot(Navigation, PresentingRobot, Protocol):
+    """A robot that goes to people and speaks."""
 
 
-def speaker(robot: Meeting) -> str | None:
-    """Who "me" is: who spoke last, else the nearest person in view; None where there is nobody."""
+def speaker(robot: MeetingRobot) -> str | None:
+    """Return who "me" is: the last speaker, else the nearest person in view; None if there is nobody."""
     heard = robot.ears.since(0) if robot.body.has("ears") else []
     spoken = next((each.who for each in reversed(heard) if each.who), None)
     return spoken or next(iter(robot.seen("person")), None)
 
 
-def _somebody(robot: Meeting, person: str | None) -> str:
+def _somebody(robot: MeetingRobot, person: str | None) -> str:
     found = person or speaker(robot)
     if found is None:
         raise ActionFailed("I see nobody")
     return found
 
 
-def come_to_me(robot: Meeting, manner: str | None = None) -> Steps:
-    """Goes to who spoke last, else to the nearest person in view."""
-    yield from paced(robot, manner, travel(robot, _somebody(robot, None)))
+def come_to_me(robot: MeetingRobot, manner: str | None = None) -> Steps:
+    """Go to the last speaker, else to the nearest person in view."""
+    yield from keep_pace(robot, manner, travel(robot, _somebody(robot, None)))
 
 
 def follow(
-    robot: Following,
+    robot: FollowingRobot,
     person: str | None = None,
     place: str | None = None,
     x: float | None = None,
     y: float | None = None,
     manner: str | None = None,
 ) -> Steps:
-    """Goes where a person goes, to a place or a point if one is given, else without end.
+    """Follow a person to a place or a point, or without end.
 
-    Without a person it is who spoke last, else the nearest one in view. Fails where the person is out of view for five
-    seconds.
+    Without a person it follows the last speaker, else the nearest person in view. Fails if the person is out of view
+    for five seconds.
     """
     name = _somebody(robot, person)
     goal = None if place is None and x is None else where(robot, place, x, y)
-    yield from paced(robot, manner or "quickly", _follow(robot, name, goal, inf))
+    yield from keep_pace(robot, manner or "quickly", _follow(robot, name, goal, inf))
 
 
-def follow_until_still(robot: Following, person: str, duration: float) -> Steps:
-    """Goes where a person goes, until he or she stands for so many seconds. Fails as `follow` does."""
-    yield from paced(robot, "quickly", _follow(robot, person, None, duration))
+def follow_until_still(robot: FollowingRobot, person: str, duration: float) -> Steps:
+    """Follow a person until they stand for so many seconds. Fails as `follow` does."""
+    yield from keep_pace(robot, "quickly", _follow(robot, person, None, duration))
 
 
-def _follow(robot: Following, person: str, goal: Point | None, stands: float) -> Steps:
+def _follow(robot: FollowingRobot, person: str, goal: Point | None, stands: float) -> Steps:
     watch, journey = Watch(robot), _Journeys(robot, person)
     seen_at, stood_at, stood = robot.time, robot.time, robot.locate(person)
     try:
@@ -127,7 +123,7 @@ def _follow(robot: Following, person: str, goal: Point | None, stands: float) ->
 class _Journeys:
     """The journeys to somebody who walks on, one after the other."""
 
-    def __init__(self, robot: Following, person: str) -> None:
+    def __init__(self, robot: FollowingRobot, person: str) -> None:
         self._robot, self._person = robot, person
         self._operation: Operation | None = None
         self._failed, self._next = 0, 0.0
@@ -138,7 +134,7 @@ class _Journeys:
         return self._operation is not None and not self._operation.done
 
     def go_on(self, point: Point) -> None:
-        """Sets out where the person has gone away or to the side. Raises ActionFailed where there is no way."""
+        """Set out if the person has gone away or to the side. Raises ActionFailed if there is no way."""
         robot, operation = self._robot, self._operation
         if operation is not None and operation.done:
             self._operation = None
@@ -154,14 +150,14 @@ class _Journeys:
             self._operation = robot.navigate_to(self._person)
 
     def end(self) -> None:
-        """Brakes."""
+        """Brake."""
         if self._operation is not None:
             self._operation.cancel()
         self._robot.drive(0.0, 0.0)
 
 
 def guide(
-    robot: Guiding,
+    robot: GuidingRobot,
     person: str | None = None,
     place: str | None = None,
     x: float | None = None,
@@ -169,8 +165,10 @@ def guide(
     facing: float | None = None,
     manner: str | None = None,
 ) -> Steps:
-    """Asks a person to follow and drives to a place or a point. It waits for who falls behind, and goes back for who
-    doesn't come. Without a person it is who spoke last, else the nearest one in view. Fails after four returns.
+    """Ask a person to follow and drive to a place or a point.
+
+    It waits for a person who falls behind, and goes back for one who doesn't come. Without a person it is the last
+    speaker, else the nearest person in view. Fails after four returns.
     """
     name = _somebody(robot, person)
     if not robot.sees(name):
@@ -180,7 +178,7 @@ def guide(
     robot.guide(name, True)
     try:
         for _ in range(RETURNS):
-            leads = paced(robot, manner, go_to(robot, place, x, y, facing))
+            leads = keep_pace(robot, manner, go_to(robot, place, x, y, facing))
             if (yield from _lead(robot, name, leads)):
                 return
             yield from _rejoin(robot, name)
@@ -189,15 +187,15 @@ def guide(
         robot.guide(name, False)
 
 
-def fetch_person(robot: Guiding, person: str) -> Steps:
-    """Goes to a person and guides him or her to where the robot is now. Fails as `guide` does."""
+def fetch_person(robot: GuidingRobot, person: str) -> Steps:
+    """Go to a person and guide them to where the robot is now. Fails as `guide` does."""
     here = robot.pose
     yield from travel(robot, person)
     yield from guide(robot, person, x=here.x, y=here.y)
 
 
-def _lead(robot: Guiding, person: str, steps: Steps) -> Generator[None, None, bool]:
-    """Goes on while the person keeps up. Whether they came to the end of it together."""
+def _lead(robot: GuidingRobot, person: str, steps: Steps) -> Generator[None, None, bool]:
+    """Go on while the person keeps up; return whether both came to the end together."""
     with_us, arrived = robot.time, False
     try:
         while True:
@@ -217,12 +215,12 @@ def _lead(robot: Guiding, person: str, steps: Steps) -> Generator[None, None, bo
         steps.close()
 
 
-def _is_with(robot: Guiding, person: str) -> bool:
+def _is_with(robot: GuidingRobot, person: str) -> bool:
     return robot.sees(person) and robot.pose.distance_to(robot.locate(person)) <= BEHIND
 
 
-def _rejoin(robot: Guiding, person: str) -> Steps:
-    """Waits for a person, facing where he or she was seen last, then goes there."""
+def _rejoin(robot: GuidingRobot, person: str) -> Steps:
+    """Wait for a person, facing where they were seen last, then go there."""
     watch, until = Watch(robot), robot.time + WAITS
     yield from turn(robot, robot.pose.bearing_to(robot.locate(person)))
     while robot.time < until:
@@ -238,26 +236,26 @@ def _rejoin(robot: Guiding, person: str) -> Steps:
         robot.guide(person, True)
 
 
-def greet(robot: Greeting, person: str, text: str | None = None) -> Steps:
-    """Drives to a person, waves and says the text, or hello."""
+def greet(robot: GreetingRobot, person: str, text: str | None = None) -> Steps:
+    """Drive to a person, wave and say the text, or hello."""
     yield from travel(robot, person)
     yield from wave(robot, person)
     yield from say(robot, text or f"Hello, {person}!")
 
 
-def tell(robot: Telling, person: str, text: str, kept: dict[str, Any] | None = None) -> Steps:
-    """Drives to a person and says the text."""
+def tell(robot: TellingRobot, person: str, text: str, kept: dict[str, Any] | None = None) -> Steps:
+    """Drive to a person and say the text."""
     yield from travel(robot, person)
     yield from say(robot, text, kept)
 
 
 def wait_for_person(robot: Perception, person: str, duration: float | None = None) -> Steps:
-    """Waits until a person is in view. Fails after `duration` seconds, if they are given."""
+    """Wait until a person is in view. Fails after `duration` seconds, if given."""
     yield from _wait(robot, person, duration)
 
 
 def wait_for_someone(robot: Perception, duration: float | None = None) -> Steps:
-    """Waits until anybody is in view. Fails after `duration` seconds, if they are given."""
+    """Wait until anybody is in view. Fails after `duration` seconds, if given."""
     yield from _wait(robot, None, duration)
 
 

@@ -1,60 +1,61 @@
-"""Asking and listening. What was heard last is the answer, which missions compare: "if the answer is yes"."""
+"""Asking and listening, and commands that people speak. What was heard last is the answer."""
 
 from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from functools import cache, lru_cache
 from importlib.resources import files
+from inspect import isgenerator
 from typing import Protocol
 
+from btlang.actions.common import DrivingRobot, Watch
 from btlang.actions.motion import Steps
-from btlang.actions.speech import say
-from btlang.actions.strokes import Presenting
-from btlang.actions.watch import Watch
+from btlang.actions.speech import PresentingRobot, say
 from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown
-from btlang.robots.body import Body
-from btlang.robots.capabilities import Conversing, Listening
-from btlang.robots.ears import Heard
-from btlang.robots.world import said
-from btlang.speech.grammar import spoken
+from btlang.robots.bodies.body import Body
+from btlang.robots.ears import HeardText
+from btlang.robots.robot import Conversing, Listening, RobotError
+from btlang.robots.worlds.world import said
 from btlang.speech.marks import without_marks
-from btlang.speech.recogniser import Expected
+from btlang.speech.recogniser import Expected, spoken
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
 
 WAITS = 60.0
 """Seconds of the mission in which somebody has to answer."""
 MEANINGS = ("yes", "no")
 
 
-class Questioning(Conversing, Presenting, Protocol):
-    """It asks, with gestures."""
+class QuestioningRobot(Conversing, PresentingRobot, Protocol):
+    """A robot that asks, with gestures."""
 
 
-def ask(robot: Questioning, question: str, person: str | None = None, kept: dict[str, Any] | None = None) -> Steps:
-    """Asks a person, or anybody, and waits for the answer. Fails after a minute without one."""
+def ask(robot: QuestioningRobot, question: str, person: str | None = None, kept: dict[str, Any] | None = None) -> Steps:
+    """Ask a person, or anybody, and wait for the answer. Fails after a minute without one."""
     if person is not None:
         robot.locate(person)  # nobody is asked whom the robot hasn't seen
     yield from say(robot, question, kept)
     expected = answers(robot.ears.choices, robot.body)
-    yield from listened(robot, without_marks(question), lambda text: True, expected, person)
+    yield from listen(robot, without_marks(question), lambda text: True, expected, person)
 
 
 def listen_for_yes_or_no(robot: Listening) -> Steps:
-    """Waits until somebody says yes or no. Fails after a minute."""
-    yield from listened(robot, "", lambda text: meaning_of(text) in MEANINGS, answers(MEANINGS, robot.body))
+    """Wait until somebody says yes or no. Fails after a minute."""
+    yield from listen(robot, "", lambda text: meaning_of(text) in MEANINGS, answers(MEANINGS, robot.body))
 
 
 def listen_for(robot: Listening, text: str) -> Steps:
-    """Waits until somebody says these words, maybe among others. Fails after a minute."""
-    yield from listened(robot, "", lambda heard: holds(heard, text), answers((text,), robot.body))
+    """Wait until somebody says these words, maybe among others. Fails after a minute."""
+    yield from listen(robot, "", lambda heard: holds(heard, text), answers((text,), robot.body))
 
 
 def answer_is(robot: Listening, text: str) -> bool | Failed:
-    """Whether the last answer has these words, or means the same: "yes" is also "sure" and "of course"."""
+    """Return whether the last answer has these words, or means the same: "yes" is also "sure" and "of course"."""
     answer = robot.ears.answer
     if not answer:
         return Failed(lambda: "nobody has answered")
@@ -62,39 +63,42 @@ def answer_is(robot: Listening, text: str) -> bool | Failed:
 
 
 def nobody_answered(robot: Listening) -> bool | Failed:
-    """Whether the last question had no answer."""
+    """Return whether the last question had no answer."""
     heard = robot.ears.answer
     return not heard or Failed(lambda: f'the answer was "{heard}"')
 
 
 def answer(robot: Listening) -> str:
-    """The words of the last answer. Fails if there is none."""
+    """Return the words of the last answer. Fails if there is none."""
     if not robot.ears.answer:
         raise ActionFailed("nobody has answered")
     return robot.ears.answer
 
 
 def has_heard(robot: Listening, text: str) -> bool:
-    """Whether somebody has said these words, maybe among others. Unknown where it wasn't heard by ears that fail."""
+    """Return whether somebody has said these words, maybe among others.
+
+    Unknown if they weren't heard and hearing fails.
+    """
     robot.ears.news(text, robot.time)  # it listens for them
     return _among(robot, robot.ears.since(0), text)
 
 
 def somebody_says(robot: Listening, text: str) -> bool:
-    """Whether somebody has said these words since this was asked last. Unknown as in `has_heard`."""
+    """Return whether somebody has said these words since the last check. Unknown as in `has_heard`."""
     return _among(robot, robot.ears.news(text, robot.time), text)
 
 
 def person_says(robot: Listening, person: str, text: str) -> bool:
-    """The same of one person. Who can't be told by the voice may be that person."""
+    """Return the same for one person. A speaker whose voice isn't recognised may be that person."""
     heard = robot.ears.news(text, robot.time)
     return _among(robot, [each for each in heard if each.who in (person, "")], text)
 
 
 def answers(texts: Iterable[str], body: Body) -> Expected:
-    """What is listened for as one of these answers: the words, politely or not, and all that means yes or no for these.
+    """Return what to listen for as one of these answers: the words, politely or not, and all that means yes or no.
 
-    Without any, whatever is said.
+    Without any answers, it is whatever is said.
     """
     language = body.ears.settings.language.partition("-")[0] if body.ears is not None else ""
     forms = _answers().get(language, _answers()["en"])
@@ -112,7 +116,7 @@ def answers(texts: Iterable[str], body: Body) -> Expected:
 
 
 def holds(heard: str, text: str) -> bool:
-    """Whether what was heard has the words of a text in their order, or means the same yes or no."""
+    """Return whether what was heard has the words of a text in their order, or means the same yes or no."""
     meaning = meaning_of(text)
     if meaning in MEANINGS:
         return meaning_of(heard) == meaning
@@ -122,13 +126,16 @@ def holds(heard: str, text: str) -> bool:
 
 @lru_cache(maxsize=256)
 def meaning_of(text: str) -> str:
-    """ "yes" or "no" for what means that, else the text. The longest phrase counts: "I do" is yes, "I do not" isn't."""
+    """Return "yes" or "no" for a text that means that, else the text.
+
+    The longest phrase counts: "I do" is yes, "I do not" isn't.
+    """
     words = _words(text)
     found = [(len(phrase), meaning) for phrase, meaning in _forms() if words[: len(phrase)] == phrase]
     return max(found)[1] if found else text
 
 
-def _among(robot: Listening, heard: Iterable[Heard], text: str) -> bool:
+def _among(robot: Listening, heard: Iterable[HeardText], text: str) -> bool:
     found = any(holds(each.text, text) for each in heard)
     if not found and robot.ears.problem:
         raise Unknown(f"the ears don't work: {robot.ears.problem}")
@@ -137,14 +144,14 @@ def _among(robot: Listening, heard: Iterable[Heard], text: str) -> bool:
 
 @cache
 def _forms() -> list[tuple[list[str], str]]:
-    """The words of what means yes or no, in all languages."""
+    """Return the words of what means yes or no, in all languages."""
     meanings = (each for by_language in _answers().values() for each in by_language.items())
     return [(phrase.split(), key.removeprefix("written_")) for key, phrases in meanings for phrase in phrases]
 
 
 @cache
 def _answers() -> dict[str, dict[str, list[str]]]:
-    """By languages, then by "yes", "no", "written_yes" and "written_no"."""
+    """Return the phrases by language, then by "yes", "no", "written_yes" and "written_no"."""
     return tomllib.loads(files("btlang.actions").joinpath("answers.toml").read_text(encoding="utf-8"))
 
 
@@ -152,20 +159,20 @@ def _words(text: str) -> list[str]:
     return "".join(letter if letter.isalnum() or letter == "'" else " " for letter in text.lower()).split()
 
 
-def listened(
+def listen(
     robot: Listening,
     question: str,
     wanted: Callable[[str], bool],
     expected: Expected,
     person: str | None = None,
 ) -> Steps:
-    """Waits for the first text that is wanted, which is then the answer. Fails after a minute, without an answer."""
+    """Wait for the first text that is wanted, which is then the answer. Fails after a minute without one."""
     watch, ears = Watch(robot), robot.ears
     ears.answer = ""
     count, until = ears.count, robot.time + WAITS
     robot.ask(question, person or "")
     try:
-        with ears.awaiting(expected):
+        with ears.expect(expected):
             while True:
                 for heard in ears.since(count):
                     if wanted(heard.text) and (person is None or heard.who in (person, "")):
@@ -178,3 +185,34 @@ def listened(
                 watch.check_stop()
     finally:
         ears.asking = ""
+
+
+class ObeyingRobot(Conversing, PresentingRobot, DrivingRobot, Protocol):
+    """A robot that obeys spoken commands."""
+
+
+def do_what_somebody_says(robot: ObeyingRobot) -> Steps:
+    """Wait for a command, ask "Shall I ...?" and do it after a yes. Fails after a no, and without an answer."""
+    commands = robot.ears.commands
+    if commands is None:
+        raise ActionFailed("the mission has no words that could be spoken")
+    act = None
+
+    def reads(text: str) -> bool:
+        nonlocal act
+        with suppress(RobotError):  # people also say other things
+            act = commands.read(text)
+        return act is not None
+
+    yield from listen(robot, "", reads, commands.expected(robot))
+    assert act is not None
+    text = robot.ears.answer
+    question = f"Shall I {text.rstrip('.!')}?"
+    yield from say(robot, question)
+    expected = answers(MEANINGS, robot.body)
+    yield from listen(robot, question, lambda text: meaning_of(text) in MEANINGS, expected)
+    if meaning_of(robot.ears.answer) == "no":
+        raise ActionFailed(f"nobody wants it to {text}")
+    steps = act(robot)
+    if isgenerator(steps):
+        yield from steps

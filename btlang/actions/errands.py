@@ -5,58 +5,56 @@ from __future__ import annotations
 from collections.abc import Generator
 from typing import Protocol
 
-from btlang.actions.company import Meeting, speaker
+from btlang.actions.common import DrivingRobot, keep_pace
+from btlang.actions.company import MeetingRobot, speaker
 from btlang.actions.joints import take
-from btlang.actions.manipulation import Fetching, hand_with, pick_up, put_down
-from btlang.actions.manner import paced
+from btlang.actions.manipulation import FetchingRobot, hand_with, pick_up, put_down
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, go_to, travel
-from btlang.actions.watch import Driving
-from btlang.robots.capabilities import Navigation
-from btlang.robots.robot import Hand
+from btlang.robots.robot import Hand, Navigation
 
 
-class Bringing(Fetching, Meeting, Protocol):
-    """It carries things to people."""
+class BringingRobot(FetchingRobot, MeetingRobot, Protocol):
+    """A robot that carries things to people."""
 
 
-class Patrolling(Driving, Navigation, Protocol):
-    """It finds its way, and looks around."""
+class PatrollingRobot(DrivingRobot, Navigation, Protocol):
+    """A robot that finds its way, and looks around."""
 
 
 def come_back(robot: Navigation, manner: str | None = None) -> Steps:
-    """Drives to where the robot was when the mission began, and faces as it did then."""
-    yield from paced(robot, manner, _return(robot))
+    """Drive to where the robot was when the mission began, and face as it did then."""
+    yield from keep_pace(robot, manner, _return(robot))
 
 
 def _return(robot: Navigation) -> Steps:
     yield from accomplish(robot.navigate_to_pose(robot.set_out_from))
 
 
-def fetch(robot: Fetching, object: str, manner: str | None = None) -> Steps:
-    """Picks up an object and brings it to where the robot is now. Fails as `pick_up` does."""
-    yield from paced(robot, manner, _fetch(robot, object))
+def fetch(robot: FetchingRobot, object: str, manner: str | None = None) -> Steps:
+    """Pick up an object and bring it to where the robot is now. Fails as `pick_up` does."""
+    yield from keep_pace(robot, manner, _fetch(robot, object))
 
 
-def _fetch(robot: Fetching, object: str) -> Steps:
+def _fetch(robot: FetchingRobot, object: str) -> Steps:
     here = robot.pose
     yield from _hold(robot, object)
     yield from accomplish(robot.navigate_to_pose(here))
 
 
-def bring_back(robot: Fetching, object: str) -> Steps:
-    """Picks up an object unless a hand holds it, and brings it to where the robot was when the mission began."""
+def bring_back(robot: FetchingRobot, object: str) -> Steps:
+    """Pick up an object unless a hand holds it, and bring it to where the robot was when the mission began."""
     yield from _hold(robot, object)
     yield from _return(robot)
 
 
-def hold(robot: Fetching, object: str) -> Steps:
-    """Picks up an object unless a hand holds it."""
+def hold(robot: FetchingRobot, object: str) -> Steps:
+    """Pick up an object unless a hand holds it."""
     yield from _hold(robot, object)
 
 
 def carry(
-    robot: Fetching,
+    robot: FetchingRobot,
     object: str,
     place: str | None = None,
     x: float | None = None,
@@ -64,32 +62,32 @@ def carry(
     facing: float | None = None,
     manner: str | None = None,
 ) -> Steps:
-    """Picks up an object unless a hand holds it, drives to a place or a point, and puts it down there."""
-    yield from paced(robot, manner, _carry(robot, object, go_to(robot, place, x, y, facing)))
+    """Pick up an object unless a hand holds it, drive to a place or a point, and put it down there."""
+    yield from keep_pace(robot, manner, _carry(robot, object, go_to(robot, place, x, y, facing)))
 
 
-def put_in(robot: Fetching, object: str, container: str, manner: str | None = None) -> Steps:
-    """Picks up an object unless a hand holds it, drives up to another object and puts it down there."""
-    yield from paced(robot, manner, _carry(robot, object, travel(robot, container)))
+def put_in(robot: FetchingRobot, object: str, container: str, manner: str | None = None) -> Steps:
+    """Pick up an object unless a hand holds it, drive up to another object and put it down there."""
+    yield from keep_pace(robot, manner, _carry(robot, object, travel(robot, container)))
 
 
-def _carry(robot: Fetching, object: str, way: Steps) -> Steps:
-    """Picks up an object unless a hand holds it, goes this way and puts it down."""
+def _carry(robot: FetchingRobot, object: str, way: Steps) -> Steps:
+    """Pick up an object unless a hand holds it, go this way and put it down."""
     yield from _hold(robot, object)
     yield from way
     yield from put_down(robot, object)
 
 
-def bring(robot: Bringing, object: str, person: str | None = None, manner: str | None = None) -> Steps:
-    """Picks up an object unless a hand holds it, drives to a person and hands it over.
+def bring(robot: BringingRobot, object: str, person: str | None = None, manner: str | None = None) -> Steps:
+    """Pick up an object unless a hand holds it, drive to a person and hand it over.
 
-    Without a person it is who spoke last, else the nearest one in view; where there is nobody, the object is put down
-    where the mission began. Fails where the person is gone or doesn't want it.
+    Without a person it is the last speaker, else the nearest person in view; if there is nobody, the object is put down
+    where the mission began. Fails if the person is gone or doesn't want it.
     """
-    yield from paced(robot, manner, _bring(robot, object, person or speaker(robot)))
+    yield from keep_pace(robot, manner, _bring(robot, object, person or speaker(robot)))
 
 
-def _bring(robot: Bringing, object: str, person: str | None) -> Steps:
+def _bring(robot: BringingRobot, object: str, person: str | None) -> Steps:
     hand = yield from _hold(robot, object)
     if person is None:
         yield from _return(robot)
@@ -101,8 +99,8 @@ def _bring(robot: Bringing, object: str, person: str | None) -> Steps:
     yield from take(robot, f"{hand} arm hanging")
 
 
-def _hold(robot: Fetching, object: str) -> Generator[None, None, Hand]:
-    """The hand that holds the object, which is picked up first where none does."""
+def _hold(robot: FetchingRobot, object: str) -> Generator[None, None, Hand]:
+    """Return the hand that holds the object, which is picked up first if none does."""
     hand = hand_with(robot, object)
     if hand is None:
         yield from pick_up(robot, object)
@@ -110,18 +108,18 @@ def _hold(robot: Fetching, object: str) -> Generator[None, None, Hand]:
 
 
 def patrol(
-    robot: Patrolling,
+    robot: PatrollingRobot,
     place: str | None = None,
     x: float | None = None,
     y: float | None = None,
     manner: str | None = None,
 ) -> Steps:
-    """Drives to a place or a point and turns once around."""
-    yield from paced(robot, manner, go_to(robot, place, x, y))
+    """Drive to a place or a point and turn once around."""
+    yield from keep_pace(robot, manner, go_to(robot, place, x, y))
     yield from turn(robot, 360.0)
 
 
-def localize(robot: Driving) -> Steps:
-    """Forgets its place on the map, where the robot can find that out, and turns once around so that its sensors do."""
+def localize(robot: DrivingRobot) -> Steps:
+    """Forget the pose on the map, if the robot can find it again, and turn once around so that its sensors do."""
     robot.reset_localization()
     yield from turn(robot, 360.0)

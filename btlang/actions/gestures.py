@@ -1,25 +1,27 @@
-"""Waving, pointing, nodding and looking. They never move the base; a halted gesture freezes where it is."""
+"""Waving, pointing, nodding, looking, bowing and dancing. A gesture that is halted freezes where it is."""
 
 from __future__ import annotations
 
 from typing import Protocol
 
+from btlang.actions.common import DrivingRobot, Watch, spot, where
 from btlang.actions.joints import take
-from btlang.actions.motion import Steps
+from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish
-from btlang.actions.points import spot, where
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Base, Gesturing, Joints
 from btlang.robots.geometry import Point
-from btlang.robots.world import said
+from btlang.robots.robot import Base, Gesturing, Joints
+from btlang.robots.worlds.world import said
+
+_BOWED = 1.0  # seconds
 
 
-class Aiming(Joints, Base, Protocol):
-    """It knows where it is, so it can point at what it knows."""
+class AimingRobot(Joints, Base, Protocol):
+    """A robot that knows where it is, so it can point at what it knows."""
 
 
-def wave(robot: Aiming, person: str | None = None) -> Steps:
-    """Waves the right arm, towards the person if one is named, and lets it hang again."""
+def wave(robot: AimingRobot, person: str | None = None) -> Steps:
+    """Wave the right arm, towards the person if one is named, and let it hang again."""
     yield from _towards(robot, "wave", person) if person else take(robot, "wave")
 
 
@@ -32,103 +34,120 @@ def perform(
     x: float | None = None,
     y: float | None = None,
 ) -> Steps:
-    """Does a gesture of the robot file, aimed at what is named. Fails where that is out of reach."""
+    """Do a gesture of the robot file, aimed at what is named. Fails if that is out of reach."""
     name = person or object
     is_aimed = name or place or x is not None
     aim = None if not is_aimed else robot.locate(name) if name else where(robot, place, x, y)
     yield from accomplish(robot.gesture(movement, aim=aim))
 
 
-def point_at_person(robot: Aiming, person: str) -> Steps:
-    """Stretches the right arm towards a person."""
+def point_at_person(robot: AimingRobot, person: str) -> Steps:
+    """Stretch the right arm towards a person."""
     yield from _towards(robot, "right arm pointing", person)
 
 
-def point_at_object(robot: Aiming, object: str) -> Steps:
-    """Stretches the right arm towards an object."""
+def point_at_object(robot: AimingRobot, object: str) -> Steps:
+    """Stretch the right arm towards an object."""
     yield from _towards(robot, "right arm pointing", object)
 
 
-def point_at_place(robot: Aiming, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
-    """Stretches the right arm towards a place or a point."""
+def point_at_place(
+    robot: AimingRobot, place: str | None = None, x: float | None = None, y: float | None = None
+) -> Steps:
+    """Stretch the right arm towards a place or a point."""
     yield from _towards(robot, "right arm pointing", place or spot(x, y), where(robot, place, x, y))
 
 
 def point_left(robot: Joints) -> Steps:
-    """Stretches the left arm to the left."""
+    """Stretch the left arm to the left."""
     yield from take(robot, "left arm pointing", bearing=90.0)
 
 
 def point_right(robot: Joints) -> Steps:
-    """Stretches the right arm to the right."""
+    """Stretch the right arm to the right."""
     yield from take(robot, "right arm pointing", bearing=-90.0)
 
 
 def point_ahead(robot: Joints) -> Steps:
-    """Stretches the right arm ahead."""
+    """Stretch the right arm ahead."""
     yield from take(robot, "right arm pointing", bearing=0.0)
 
 
 def nod(robot: Joints) -> Steps:
-    """Nods the head twice."""
+    """Nod the head twice."""
     yield from take(robot, "nod")
 
 
 def shake_head(robot: Joints) -> Steps:
-    """Turns the head from side to side."""
+    """Turn the head from side to side."""
     yield from take(robot, "shake head")
 
 
 def look_around(robot: Joints) -> Steps:
-    """Turns the head all the way to both sides and back ahead."""
+    """Turn the head all the way to both sides and back ahead."""
     yield from take(robot, "look around")
 
 
 def look_left(robot: Joints) -> Steps:
-    """Turns the head to the left."""
+    """Turn the head to the left."""
     yield from take(robot, "look left")
 
 
 def look_right(robot: Joints) -> Steps:
-    """Turns the head to the right."""
+    """Turn the head to the right."""
     yield from take(robot, "look right")
 
 
 def look_ahead(robot: Joints) -> Steps:
-    """Turns the head straight ahead."""
+    """Turn the head straight ahead."""
     yield from take(robot, "look ahead")
 
 
 def look_up(robot: Joints) -> Steps:
-    """Raises the head."""
+    """Raise the head."""
     yield from take(robot, "look up")
 
 
 def look_down(robot: Joints) -> Steps:
-    """Lowers the head."""
+    """Lower the head."""
     yield from take(robot, "look down")
 
 
-def look_at_person(robot: Aiming, person: str) -> Steps:
-    """Turns the head to a person. Fails where they are behind the robot."""
+def look_at_person(robot: AimingRobot, person: str) -> Steps:
+    """Turn the head to a person. Fails if they are behind the robot."""
     yield from _towards(robot, "look at", person)
 
 
-def look_at_object(robot: Aiming, object: str) -> Steps:
-    """Turns the head to an object. Fails if it is behind the robot."""
+def look_at_object(robot: AimingRobot, object: str) -> Steps:
+    """Turn the head to an object. Fails if it is behind the robot."""
     yield from _towards(robot, "look at", object)
 
 
-def look_at_place(robot: Aiming, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
-    """Turns the head to a place or a point. Fails if it is behind the robot."""
+def look_at_place(
+    robot: AimingRobot, place: str | None = None, x: float | None = None, y: float | None = None
+) -> Steps:
+    """Turn the head to a place or a point. Fails if it is behind the robot."""
     yield from _towards(robot, "look at", place or spot(x, y), where(robot, place, x, y))
 
 
-def _towards(robot: Aiming, posture: str, name: str, point: Point | None = None) -> Steps:
-    """To the point, by default that of the name. Raises ActionFailed where the joint doesn't turn so far."""
+def _towards(robot: AimingRobot, posture: str, name: str, point: Point | None = None) -> Steps:
+    """Turn to the point, by default that of the name. Raises ActionFailed if the joint doesn't turn so far."""
     bearing = robot.pose.bearing_to(robot.locate(name) if point is None else point)
     joint = robot.body.falls_short(posture, bearing)
     if joint is not None:
         where = "behind the robot" if abs(bearing) > 90.0 else "too far to the side"
         raise ActionFailed(f"{said(name)} is {where}; the {joint.part} can't turn that far")
     yield from take(robot, posture, bearing=bearing)
+
+
+def bow(robot: Joints) -> Steps:
+    """Lower the head for a second."""
+    yield from take(robot, "look down")
+    yield from Watch(robot).pause(_BOWED)
+    yield from take(robot, "look ahead")
+
+
+def dance(robot: DrivingRobot) -> Steps:
+    """Swing from side to side on the spot, and turn once around."""
+    for angle in (45.0, -90.0, 90.0, -45.0, 360.0):
+        yield from turn(robot, angle)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from btlang.actions.common import Watch
 from btlang.actions.motion import Steps
-from btlang.actions.watch import Watch
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Joints
-from btlang.robots.gesture import angle_of
+from btlang.robots.bodies.gesture import angle_of
+from btlang.robots.robot import Joints
 
 
 def bring(robot: Joints, targets: Mapping[str, float]) -> Steps:
-    """Moves joints to angles (degrees); halted, just these joints freeze. Raises ActionFailed on an emergency stop."""
+    """Move joints to angles (degrees); when halted, freeze just these joints. Raises
+    ActionFailed on an emergency stop.
+    """
     watch = Watch(robot)
     robot.move_joints(targets)
     try:
@@ -24,7 +26,7 @@ def bring(robot: Joints, targets: Mapping[str, float]) -> Steps:
 
 
 def take(robot: Joints, *postures: str, bearing: float = 0.0) -> Steps:
-    """Brings the body to postures of its file, all of them at once, where they have steps one after the other.
+    """Bring the body to postures of its file, all at once, or their steps one after the other.
 
     `bearing` is the angle of a joint that points or looks somewhere. Raises ActionFailed as `bring` does.
     """

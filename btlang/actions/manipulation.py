@@ -8,58 +8,57 @@ from btlang.actions.joints import take
 from btlang.actions.motion import Steps
 from btlang.actions.navigation import accomplish, travel
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Base, Hands, Joints, Navigation
-from btlang.robots.robot import Hand, RobotError
-from btlang.robots.world import said
+from btlang.robots.robot import Base, Hand, Hands, Joints, Navigation, RobotError
+from btlang.robots.worlds.world import said
 
 BESIDE = 1.0
-"""Metres from the robot within which something that it doesn't hold has been put down."""
+"""Metres from the robot within which an object that it doesn't hold has been put down."""
 
 
-class Reaching(Joints, Hands, Protocol):
+class ReachingRobot(Joints, Hands, Protocol):
     """Arms with hands."""
 
 
-class Placing(Base, Reaching, Protocol):
+class PlacingRobot(Base, ReachingRobot, Protocol):
     """Arms with hands on a base."""
 
 
-class Fetching(Navigation, Reaching, Protocol):
-    """The same on a base that finds its way."""
+class FetchingRobot(Navigation, ReachingRobot, Protocol):
+    """Arms with hands on a base that finds its way."""
 
 
 def open_right_hand(robot: Hands) -> Steps:
-    """Opens the hand; what it held is put down."""
+    """Open the hand; what it held is put down."""
     yield from accomplish(robot.release("right"))
 
 
 def open_left_hand(robot: Hands) -> Steps:
-    """Opens the hand; what it held is put down."""
+    """Open the hand; what it held is put down."""
     yield from accomplish(robot.release("left"))
 
 
 def close_right_hand(robot: Hands) -> Steps:
-    """Closes the hand on the nearest object. Fails where nothing is within reach or the hand is full."""
+    """Close the hand on the nearest object. Fails if nothing is within reach or the hand is full."""
     yield from accomplish(robot.grasp("right"))
 
 
 def close_left_hand(robot: Hands) -> Steps:
-    """Closes the hand on the nearest object. Fails where nothing is within reach or the hand is full."""
+    """Close the hand on the nearest object. Fails if nothing is within reach or the hand is full."""
     yield from accomplish(robot.grasp("left"))
 
 
 def grasp(robot: Hands, object: str | None = None) -> Steps:
-    """Closes the right hand on the object, or on the nearest one. Fails as `close_right_hand` does."""
+    """Close the right hand on the object, or on the nearest one. Fails as `close_right_hand` does."""
     yield from accomplish(robot.grasp("right", object))
 
 
 def release(robot: Hands, object: str | None = None) -> Steps:
-    """Opens the hand that holds the object, or any. Fails where none does."""
+    """Open the hand that holds the object, or any. Fails if none does."""
     yield from accomplish(robot.release(_full_hand(robot, object)))
 
 
-def pick_up(robot: Fetching, object: str) -> Steps:
-    """Drives up to the object, grasps it with the right hand and lifts it. Fails where one of these fails."""
+def pick_up(robot: FetchingRobot, object: str) -> Steps:
+    """Drive up to the object, grasp it with the right hand and lift it. Fails if one of these fails."""
     held = robot.holding("right")
     if held is not None:
         raise ActionFailed(f"the right hand already holds {said(held)}")
@@ -69,9 +68,10 @@ def pick_up(robot: Fetching, object: str) -> Steps:
     yield from take(robot, "right arm carrying")
 
 
-def put_down(robot: Placing, object: str | None = None) -> Steps:
-    """Lowers the arm that holds the object (or anything) and opens its hand. Fails where none does, unless the object
-    lies within reach: then it has been put down.
+def put_down(robot: PlacingRobot, object: str | None = None) -> Steps:
+    """Lower the arm that holds the object (or anything) and open its hand.
+
+    Fails if none does, unless the object lies within reach: then it has been put down.
     """
     if object is not None and hand_with(robot, object) is None and _lies_here(robot, object):
         return
@@ -82,7 +82,7 @@ def put_down(robot: Placing, object: str | None = None) -> Steps:
 
 
 def hand_with(robot: Hands, object: str | None = None) -> Hand | None:
-    """The hand that holds the object (or anything), the right one first; None where none does."""
+    """Return the hand that holds the object (or anything), the right one first; None if none does."""
     hands: tuple[Hand, Hand] = ("right", "left")
     for hand in hands:
         held = robot.holding(hand)
@@ -91,8 +91,8 @@ def hand_with(robot: Hands, object: str | None = None) -> Hand | None:
     return None
 
 
-def _lies_here(robot: Placing, object: str) -> bool:
-    """Whether an object lies within reach, as far as the robot knows."""
+def _lies_here(robot: PlacingRobot, object: str) -> bool:
+    """Return whether an object lies within reach, as far as the robot knows."""
     if not robot.body.has("pose"):
         return False
     try:
@@ -109,50 +109,50 @@ def _full_hand(robot: Hands, object: str | None) -> Hand:
 
 
 def raise_right_arm(robot: Joints) -> Steps:
-    """Brings the arm up."""
+    """Bring the arm up."""
     yield from take(robot, "right arm raised")
 
 
 def raise_left_arm(robot: Joints) -> Steps:
-    """Brings the arm up."""
+    """Bring the arm up."""
     yield from take(robot, "left arm raised")
 
 
 def raise_both_arms(robot: Joints) -> Steps:
-    """Brings both arms up together."""
+    """Bring both arms up together."""
     yield from take(robot, "left arm raised", "right arm raised")
 
 
 def lower_right_arm(robot: Joints) -> Steps:
-    """Lets the arm hang."""
+    """Let the arm hang."""
     yield from take(robot, "right arm hanging")
 
 
 def lower_left_arm(robot: Joints) -> Steps:
-    """Lets the arm hang."""
+    """Let the arm hang."""
     yield from take(robot, "left arm hanging")
 
 
 def lower_both_arms(robot: Joints) -> Steps:
-    """Lets both arms hang."""
+    """Let both arms hang."""
     yield from take(robot, "left arm hanging", "right arm hanging")
 
 
 def stretch_right_arm(robot: Joints) -> Steps:
-    """Stretches the arm out ahead."""
+    """Stretch the arm out ahead."""
     yield from take(robot, "right arm stretched")
 
 
 def stretch_left_arm(robot: Joints) -> Steps:
-    """Stretches the arm out ahead."""
+    """Stretch the arm out ahead."""
     yield from take(robot, "left arm stretched")
 
 
 def retract_right_arm(robot: Joints) -> Steps:
-    """Folds the arm to the body."""
+    """Fold the arm to the body."""
     yield from take(robot, "right arm folded")
 
 
 def retract_left_arm(robot: Joints) -> Steps:
-    """Folds the arm to the body."""
+    """Fold the arm to the body."""
     yield from take(robot, "left arm folded")

@@ -7,12 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 
-from btlang.actions.manner import share_of
-from btlang.actions.points import where
-from btlang.actions.watch import BaseWatch, Driving
+from btlang.actions.common import BaseWatch, DrivingRobot, share_of, where
 from btlang.engine.leaves.leaf import ActionFailed, unheard
 from btlang.robots.geometry import wrap
-from btlang.robots.progress import Approach, Progress
+from btlang.robots.motion.progress import Approach, DriveProgress
 
 Steps = Generator[None, None, None]
 Report = Callable[[float], object]
@@ -24,53 +22,53 @@ _STRAIGHTENING = 2.0  # degrees a second for each degree off course
 
 
 def move_forward(
-    robot: Driving,
+    robot: DrivingRobot,
     distance: float,
     speed: float | None = None,
     manner: str | None = None,
     progress: Report = unheard,
 ) -> Steps:
-    """Drives straight ahead by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
+    """Drive straight ahead by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
     yield from drive_straight(robot, distance, _speed(robot, speed, manner), progress)
 
 
 def move_backward(
-    robot: Driving,
+    robot: DrivingRobot,
     distance: float,
     speed: float | None = None,
     manner: str | None = None,
     progress: Report = unheard,
 ) -> Steps:
-    """Drives straight back by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
+    """Drive straight back by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
     yield from drive_straight(robot, -distance, _speed(robot, speed, manner), progress)
 
 
-def _speed(robot: Driving, speed: float | None, manner: str | None) -> float:
+def _speed(robot: DrivingRobot, speed: float | None, manner: str | None) -> float:
     return share_of(robot, manner) * (speed or robot.normal_speed)
 
 
-def turn_left(robot: Driving, angle: float, progress: Report = unheard) -> Steps:
-    """Turns on the spot by `angle` degrees counter-clockwise, to the degree."""
+def turn_left(robot: DrivingRobot, angle: float, progress: Report = unheard) -> Steps:
+    """Turn on the spot by `angle` degrees counter-clockwise, to the degree."""
     yield from turn(robot, angle, progress)
 
 
-def turn_right(robot: Driving, angle: float, progress: Report = unheard) -> Steps:
-    """Turns on the spot by `angle` degrees clockwise, to the degree."""
+def turn_right(robot: DrivingRobot, angle: float, progress: Report = unheard) -> Steps:
+    """Turn on the spot by `angle` degrees clockwise, to the degree."""
     yield from turn(robot, -angle, progress)
 
 
-def turn_around(robot: Driving) -> Steps:
-    """Turns on the spot to where its back was."""
+def turn_around(robot: DrivingRobot) -> Steps:
+    """Turn on the spot to where its back was."""
     yield from turn(robot, 180.0)
 
 
-def turn_once_around(robot: Driving) -> Steps:
-    """Turns on the spot by a full turn."""
+def turn_once_around(robot: DrivingRobot) -> Steps:
+    """Turn on the spot by a full turn."""
     yield from turn(robot, 360.0)
 
 
-def stop(robot: Driving) -> Steps:
-    """Brings the base to rest. Fails if it does not come to rest within the patience of the robot."""
+def stop(robot: DrivingRobot) -> Steps:
+    """Bring the base to rest. Fails if it does not come to rest within the patience of the robot."""
     robot.drive(0.0, 0.0)
     until = robot.time + robot.body.patience
     while (velocity := robot.velocity) != (0.0, 0.0):
@@ -81,25 +79,29 @@ def stop(robot: Driving) -> Steps:
         yield
 
 
-def face_place(robot: Driving, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
-    """Turns on the spot towards a place or a point."""
+def face_place(robot: DrivingRobot, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
+    """Turn on the spot towards a place or a point."""
     yield from turn(robot, robot.pose.bearing_to(where(robot, place, x, y)))
 
 
-def face_person(robot: Driving, person: str) -> Steps:
-    """Turns on the spot towards a person."""
+def face_person(robot: DrivingRobot, person: str) -> Steps:
+    """Turn on the spot towards a person."""
     yield from turn(robot, robot.pose.bearing_to(robot.locate(person)))
 
 
-def face_object(robot: Driving, object: str) -> Steps:
-    """Turns on the spot towards an object."""
+def face_object(robot: DrivingRobot, object: str) -> Steps:
+    """Turn on the spot towards an object."""
     yield from turn(robot, robot.pose.bearing_to(robot.locate(object)))
 
 
-def drive_straight(robot: Driving, distance: float, speed: float | None = None, progress: Report = unheard) -> Steps:
-    """Drives `distance` metres along the heading (negative: backwards), keeps the course, and brakes."""
+def drive_straight(
+    robot: DrivingRobot, distance: float, speed: float | None = None, progress: Report = unheard
+) -> Steps:
+    """Drive `distance` metres along the heading (negative: backwards), keep the course, and brake."""
     start, watch = robot.pose, BaseWatch(robot)
-    bounds = Progress(distance, _CLOSE_ENOUGH, False, lambda: robot.time, robot.body.patience, lambda: robot.limited_by)
+    bounds = DriveProgress(
+        distance, _CLOSE_ENOUGH, False, lambda: robot.time, robot.body.patience, lambda: robot.limited_by
+    )
     driving = robot.body.driving
     limit = min(driving.speed if speed is None else abs(speed), driving.top_speed)
     approach = Approach(limit, 3.0, driving.slowing, _SLOWEST)
@@ -120,12 +122,12 @@ def drive_straight(robot: Driving, distance: float, speed: float | None = None, 
         robot.drive(0.0, 0.0)
 
 
-def turn(robot: Driving, angle: float, progress: Report = unheard) -> Steps:
-    """Turns on the spot by `angle` degrees (left positive; more than a whole turn is fine) and brakes."""
+def turn(robot: DrivingRobot, angle: float, progress: Report = unheard) -> Steps:
+    """Turn on the spot by `angle` degrees (left positive; more than a whole turn is fine) and brake."""
     heading, turned, watch = robot.pose.heading, 0.0, BaseWatch(robot)
     turning = robot.body.turning
     approach = Approach(turning.speed, 4.0, turning.slowing, _SLOWEST_TURN)
-    bounds = Progress(angle, _ANGLE_CLOSE_ENOUGH, True, lambda: robot.time, robot.body.patience)
+    bounds = DriveProgress(angle, _ANGLE_CLOSE_ENOUGH, True, lambda: robot.time, robot.body.patience)
     try:
         while True:
             turned += wrap(robot.pose.heading - heading)

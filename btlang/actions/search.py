@@ -6,15 +6,13 @@ from collections.abc import Callable
 from contextlib import closing
 from typing import Protocol
 
+from btlang.actions.common import DrivingRobot, Watch, spot, things_described
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, go_to, travel
-from btlang.actions.nouns import described
-from btlang.actions.points import spot
 from btlang.actions.sensing import holding
-from btlang.actions.watch import Driving, Watch
 from btlang.engine.leaves.leaf import ActionFailed, Failed
-from btlang.robots.capabilities import Hands, Navigation, Perception
-from btlang.robots.world import said
+from btlang.robots.robot import Hands, Navigation, Perception
+from btlang.robots.worlds.world import said
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -25,92 +23,94 @@ COUNT = "@_count"
 _AROUND = 360.0
 
 
-class Searching(Perception, Navigation, Driving, Hands, Protocol):
-    """It goes about and recognises what it sees."""
+class SearchingRobot(Perception, Navigation, DrivingRobot, Hands, Protocol):
+    """A robot that moves about and recognises what it sees."""
 
 
 def look_for_person(
-    robot: Searching, person: str, place: str | None = None, x: float | None = None, y: float | None = None
+    robot: SearchingRobot, person: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
-    """Searches a place, or all of them, until a person is in view. Fails where he or she is in none."""
+    """Search a place, or all of them, until a person is in view. Fails if they are in none."""
     yield from _search(robot, person, lambda: robot.sees(person), place, x, y)
 
 
 def look_for_object(
-    robot: Searching, object: str, place: str | None = None, x: float | None = None, y: float | None = None
+    robot: SearchingRobot, object: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
-    """Searches a place, or all of them, until an object is in view or in a hand. Fails where it is in none."""
+    """Search a place, or all of them, until an object is in view or in a hand. Fails if it is in none."""
     if robot.body.has("holding") and holding(robot, object):
         return
     yield from _search(robot, object, lambda: robot.sees(object), place, x, y)
 
 
 def look_for_someone(
-    robot: Searching, place: str | None = None, x: float | None = None, y: float | None = None
+    robot: SearchingRobot, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
-    """Searches a place, or all of them, until anybody is in view. Fails where nobody is."""
+    """Search a place, or all of them, until anybody is in view. Fails if nobody is."""
     yield from _search(robot, None, lambda: bool(robot.seen("person")), place, x, y)
 
 
 def find_person(
-    robot: Searching, person: str, place: str | None = None, x: float | None = None, y: float | None = None
+    robot: SearchingRobot, person: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
-    """Looks for a person and goes there."""
+    """Look for a person and go there."""
     yield from look_for_person(robot, person, place, x, y)
     yield from travel(robot, person)
 
 
 def find_object(
-    robot: Searching, object: str, place: str | None = None, x: float | None = None, y: float | None = None
+    robot: SearchingRobot, object: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
-    """Looks for an object and goes there."""
+    """Look for an object and go there."""
     yield from look_for_object(robot, object, place, x, y)
     yield from travel(robot, object)
 
 
-def find_someone(robot: Searching, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
-    """Looks for anybody and goes there."""
+def find_someone(
+    robot: SearchingRobot, place: str | None = None, x: float | None = None, y: float | None = None
+) -> Steps:
+    """Look for anybody and go there."""
     yield from look_for_someone(robot, place, x, y)
     for person in robot.seen("person")[:1]:
         yield from travel(robot, person)
 
 
 def count_people(
-    robot: Searching,
+    robot: SearchingRobot,
     blackboard: Blackboard,
     place: str | None = None,
     x: float | None = None,
     y: float | None = None,
 ) -> Steps:
-    """Counts the people in view from a place or a point, or from where the robot is, while it turns once around."""
+    """Count the people in view from a place or a point, or from where the robot is, while it turns once around."""
     yield from _count(robot, blackboard, "person", place, x, y)
 
 
 def count_objects(
-    robot: Searching,
+    robot: SearchingRobot,
     blackboard: Blackboard,
     place: str | None = None,
     x: float | None = None,
     y: float | None = None,
 ) -> Steps:
-    """Counts the objects in view from a place or a point, or from where the robot is, while it turns once around."""
+    """Count the objects in view from a place or a point, or from where the robot is, while it turns once around."""
     yield from _count(robot, blackboard, "object", place, x, y)
 
 
 def count_kind(
-    robot: Searching,
+    robot: SearchingRobot,
     blackboard: Blackboard,
     kinds: str,
     place: str | None = None,
     x: float | None = None,
     y: float | None = None,
 ) -> Steps:
-    """Counts the objects of a kind, as `count_objects` counts all."""
+    """Count the objects of a kind, as `count_objects` counts all."""
     yield from _count(robot, blackboard, "object", place, x, y, kinds)
 
 
 def count(blackboard: Blackboard) -> int | Failed:
-    """How many the robot counted last. Fails where it hasn't counted."""
+    """Return how many the robot counted last. Fails if it hasn't counted."""
     if COUNT not in blackboard:
         raise ActionFailed("nothing was counted")
     return int(blackboard.get(COUNT))
@@ -124,7 +124,7 @@ def counted(
     at_most: float | None = None,
     equal: float | None = None,
 ) -> bool | Failed:
-    """Whether the robot counted so many last. Fails where it hasn't counted."""
+    """Return whether the robot counted so many last. Fails if it hasn't counted."""
     found = count(blackboard)
     if isinstance(found, Failed):
         return found
@@ -139,7 +139,7 @@ def counted(
 
 
 def _count(
-    robot: Searching,
+    robot: SearchingRobot,
     blackboard: Blackboard,
     type: str,
     place: str | None,
@@ -155,12 +155,12 @@ def _count(
             yield
             found.update(robot.seen(type))
     if kind:
-        found &= set(described(robot, type, kind=kind))
+        found &= set(things_described(robot, type, kind=kind))
     blackboard.set(COUNT, len(found))
 
 
 def _search(
-    robot: Searching,
+    robot: SearchingRobot,
     name: str | None,
     seen: Callable[[], bool],
     place: str | None,
@@ -180,13 +180,13 @@ def _search(
             yield
 
 
-def _look_in(robot: Searching, place: str | None, x: float | None, y: float | None) -> Steps:
+def _look_in(robot: SearchingRobot, place: str | None, x: float | None, y: float | None) -> Steps:
     yield from go_to(robot, place, x, y)
     yield from turn(robot, _AROUND)
 
 
-def _tour(robot: Searching, name: str | None) -> Steps:
-    """Turns once around here, goes where the robot knows it, and looks into all places."""
+def _tour(robot: SearchingRobot, name: str | None) -> Steps:
+    """Turn once around here, go where the robot knows it, and look into all places."""
     watch = Watch(robot)
     yield from turn(robot, _AROUND)
     if name is not None:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from math import dist, inf, radians
 
-from btlang.actions.points import where
+from btlang.actions.common import where
 from btlang.engine.leaves.leaf import Failed
-from btlang.robots.capabilities import Base, Docking, Hands, Navigation, Power, Sensors
 from btlang.robots.geometry import Point
-from btlang.robots.robot import RobotError, SensorSilent
+from btlang.robots.robot import Base, Docking, Hands, Navigation, Power, RobotError, Sensors, SensorSilent
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -28,35 +27,37 @@ _SIDES = {0.0: "ahead", 90.0: "to the left", 180.0: "behind", 270.0: "to the rig
 
 
 def wall_in_front(robot: Sensors) -> bool:
-    """Whether the next 0.5 m ahead (and the robot's own length, and a margin) are not free of walls and things."""
+    """Return whether the next 0.5 m ahead (plus the robot's own length, and a margin) aren't
+    free of walls and things.
+    """
     return is_blocked(robot, 0.0)
 
 
 def wall_on_left(robot: Sensors) -> bool:
-    """Whether a robot turned left would have a wall in front."""
+    """Return whether a robot turned left would have a wall in front."""
     return is_blocked(robot, 90.0)
 
 
 def wall_on_right(robot: Sensors) -> bool:
-    """Whether a robot turned right would have a wall in front."""
+    """Return whether a robot turned right would have a wall in front."""
     return is_blocked(robot, -90.0)
 
 
 def wall_behind(robot: Sensors) -> bool:
-    """Whether a robot turned around would have a wall in front."""
+    """Return whether a robot turned around would have a wall in front."""
     return is_blocked(robot, 180.0)
 
 
 def path_is_clear(robot: Sensors) -> bool:
-    """The opposite of `wall_in_front`."""
+    """Return the opposite of `wall_in_front`."""
     return not wall_in_front(robot)
 
 
 def is_blocked(robot: Sensors, direction: float) -> bool:
-    """Whether a scan point lies in the strip that the robot would sweep in a direction (degrees left of its heading).
+    """Return whether a scan point lies in the strip that the robot would sweep in a direction (degrees left of ahead).
 
-    The strip is as wide as the robot and a margin, and NEAR_WALL metres beyond its rim: after False, 0.5 m in
-    that direction cannot bump. What the scanner doesn't see counts as blocked, since no valid beam looks there.
+    The strip is as wide as the robot and a margin, and NEAR_WALL metres beyond its rim: after False, 0.5 m in that
+    direction can't bump. What the scanner doesn't see counts as blocked, since no valid beam looks there.
     """
     try:
         along, across = _points(robot, direction)
@@ -67,9 +68,9 @@ def is_blocked(robot: Sensors, direction: float) -> bool:
 
 
 def distance_ahead(robot: Sensors) -> float:
-    """Metres that the robot can drive straight ahead before it touches something; inf beyond the scanner's range.
+    """Return the metres that the robot can drive straight ahead before it touches something.
 
-    Raises SensorSilent where the scanner doesn't see it.
+    inf beyond the scanner's range. Raises SensorSilent if the scanner doesn't look there.
     """
     along, across = _points(robot, 0.0)
     touching = (along > 0.0) & (abs(across) < robot.body.radius)
@@ -78,7 +79,7 @@ def distance_ahead(robot: Sensors) -> float:
 
 
 def _points(robot: Sensors, direction: float) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Scan points in metres along and across a direction. Raises SensorSilent where no valid beam looks there."""
+    """Return scan points in metres along and across a direction. Raises SensorSilent if no valid beam looks there."""
     import numpy as np  # takes longer to import than many missions that sense something else
 
     from btlang.robots.motion.guard.corridor import is_covered
@@ -93,77 +94,77 @@ def _points(robot: Sensors, direction: float) -> tuple[npt.NDArray[np.float64], 
 
 
 def bumped(robot: Sensors) -> bool:
-    """Whether the robot has run into something and not moved away since."""
+    """Return whether the robot has run into something and not moved away since."""
     return robot.bumped
 
 
 def stuck(robot: Base) -> bool:
-    """Whether the robot is commanded to move and does not."""
+    """Return whether the robot is commanded to move and does not."""
     return robot.stuck
 
 
 def battery_level(robot: Power) -> float:
-    """Percent left."""
+    """Return the percentage that is left."""
     return robot.battery
 
 
 def battery_low(robot: Power) -> bool:
-    """Whether less than 20% is left."""
+    """Return whether less than 20% is left."""
     return robot.battery < LOW_BATTERY
 
 
 def battery_sufficient(robot: Power) -> bool:
-    """Whether more than 30% is left."""
+    """Return whether more than 30% is left."""
     return robot.battery > SUFFICIENT_BATTERY
 
 
 def battery_full(robot: Power) -> bool:
-    """Whether the battery is charged."""
+    """Return whether the battery is charged."""
     return robot.battery >= FULL_BATTERY
 
 
 def docked(robot: Docking) -> bool:
-    """Whether the robot is connected to its dock."""
+    """Return whether the robot is connected to its dock."""
     return robot.docked
 
 
 def charging(robot: Power) -> bool:
-    """Whether the battery is being charged."""
+    """Return whether the battery is being charged."""
     return robot.charging
 
 
 def at_place(robot: Base, place: str | None = None, x: float | None = None, y: float | None = None) -> bool:
-    """Whether the robot is within half a metre of a place or a point."""
+    """Return whether the robot is within half a metre of a place or a point."""
     return robot.pose.distance_to(where(robot, place, x, y)) <= AT_PLACE
 
 
 def distance_to_place(robot: Base, place: str | None = None, x: float | None = None, y: float | None = None) -> float:
-    """Metres to a place or a point, as the crow flies."""
+    """Return the metres to a place or a point in a straight line."""
     return robot.pose.distance_to(where(robot, place, x, y))
 
 
 def distance_to_person(robot: Base, person: str) -> float:
-    """Metres to a person, as the crow flies."""
+    """Return the metres to a person in a straight line."""
     return robot.pose.distance_to(robot.locate(person))
 
 
 def distance_to_object(robot: Base, object: str) -> float:
-    """Metres to an object, as the crow flies."""
+    """Return the metres to an object in a straight line."""
     return robot.pose.distance_to(robot.locate(object))
 
 
 def place_of_person(robot: Navigation, person: str) -> str:
-    """The name of the place nearest to a person."""
+    """Return the name of the place nearest to a person."""
     return _place_of(robot, person)
 
 
 def place_of_object(robot: Navigation, object: str) -> str:
-    """The name of the place nearest to an object."""
+    """Return the name of the place nearest to an object."""
     return _place_of(robot, object)
 
 
 def place_of_robot(robot: Navigation) -> str:
-    """The name of the place nearest to the robot."""
+    """Return the name of the place nearest to the robot."""
     return _nearest_place(robot, (robot.pose.x, robot.pose.y))
 
 
@@ -176,32 +177,34 @@ def _nearest_place(robot: Navigation, point: Point) -> str:
 
 
 def people_near(robot: Base) -> int:
-    """How many people are within 1.5 m."""
+    """Return how many people are within 1.5 m."""
     return len(robot.nearby_people(NEAR_PERSON))
 
 
 def person_near(robot: Base, person: str) -> bool:
-    """Whether a person is within 1.5 m."""
+    """Return whether a person is within 1.5 m."""
     return robot.pose.distance_to(robot.locate(person)) <= NEAR_PERSON
 
 
 def someone_near(robot: Base) -> bool:
-    """Whether anybody is within 1.5 m."""
+    """Return whether anybody is within 1.5 m."""
     return bool(robot.nearby_people(NEAR_PERSON))
 
 
 def someone_within(robot: Base, distance: float) -> bool:
-    """Whether anybody is at most so many metres away."""
+    """Return whether anybody is at most so many metres away."""
     return bool(robot.nearby_people(distance))
 
 
 def obstacle_within(robot: Sensors, distance: float) -> bool:
-    """Whether the robot can't drive so many metres straight ahead. Raises SensorSilent as `distance_ahead` does."""
+    """Return whether the robot can't drive so many metres straight ahead. Raises SensorSilent as
+    `distance_ahead` does.
+    """
     return distance_ahead(robot) < distance
 
 
 def object_known(robot: Base, object: str) -> bool | Failed:
-    """Whether the robot knows where an object is."""
+    """Return whether the robot knows where an object is."""
     try:
         robot.locate(object)
     except RobotError as problem:
@@ -210,35 +213,35 @@ def object_known(robot: Base, object: str) -> bool | Failed:
 
 
 def object_is_at(robot: Base, object: str, place: str) -> bool:
-    """Whether an object is at a place, as far as the robot knows."""
+    """Return whether an object is at a place, as far as the robot knows."""
     return object in robot.described("object", {"named": object, "at": place})
 
 
 def object_is_on(robot: Base, object: str, container: str) -> bool:
-    """Whether an object is on or in another one, as far as the robot knows."""
+    """Return whether an object is on or in another one, as far as the robot knows."""
     return object in robot.described("object", {"named": object, "on": container})
 
 
 def person_is_at(robot: Base, person: str, place: str) -> bool:
-    """Whether a person is at a place, as far as the robot knows."""
+    """Return whether a person is at a place, as far as the robot knows."""
     return person in robot.described("person", {"named": person, "at": place})
 
 
 def someone_is_at(robot: Base, place: str) -> bool:
-    """Whether anybody is at a place, as far as the robot knows."""
+    """Return whether anybody is at a place, as far as the robot knows."""
     return bool(robot.described("person", {"at": place}))
 
 
 def holding(robot: Hands, object: str) -> bool:
-    """Whether either hand holds the object."""
+    """Return whether either hand holds the object."""
     return object in (robot.holding("left"), robot.holding("right"))
 
 
 def holding_something(robot: Hands) -> bool:
-    """Whether either hand holds anything."""
+    """Return whether either hand holds anything."""
     return robot.holding("left") is not None or robot.holding("right") is not None
 
 
 def hand_empty(robot: Hands) -> bool:
-    """Whether neither hand holds anything."""
+    """Return whether neither hand holds anything."""
     return not holding_something(robot)

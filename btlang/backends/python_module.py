@@ -42,7 +42,7 @@ def to_python(
     """
     lines = [_HEAD]
     if facts:
-        lines = [_HEAD.replace(_TREE, f"\nfrom btlang.robots.world import Place{_TREE}")]
+        lines = [_HEAD.replace(_TREE, f"\nfrom btlang.robots.worlds.world import Place{_TREE}")]
     if isinstance(world, WorldText):
         lines = [lines[0].replace(_TREE, f"\nfrom btlang.text.source import Source{_TREE}")]
     used: list[str] = []

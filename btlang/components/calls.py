@@ -1,40 +1,101 @@
-"""Calls of the methods of a component in its own process, and what they ask of the robot meanwhile."""
+"""Calls of a component's methods in its own process, and values that go between processes as JSON."""
 
 from __future__ import annotations
 
+import base64
 import threading
+from collections.abc import Mapping
 from functools import partial
 from inspect import isgenerator, signature
 from queue import Empty, SimpleQueue
 
-from btlang.components.plain import refused, value_of
-from btlang.engine.leaves.leaf import ActionFailed, Failed, reason_text
-from btlang.robots.capabilities import Robot
+from btlang.devices import kinds
+from btlang.devices.kinds import Command, Reading
+from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown, reason_of, reason_text
+from btlang.record import Record
+from btlang.robots.geometry import Pose
+from btlang.robots.robot import Robot
+from btlang.text.json_text import dump_json, load_json
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
     from typing import Any, Protocol
 
     from btlang.components.component import Component
 
     class Link(Protocol):
-        """The way to a robot: see btlang.components.worker.Worker."""
+        """The link to a robot; see btlang.components.worker.Worker."""
 
         @property
         def component(self) -> Component: ...
         @property
-        def questions(self) -> Questions: ...
+        def questions(self) -> RobotQuestions: ...
         def send(self, message: dict[str, Any]) -> None: ...
-        def ended(self, number: int, outcome: dict[str, Any]) -> None: ...
+        def report_end(self, number: int, outcome: dict[str, Any]) -> None: ...
 
 
+_RECORDS = {
+    each.__name__: each
+    for each in (Pose, *(each for each in vars(kinds).values() if isinstance(each, type)))
+    if issubclass(each, Reading | Command | Pose)
+}
+_RECORD, _BYTES = "record", "bytes"
 _PERIOD = 0.05  # seconds that a `yield` waits
 _AGAIN = 0.2  # seconds after which a question to the robot is asked once more
 
 
-class Questions:
-    """What one thread of the component asks its robot, one thing after the other."""
+def pack(message: object) -> bytes:
+    """Return a message as bytes. Raises TypeError for values that are neither plain data nor a pose, reading or
+    command.
+    """
+    try:
+        return dump_json(message, _other, separators=(",", ":")).encode()
+    except ValueError:
+        raise TypeError("a value that is in itself, or nested too deeply, can't be handed to another process") from None
+
+
+def unpack(data: bytes) -> Any:
+    """Return the message in bytes; tuples become lists. Raises ValueError if it isn't a message."""
+    return load_json(data, _record)
+
+
+def pack_error(problem: BaseException) -> dict[str, Any]:
+    """Return the answer for an exception; `value_of` raises it on the other side."""
+    return {"problem": reason_of(problem), "unknown": isinstance(problem, Unknown)}
+
+
+def value_of(answer: Mapping[str, Any]) -> Any:
+    """Return the value of an answer. Raises ActionFailed, or Unknown, for one that `pack_error` has made."""
+    if "problem" in answer:
+        raise (Unknown if answer.get("unknown") else ActionFailed)(answer["problem"])
+    return answer.get("value")
+
+
+def _other(value: object) -> Any:
+    if isinstance(value, Record) and type(value).__name__ in _RECORDS:
+        return {_RECORD: type(value).__name__, **value.as_dict()}
+    if isinstance(value, bytes | bytearray | memoryview):
+        return {_BYTES: base64.b64encode(value).decode()}
+    if hasattr(value, "tolist"):  # arrays and numbers of numpy
+        return value.tolist()
+    raise TypeError(f"a {type(value).__name__} can't be handed to another process")
+
+
+def _record(data: dict[str, Any]) -> Any:
+    if _BYTES in data and len(data) == 1:
+        return base64.b64decode(data[_BYTES])
+    kind = _RECORDS.get(data[_RECORD]) if isinstance(data.get(_RECORD), str) else None
+    if kind is None:
+        return data
+    try:
+        return kind(**{name: value for name, value in data.items() if name != _RECORD})
+    except TypeError as problem:
+        raise ValueError(str(problem)) from None
+
+
+class RobotQuestions:
+    """The questions of one thread of the component to its robot, one after the other."""
 
     def __init__(self, worker: Link, number: int = 0) -> None:
         self._worker, self.number = worker, number
@@ -44,16 +105,16 @@ class Questions:
         self._asking = threading.Lock()
 
     def halt(self) -> None:
-        """Asks it to end, as the engine does with leaves."""
+        """Ask the thread to end, as the engine does with leaves."""
         self.halted.set()
         self._answers.put({})
 
     def answer(self, message: dict[str, Any]) -> None:
-        """What the robot says to its question."""
+        """Take the robot's answer to the current question."""
         self._answers.put(message)
 
     def ask(self, **question: Any) -> Any:
-        """What the robot says to it. Raises ActionFailed, also once the call was halted."""
+        """Ask the robot; return its answer. Raises ActionFailed, also once the call was halted."""
         with self._asking:
             self._asked += 1
             asked = {"ask": self._asked, "call": self.number, **question}
@@ -69,8 +130,8 @@ class Questions:
         raise ActionFailed("it was halted")
 
 
-class Call(Questions):
-    """One call of a method, in a thread of its own."""
+class MethodCall(RobotQuestions):
+    """One call of a method, in its own thread."""
 
     def __init__(self, worker: Link, number: int, method: str, arguments: Mapping[str, Any]) -> None:
         super().__init__(worker, number)
@@ -78,14 +139,14 @@ class Call(Questions):
         self._stored: dict[str, Any] = {}
 
     def start(self) -> None:
-        """Begins it."""
+        """Begin the call."""
         threading.Thread(target=self._work, name="btlang call", daemon=True).start()
 
     def _work(self) -> None:
         try:
-            self._worker.ended(self.number, {"value": self._result(), "stored": self._stored})
+            self._worker.report_end(self.number, {"value": self._result(), "stored": self._stored})
         except BaseException as problem:
-            self._worker.ended(self.number, refused(problem))
+            self._worker.report_end(self.number, pack_error(problem))
 
     def _result(self) -> object:
         method: Callable[..., Any] = getattr(self._worker.component, self._method)
@@ -113,9 +174,9 @@ class Call(Questions):
 
 
 class RemoteRobot:
-    """The robot as a method of a component gets it: see btlang.robots.robot.Robot. Each use waits for the mission."""
+    """The robot as a method of a component gets it: a Robot. Each use waits for the mission."""
 
-    def __init__(self, call: Call) -> None:
+    def __init__(self, call: MethodCall) -> None:
         self._call = call
 
     def __getattr__(self, name: str) -> Any:
@@ -128,24 +189,21 @@ class RemoteRobot:
 
 
 class RemoteOperation:
-    """See btlang.robots.capabilities.Operation."""
+    """An operation of the robot as a method of a component gets it."""
 
-    def __init__(self, call: Call, number: int) -> None:
+    def __init__(self, call: MethodCall, number: int) -> None:
         self._call, self._number = call, number
 
     @property
     def done(self) -> bool:
-        """See Operation."""
         return bool(self._call.ask(operation=self._number, robot="done"))
 
     @property
     def failure(self) -> str | None:
-        """See Operation."""
         failure: str | None = self._call.ask(operation=self._number, robot="failure")
         return failure
 
     def cancel(self) -> None:
-        """See Operation."""
         self._call.ask(operation=self._number, robot="cancel", args=())
 
 
@@ -156,9 +214,7 @@ class RemoteDevice:
         self._worker, self._questions = worker, worker.questions
 
     def read(self, name: str) -> Any:
-        """See Component.read."""
         return self._questions.ask(device=name)
 
     def write(self, name: str, command: Any) -> None:
-        """See Component.write."""
         self._worker.send({"write": name, "command": command})

@@ -5,22 +5,20 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from btlang.components.component import ComponentError, ParameterError
-from btlang.components.location import WRONG_PARAMETERS, located, words_file
-from btlang.components.order import circle
-from btlang.components.word_checking import check_words
-from btlang.devices.driver import DeviceError
-from btlang.devices.drivers import SIMULATED, driver_class, make_driver
+from btlang.components.location import WRONG_PARAMETERS, locate_class, words_file
+from btlang.components.words import check_words
+from btlang.devices.driver import SIMULATED, DeviceError, driver_class, make_driver
 from btlang.devices.kinds import KINDS
 from btlang.devices.simulated import SimulatedDevice
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.body import Body, ComponentPart, Device
-from btlang.robots.body_file import BodyError, load_body
-from btlang.robots.data_file import DataFileError, as_mission_error, placed
-from btlang.robots.gesture_words import gesture_words
+from btlang.robots.bodies.body import Body, ComponentPart, Device
+from btlang.robots.bodies.body_file import BodyError, load_body
+from btlang.robots.bodies.gesture_words import gesture_words
+from btlang.robots.files import DataFileError, as_mission_error, locate_problems
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem
 from btlang.vocabulary.capabilities import CAPABILITIES
@@ -32,8 +30,41 @@ if TYPE_CHECKING:
 _DESCRIBE = 30.0  # seconds that a class gets to be loaded and to say what it is
 
 
+def circle(needs: Mapping[str, Collection[str]]) -> list[str]:
+    """Return names that need each other in a circle, with the first one again at the end; none without a circle."""
+    done: set[str] = set()
+    for start in needs:
+        path: dict[str, None] = {}
+        stack = [iter([start])]
+        while stack:
+            name = next(stack[-1], None)
+            if name is None:
+                stack.pop()
+                if path:
+                    done.add(path.popitem()[0])
+            elif name in path:
+                names = list(path)
+                return [*names[names.index(name) :], name]
+            elif name not in done:
+                path[name] = None
+                stack.append(iter(sorted(needs.get(name, ()))))
+    return []
+
+
+def levels(needs: Mapping[str, Collection[str]]) -> list[list[str]]:
+    """Return names in groups that come up one after the other: each needs only those of earlier groups."""
+    left, found = dict(needs), list[list[str]]()
+    while left:
+        ready = [name for name, wanted in left.items() if not any(each in left for each in wanted if each != name)]
+        group = ready or list(left)  # a circle, which was reported before
+        found.append(group)
+        for name in group:
+            del left[name]
+    return found
+
+
 def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:
-    """The body of a robot file, None where it can't be read, and what is wrong with the file (BT071, BT076)."""
+    """Return the body of a robot file, None if it can't be read, and what is wrong with the file (BT071, BT076)."""
     try:
         body = load_body(source)
     except DataFileError as error:
@@ -41,10 +72,10 @@ def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:
     found: list[Diagnostic] = []
     described: dict[str, Mapping[str, Any]] = {}
     problems = (*_devices(body), *_components(body, described))
-    for wrong in placed(problems, source, source.name, BodyError):
+    for wrong in locate_problems(problems, source, source.name, BodyError):
         found += as_mission_error(wrong).diagnostics
     all_loaded = all(part.place in described for part in body.components if part.node is None)
-    methods = {located(place): known["methods"] for place, known in described.items()} if all_loaded else {}
+    methods = {locate_class(place): known["methods"] for place, known in described.items()} if all_loaded else {}
     for path in _words(body):
         found += check_words(path, methods)
     try:
@@ -55,7 +86,9 @@ def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:
 
 
 def describe_apart(part: ComponentPart, folder: str) -> Mapping[str, Any]:
-    """What its class says of itself, in a process of its own. Raises ComponentError, or ParameterError."""
+    """Return the description of a component's class, made in another process. Raises
+    ComponentError, or ParameterError.
+    """
     command = [
         sys.executable,
         "-B",
@@ -95,7 +128,7 @@ def _devices(body: Body) -> Iterator[Problem]:
     for (driver, port), members in groups.items():
         yield from _of_driver(body, driver, port, members)
     if body.over == "devices":
-        yield from _lacking(body)
+        yield from _find_missing_devices(body)
 
 
 def _of_driver(body: Body, driver: str, port: str, members: Sequence[tuple[int, Device]]) -> Iterator[Problem]:
@@ -132,8 +165,8 @@ def _of_driver(body: Body, driver: str, port: str, members: Sequence[tuple[int, 
         yield Problem(str(problem), "device", *(named or [index])[:1], "options")
 
 
-def _lacking(body: Body) -> Iterator[Problem]:
-    """What the body has but no device for, though it runs over devices."""
+def _find_missing_devices(body: Body) -> Iterator[Problem]:
+    """Return the parts of the body without a device, though it runs over devices."""
     kinds, names = {device.kind for device in body.devices}, {device.name for device in body.devices}
     parts = {
         "base": ("drive", body.base),
@@ -152,7 +185,7 @@ def _lacking(body: Body) -> Iterator[Problem]:
 
 
 def _components(body: Body, described: dict[str, Mapping[str, Any]]) -> Iterator[Problem]:
-    """Fills `described` with what the class at each place says of itself, where that can be loaded."""
+    """Fill `described` with the descriptions of the classes that can be loaded, by their place."""
     names, devices = {part.name for part in body.components}, {device.name for device in body.devices}
     known = names | devices | set(CAPABILITIES)
     needs: dict[str, set[str]] = {}
@@ -188,7 +221,7 @@ def _words(body: Body) -> list[str]:
         if part.node is not None:
             continue
         try:
-            path = words_file(located(part.place), body.folder)
+            path = words_file(locate_class(part.place), body.folder)
         except ComponentError:
             continue
         if path is not None and path not in found:

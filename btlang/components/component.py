@@ -1,28 +1,65 @@
-"""What a component is: a class with hooks for its life, parameters, and methods that words name."""
+"""What a component is: a class with hooks for its life, its states and transitions, and where one lives."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Protocol
 
 from btlang.engine.leaves.leaf import ActionFailed
+from btlang.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import ClassVar
 
     from btlang.devices.kinds import Command, Reading
 
 
+UNCONFIGURED, INACTIVE, ACTIVE, FINALIZED = STATES = "unconfigured", "inactive", "active", "finalized"
+UPWARDS = ("configure", "activate")
+"""The transitions from unconfigured to active."""
+SHARED = "--shared"
+"""The option of a process that several robots share, before the path of its socket."""
+
+
+class Transition(Record):
+    """A transition between states; `hook` is the component's method for it.
+
+    If the hook raises, the component's `error` hook is called, and the state is `fails`.
+    """
+
+    name: str
+    begins: tuple[str, ...]
+    ends: str
+    hook: str
+    fails: str = UNCONFIGURED
+
+
+TRANSITIONS = {
+    each.name: each
+    for each in (
+        Transition("configure", (UNCONFIGURED,), INACTIVE, "configure"),
+        Transition("activate", (INACTIVE,), ACTIVE, "activate"),
+        Transition("deactivate", (ACTIVE,), INACTIVE, "deactivate"),
+        Transition("clean up", (INACTIVE,), UNCONFIGURED, "clean_up"),
+        Transition("shut down", (UNCONFIGURED, INACTIVE, ACTIVE), FINALIZED, "shut_down", FINALIZED),
+    )
+}
+"""The transitions by name."""
+
+
 class ComponentError(ActionFailed):
-    """Why a component can't be loaded or used, in plain English."""
+    """The reason why a component can't be loaded or used, in plain English."""
 
 
 class ComponentAbsent(ComponentError):
-    """It isn't there, and somebody else has to start it: that is waited for, and isn't a failure."""
+    """The error that a component isn't there and somebody else has to start it, which is waited for and isn't a
+    failure.
+    """
 
 
 class ParameterError(ComponentError):
-    """What is wrong with the parameters in the robot file."""
+    """The reason why parameters in the robot file are wrong."""
 
 
 class Parameter:
@@ -51,8 +88,8 @@ class Parameter:
     def __get__(self, component: Component | None, owner: type) -> Any:
         return self if component is None else component.__dict__.get(self.name, self.default)
 
-    def checked(self, value: object) -> float | str | bool:
-        """The value, as the component gets it. Raises ComponentError."""
+    def check(self, value: object) -> float | str | bool:
+        """Return the value, as the component gets it. Raises ComponentError."""
         if isinstance(self.default, bool) or isinstance(value, bool):
             if not (isinstance(self.default, bool) and isinstance(value, bool)):
                 raise self._wrong("true or false" if isinstance(self.default, bool) else "no flag", value)
@@ -75,7 +112,7 @@ class Parameter:
         return int(value) if whole else float(value)
 
     def described(self) -> dict[str, Any]:
-        """All of it as JSON."""
+        """Return the parameter as JSON."""
         names = ("name", "default", "low", "high", "unit", "help")
         return {name: getattr(self, name) for name in names} | {"choices": list(self.choices)}
 
@@ -84,76 +121,76 @@ class Parameter:
 
 
 class Component:
-    """A part of a robot. Subclasses override the hooks that they need; the constructor takes nothing.
+    """A part of a robot. Subclasses override the hooks that they need; the constructor takes no arguments.
 
     The hooks and `step` are called one at a time, in one thread. A hook that raises leaves the component in error, and
-    one that doesn't end within its time limit is given up. The methods that words name run beside them, in threads of
-    their own or in the thread of the mission: a function, or a generator function in which each `yield` lets time pass.
+    one that doesn't end within its time limit is given up. The methods that words name run concurrently, in their own
+    threads or in the thread of the mission: a function, or a generator function in which each `yield` lets time pass.
     """
 
     needs: ClassVar[Sequence[str]] = ()
     """Names of other components, of devices of the robot file, and capabilities such as "base". Those come up first."""
     version: ClassVar[str] = ""
-    """For people, who compare two versions with it."""
+    """The version, for people who compare two of them."""
     rate: ClassVar[float] = 0.0
     """How often `step` is called, in calls a second; 0: never."""
 
     name = ""
-    """The one in the robot file."""
+    """The name in the robot file."""
     body: Any = None
-    """What the robot file says of the body: see btlang.robots.body.Body."""
+    """The body in the robot file, a btlang.robots.bodies.body.Body."""
     _devices: Mapping[str, Any] = {}
     _report_event: Callable[[str, Mapping[str, Any]], object] = staticmethod(lambda kind, data: None)
 
     def configure(self) -> None:
-        """Gets ready, at rest: parameters and devices are there."""
+        """Get ready, at rest: parameters and devices are available."""
 
     def activate(self) -> None:
-        """Begins to work."""
+        """Begin to work."""
 
     def deactivate(self) -> None:
-        """Ceases to work; what it moves comes to rest."""
+        """Stop working; what it moves comes to rest."""
 
     def clean_up(self) -> None:
-        """Gives back what `configure` took."""
+        """Release what `configure` acquired."""
 
     def shut_down(self) -> None:
-        """Ends for good, from any state."""
+        """End for good, from any state."""
 
     def error(self, problem: Exception) -> None:
-        """After a hook or a step has raised; what it moves comes to rest."""
+        """Bring what it moves to rest, after a hook or a step has raised."""
 
     def step(self, seconds: float) -> None:
-        """While it is active; so many seconds have passed."""
+        """Work for so many seconds while it is active."""
 
     def read(self, device: str) -> Reading:
-        """The latest reading of a device that it needs. Raises DeviceSilent if there is no new one."""
+        """Return the latest reading of a device that it needs. Raises DeviceSilent if there is no new one."""
         reading: Reading = self._device(device).read(device)
         return reading
 
     def write(self, device: str, command: Command) -> None:
-        """Commands a device that it needs; one that moves comes to rest unless it is commanded again in 0.2 s."""
+        """Command a device that it needs; one that moves comes to rest unless it is commanded again in 0.2 s."""
         self._device(device).write(device, command)
 
     def report(self, kind: str, **data: Any) -> None:
-        """Reports an event to the logs and recordings of the mission."""
+        """Report an event to the logs and recordings of the mission."""
         self._report_event(kind, data)
 
     @classmethod
     def parameters(cls) -> dict[str, Parameter]:
-        """Those of the class, by name."""
+        """Return the parameters of the class, by name."""
         found = {name: value for each in reversed(cls.__mro__) for name, value in vars(each).items()}
         return {name: value for name, value in found.items() if isinstance(value, Parameter)}
 
     def set_parameters(self, values: Mapping[str, object]) -> None:
-        """Sets them as a robot file does. Raises ParameterError for those that are unknown or out of their limits."""
+        """Set parameters as a robot file does. Raises ParameterError for unknown ones and for values out of limits."""
         known, problems = self.parameters(), list[str]()
         for name, value in values.items():
             if name not in known:
                 problems.append(f'unknown parameter "{name}"; the parameters are {", ".join(known) or "none"}')
                 continue
             try:
-                self.__dict__[name] = known[name].checked(value)
+                self.__dict__[name] = known[name].check(value)
             except ComponentError as problem:
                 problems.append(str(problem))
         if problems:
@@ -163,3 +200,37 @@ class Component:
         if name not in self._devices:
             raise ComponentError(f'{self.name} has no device "{name}"; name it among its needs')
         return self._devices[name]
+
+
+class Host(Protocol):
+    """The host of one component, from its start to its end.
+
+    The methods are for the thread of its keeper; `leaf` and `ask` are for the one that ticks.
+    """
+
+    def load(self) -> Mapping[str, Any]:
+        """Start the process if it has one and make the component; return its description. Raises ComponentError."""
+
+    def transition(self, name: str) -> None:
+        """Do one of TRANSITIONS. Raises ComponentError if it fails, or doesn't end within its limit."""
+
+    @property
+    def state(self) -> str:
+        """The latest known state: one of STATES."""
+
+    def look(self) -> str | None:
+        """Return why it can't be used any more (it died, hangs, or failed by itself); None if it works."""
+
+    def leaf(
+        self, method: str, outputs: tuple[str, ...], robot: Any, wake: Callable[[], object], beside: set[object]
+    ) -> Any:
+        """Return one use of a method by a command: an object with start, tick and halt; see btlang.engine.leaves.leaf.
+
+        The values of ports in `outputs` are functions that take what the method writes there.
+        """
+
+    def ask(self, method: str, ports: Mapping[str, Any], robot: Any) -> Any:
+        """Return a method's answer to a condition, within the tick. Raises Unknown if it doesn't answer in time."""
+
+    def close(self) -> None:
+        """End the component at once, whatever it does. May be called twice."""

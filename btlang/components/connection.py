@@ -9,18 +9,18 @@ from inspect import Parameter, Signature, isgeneratorfunction, signature
 from btlang.backends.engine import leaf_binding
 from btlang.components.component import ComponentError
 from btlang.components.device_robot import DeviceSimulation
-from btlang.components.gate import Gate
-from btlang.components.hearing import Hearing
 from btlang.components.inside_host import InsideHost
-from btlang.components.manager import Keeper, Manager, class_of
+from btlang.components.manager import ComponentKeeper, ComponentManager, class_of
+from btlang.components.parts.hearing import Hearing
 from btlang.components.process_host import ProcessHost
-from btlang.devices.device_set import DeviceSet
+from btlang.devices.device_set import DeviceSet, Reads
 from btlang.devices.driver import DeviceError
+from btlang.devices.kinds import KINDS, Command, Reading
 from btlang.devices.simulated import twin
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.body_file import unusable_robot
-from btlang.robots.platforms import node_function
-from btlang.robots.simulation import Simulation
+from btlang.robots.bodies.body_file import unusable_robot
+from btlang.robots.platforms import NODES, import_function
+from btlang.robots.simulation.connection import Simulation
 from btlang.run.events import RobotEvent
 from btlang.speech.recogniser import RecogniserError
 from btlang.vocabulary.entry import COMPARISONS, MEASURED
@@ -29,9 +29,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.components.host import Host
+    from btlang.components.component import Host
     from btlang.engine.leaves.leaf import LeafBinding
-    from btlang.robots.body import Body, ComponentPart, RosNode
+    from btlang.robots.bodies.body import Body, ComponentPart, RosNode
     from btlang.run.bus import Bus
     from btlang.run.connection import Connection
     from btlang.run.controls import Controls
@@ -44,8 +44,29 @@ _WAITING = 1000  # events between two ticks: what is more is lost, but nothing o
 _UP = 30.0  # seconds that all components get to come up before the first mission; who is later is waited for no more
 
 
+class DeviceGate:
+    """Devices for components. A device that moves and isn't commanded again comes to rest by itself."""
+
+    def __init__(self, devices: Reads, kind: str, robot: Any) -> None:
+        self._devices, self._rest, self._robot = devices, KINDS[kind].rest, robot
+
+    def read(self, name: str) -> Reading:
+        """Return the latest reading. Raises DeviceSilent."""
+        return self._devices.read(name)
+
+    def write(self, name: str, command: Command) -> None:
+        """Command a device. Raises DeviceError while the robot is stopped, or for an invalid command."""
+        if self._rest is not None and command != self._rest and self._robot.refuses:
+            raise DeviceError(f"the {name} isn't moved: the robot is stopped")
+        self._devices.write(name, command)
+
+    def silent(self, name: str) -> str | None:
+        """Return why it is silent."""
+        return self._devices.silent(name)
+
+
 class ComponentConnection:
-    """See btlang.run.connection.Connection: another one, with the components and devices of a body."""
+    """A connection with the components and devices of a body added to it."""
 
     def __init__(self, inner: Connection, body: Body) -> None:
         self._inner, self._body = inner, body
@@ -61,10 +82,10 @@ class ComponentConnection:
             self.devices = DeviceSet(mine, inner.robot, self._post)
             self.devices.start()
         has_nodes = any(part.node is not None for part in body.components)
-        self._nodes: Any = node_function()(inner.robot, body) if has_nodes else None
+        self._nodes: Any = import_function(NODES)(inner.robot, body) if has_nodes else None
         kinds = {name: device.kind for name, device in self.devices.devices.items()}
-        self._gates = {name: Gate(reads, kinds[name], self.robot) for name, reads in self.devices.readers.items()}
-        self.manager = Manager(body.components, self._host, self._post, self._in_use)
+        self._gates = {name: DeviceGate(reads, kinds[name], self.robot) for name, reads in self.devices.readers.items()}
+        self.manager = ComponentManager(body.components, self._host, self._post, self._in_use)
         self._hearing = Hearing(body, self.robot, self.devices, self._post) if body.ears and body.ears.engine else None
         self.robot.on_step = self._step
         self.manager.start()
@@ -72,11 +93,12 @@ class ComponentConnection:
 
     @property
     def bus(self) -> Bus:
-        """See Connection."""
         return self._inner.bus
 
     def bind(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
-        """See Connection. A word whose `call` is a method of a component is done by it, as it is by then."""
+        """Implement Connection. A word whose `call` is a method of a component uses the component as it is at that
+        time.
+        """
         if entry.ros is not None and self._nodes is not None:
             return self._bound_to_node(entry, vocabulary)
         place, _, method = entry.call.rpartition(".") if isinstance(entry.call, str) else ("", "", "")
@@ -84,11 +106,13 @@ class ComponentConnection:
         if keeper is None:
             return self._inner.bind(entry, vocabulary)
         self._used.add(keeper.part.name)
-        call = _asking(keeper, method, entry) if entry.sort == "condition" else _leaf_class(keeper, method, entry)
+        call = (
+            _make_condition(keeper, method, entry) if entry.sort == "condition" else _leaf_class(keeper, method, entry)
+        )
         return leaf_binding(entry, vocabulary, call, entry.slots).replace(thread=False)  # type: ignore[no-any-return]
 
     def _bound_to_node(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
-        """A word with a `ros` table. Where it uses what is below the name of a component, it fails with that."""
+        """Bind a word with a `ros` table. If it uses a name below that of a component, it fails with the component."""
         bound = self._inner.bind(entry, vocabulary) or self._nodes.bind(entry, vocabulary)
         assert entry.ros is not None
         name = f"/{entry.ros.name.lstrip('/')}"
@@ -96,24 +120,20 @@ class ComponentConnection:
         if keeper is None or bound is None:
             return bound
         self._used.add(keeper.part.name)
-        return bound.replace(call=_led(keeper, bound.call))  # type: ignore[no-any-return]
+        return bound.replace(call=_guard_leaf(keeper, bound.call))  # type: ignore[no-any-return]
 
     def check(self, tree: Tree, vocabulary: Lexicon) -> None:
-        """See Connection."""
         self._inner.check(tree, vocabulary)
 
     def begin(self, bus: Bus) -> None:
-        """See Connection."""
         self._used.clear()
         self._inner.begin(bus)
         self._flush()
 
     def pace(self, speed: float, controls: Controls) -> Pace:
-        """See Connection."""
         return self._inner.pace(speed, controls)
 
     def close(self) -> None:
-        """See Connection."""
         try:
             if self._hearing is not None:
                 self._hearing.close()
@@ -141,11 +161,11 @@ class ComponentConnection:
         return name in self._used and not self.bus.closed
 
     def _post(self, kind: str, data: Mapping[str, Any]) -> None:
-        """From any thread; who watches the mission hears of it from the thread that ticks."""
+        """Post an event from any thread; the thread that ticks emits it."""
         self._changes.append((kind, data))
 
     def _post_from_component(self, kind: str, data: Mapping[str, Any]) -> None:
-        """What a component reports; it never counts as an event of the robot itself."""
+        """Post what a component reports; it never counts as an event of the robot itself."""
         self._said.append((kind, data))
 
     def _step(self, seconds: float) -> None:
@@ -168,24 +188,24 @@ def _is_below(name: str, node: RosNode | None) -> bool:
     return node is not None and name.startswith(f"{node.name}/")
 
 
-def _led(keeper: Keeper, call: Callable[..., Any]) -> Callable[..., Any]:
-    """A leaf that fails as soon as its component isn't active."""
+def _guard_leaf(keeper: ComponentKeeper, call: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a leaf that fails as soon as its component isn't active."""
     led: Any
 
     def steps(**ports: Any) -> Generator[object, Any, object]:
-        keeper.working()
+        keeper.active_host()
         generator = call(**ports)
         try:
             while True:
                 yield next(generator)
-                keeper.working()
+                keeper.active_host()
         except StopIteration as end:
             return end.value
         finally:
             generator.close()
 
     def once(**ports: Any) -> Any:
-        keeper.working()
+        keeper.active_host()
         return call(**ports)
 
     led = steps if isgeneratorfunction(call) else once
@@ -193,17 +213,17 @@ def _led(keeper: Keeper, call: Callable[..., Any]) -> Callable[..., Any]:
     return led  # type: ignore[no-any-return]
 
 
-def _asking(keeper: Keeper, method: str, entry: Entry) -> Callable[..., Any]:
+def _make_condition(keeper: ComponentKeeper, method: str, entry: Entry) -> Callable[..., Any]:
     def ask(robot: Any, **ports: Any) -> Any:
-        return keeper.working().ask(method, ports, robot)
+        return keeper.active_host().ask(method, ports, robot)
 
     names = ["robot", *(slot.name for slot in entry.slots if slot.name not in (*COMPARISONS, MEASURED))]
     ask.__signature__ = Signature([Parameter(name, Parameter.KEYWORD_ONLY) for name in names])  # type: ignore[attr-defined]
     return ask
 
 
-def _leaf_class(keeper: Keeper, method: str, entry: Entry) -> type:
-    """A class leaf that asks at each start where the component lives by then: it may have been started again."""
+def _leaf_class(keeper: ComponentKeeper, method: str, entry: Entry) -> type:
+    """Return a leaf class that asks for the component's host at each start: it may have been restarted."""
 
     class ComponentLeaf:
         def __init__(self, robot: Any, wake: Callable[[], object], beside: set[object]) -> None:
@@ -211,7 +231,7 @@ def _leaf_class(keeper: Keeper, method: str, entry: Entry) -> type:
             self._leaf: Any = None
 
         def start(self, **ports: Any) -> object:
-            host = keeper.working()
+            host = keeper.active_host()
             self._leaf = host.leaf(method, entry.outputs, self._robot, self._wake, self._beside)
             return self._leaf.start(**ports)
 
@@ -225,8 +245,9 @@ def _leaf_class(keeper: Keeper, method: str, entry: Entry) -> type:
 
 
 def component_connection(connect: Callable[[], Connection], body: Body) -> Connection:
-    """What `connect` gives, with the components and devices of the body. Raises MissionError (BT071) for those that
-    can't be.
+    """Return the connection of `connect`, with the components and devices of the body.
+
+    Raises MissionError (BT071) for those that can't be used.
     """
     inner: Connection | None = None
     try:

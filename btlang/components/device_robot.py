@@ -6,17 +6,16 @@ import math
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 
-from btlang.components.parts import device_parts
+from btlang.components.parts.parts import device_parts
 from btlang.devices.device_set import DeviceSet
-from btlang.devices.driver import DeviceError
-from btlang.devices.drivers import SIMULATED
+from btlang.devices.driver import SIMULATED, DeviceError
 from btlang.devices.simulated import twin, twins
-from btlang.robots.body import Sensor
-from btlang.robots.body_file import unusable_robot
+from btlang.robots.bodies.body import Sensor
+from btlang.robots.bodies.body_file import unusable_robot
 from btlang.robots.platforms import ALL
 from btlang.robots.robot import RobotError
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.simulation import Simulation
+from btlang.robots.simulation.connection import Simulation
+from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.run.controls import Controls
 from btlang.run.pace import Pace
 
@@ -24,19 +23,19 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.robots.body import Body, Device
-    from btlang.robots.obstacles import Obstacles
+    from btlang.robots.bodies.body import Body, Device
     from btlang.robots.parts import Parts
-    from btlang.robots.world import World
+    from btlang.robots.worlds.obstacles import Obstacles
+    from btlang.robots.worlds.world import World
 
 _CONTROL = 0.05  # seconds between two looks at the devices, however slowly a mission ticks
 _EYES = Sensor("scanner", "", 100.0)  # of the twin of a robot without a scanner, for its other sensors
 
 
 class DeviceSimulation(Simulation):
-    """See btlang.run.connection.Connection. `devices` are those of the body; simulated ones act on a twin of the robot.
+    """A connection whose robot has `devices`; simulated ones act on a twin of the robot in a world.
 
-    With only simulated devices it is as fast as one is asked for, and deterministic; else it goes with real time.
+    With only simulated devices it runs as fast as requested, and deterministically; otherwise in real time.
     """
 
     def __init__(self, world: World, body: Body) -> None:
@@ -46,7 +45,7 @@ class DeviceSimulation(Simulation):
         self.devices.start()
 
     def pace(self, speed: float, controls: Controls) -> Pace:
-        """Raises ValueError for another speed than 1 where devices are real."""
+        """Return the pace. Raises ValueError for another speed than 1 if devices are real."""
         if not self.real:
             return super().pace(speed, controls)
         if speed != 1.0:
@@ -54,7 +53,7 @@ class DeviceSimulation(Simulation):
         return DevicePace(controls, self.robot.step)
 
     def close(self) -> None:
-        """Brings what moves to rest, and lets go of the ports."""
+        """Bring what moves to rest, and close the ports."""
         self.robot.disable()
         self.devices.close()
 
@@ -69,7 +68,7 @@ class DeviceSimulation(Simulation):
         return device_parts(world, obstacles, body, self.devices, self._advance, locate)
 
     def _advance(self, seconds: float) -> None:
-        """The twin lives on; where the wheels are real, it is put where they are."""
+        """Step the twin; if the wheels are real, it is put where they are."""
         self.devices.step()
         if not self._drives:
             with suppress(RobotError):  # it stays where it was seen last
@@ -78,14 +77,13 @@ class DeviceSimulation(Simulation):
 
 
 class DevicePace(Pace):
-    """Real time. While it waits for the next tick, however slowly a mission ticks, it reads and commands devices."""
+    """A pace of real time. Between ticks, however rare, it reads and commands devices."""
 
     def __init__(self, controls: Controls, step: Callable[[float], object]) -> None:
         super().__init__(1.0, controls)
         self._step = step
 
     def sleep(self, period: float, wait: float = math.inf) -> float:
-        """See Pace."""
         left, total = min(period, wait), 0.0
         while left > 1.5 * _CONTROL and not self._woken:
             passed = super().sleep(_CONTROL)
@@ -96,17 +94,19 @@ class DevicePace(Pace):
 
 
 def connect_devices(world: World, *, body: Body, simulate: Sequence[str] = (), **options: Any) -> DeviceSimulation:
-    """A connection to the devices of a body; those whose name or kind is in `simulate` (ALL: every one, and what the
-    body has no device for) are simulated. Raises MissionError (BT071) for devices that can't be used.
+    """Return a connection to the devices of a body.
+
+    Those whose name or kind is in `simulate` are simulated (ALL: every one, and what the body has no device for).
+    Raises MissionError (BT071) for devices that can't be used.
     """
     try:
-        return DeviceSimulation(world, body.replace(devices=simulated_devices(body, simulate)))
+        return DeviceSimulation(world, body.replace(devices=simulate_devices(body, simulate)))
     except DeviceError as problem:
         raise unusable_robot(problem) from None
 
 
-def simulated_devices(body: Body, names: Sequence[str]) -> tuple[Device, ...]:
-    """The devices of a body, some of them simulated. Raises DeviceError for a name that none of them has."""
+def simulate_devices(body: Body, names: Sequence[str]) -> tuple[Device, ...]:
+    """Return the devices of a body, some of them simulated. Raises DeviceError for an unknown name."""
     if ALL in names:
         return twins(body)
     known = {name for device in body.devices for name in (device.name, device.kind)}

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btlang.components.checking import check_robot, describe_apart
+from btlang.components.checking import check_robot, describe_apart, levels
 from btlang.components.component import ComponentError
-from btlang.components.order import levels
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
-from btlang.robots.body import Body, ComponentPart
-from btlang.robots.body_file import BodyError, read_body
-from btlang.robots.data_file import as_mission_error
-from btlang.robots.motion.urdf import urdf
+from btlang.robots.bodies.body import Body, ComponentPart
+from btlang.robots.bodies.body_file import BodyError, read_body
+from btlang.robots.files import as_mission_error
 from btlang.text.escaping import one_line
 from btlang.text.output import pass_on, show
 from btlang.text.source import Source
@@ -21,19 +19,21 @@ _OF_NODES = {"version": "", "needs": []}
 
 
 def serve_file(act: str, path: str) -> int:
-    """Checks a robot file, draws the robot, writes it as URDF, or makes a robot file of URDF; returns the exit code.
+    """Check, draw or import a robot file, or write it as URDF; return the exit code.
 
-    Raises MissionError with all that is wrong.
+    Raises MissionError with everything that is wrong.
     """
     source = read_source(path)
     if act == "urdf":
+        from btlang.robots.bodies.urdf import urdf  # brings numpy
+
         pass_on(urdf(read_body(source)))
         return 0
     if act == "import":
-        pass_on(_imported(source))
+        pass_on(_import_urdf(source))
         return 0
     if act == "show":
-        show("\n".join(drawn(read_body(source))))
+        show("\n".join(draw_robot(read_body(source))))
         return 0
     problems = check_robot(source)[1]
     if problems:
@@ -42,8 +42,8 @@ def serve_file(act: str, path: str) -> int:
     return 0
 
 
-def _imported(source: Source) -> str:
-    from btlang.robots.motion.urdf_reader import read_urdf  # brings numpy
+def _import_urdf(source: Source) -> str:
+    from btlang.robots.bodies.urdf import read_urdf  # brings numpy
 
     try:
         return read_urdf(source).toml
@@ -51,8 +51,8 @@ def _imported(source: Source) -> str:
         raise as_mission_error(problem) from None
 
 
-def drawn(body: Body) -> Iterator[str]:
-    """The robot as lines: its body, its components as they come up, and its devices by their port."""
+def draw_robot(body: Body) -> Iterator[str]:
+    """Return the robot as lines: its body, its components in starting order, and its devices by their port."""
     yield f"{one_line(body.name)}, over {body.over}"
     yield from _tree([(part, []) for part in _parts(body)])
     if body.components:

@@ -7,21 +7,20 @@ from collections.abc import Callable, Generator, Mapping
 from functools import lru_cache
 from inspect import isgenerator, signature
 
-from btlang.components.component import Component, ComponentError
-from btlang.components.life_cycle import ACTIVE, TRANSITIONS, UNCONFIGURED
+from btlang.components.component import ACTIVE, TRANSITIONS, UNCONFIGURED, Component, ComponentError
 from btlang.components.location import describe, load_class
 from btlang.engine.leaves.leaf import ActionFailed, NotThere, described, reason_of
-from btlang.robots.proxy import RobotProxy
+from btlang.robots.command_gate import RobotProxy
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.robots.body import Body, ComponentPart
+    from btlang.robots.bodies.body import Body, ComponentPart
 
 
 class InsideHost:
-    """See btlang.components.host.Host. A hook that doesn't end in time goes on in its thread, without its devices."""
+    """A host in the robot's process. A hook that doesn't end in time goes on in its thread, without its devices."""
 
     process = None
 
@@ -41,7 +40,6 @@ class InsideHost:
         self.problem = ""
 
     def load(self) -> Mapping[str, Any]:
-        """See Host."""
         part = self._part
         component = self._component = load_class(part.place, self._body.folder)()
         component.name, component.body = part.name, self._body
@@ -50,7 +48,6 @@ class InsideHost:
         return describe(component)
 
     def transition(self, name: str) -> None:
-        """See Host."""
         transition, problems = TRANSITIONS[name], list[BaseException]()
         if self.state not in transition.begins:
             raise ComponentError(f"it can't {name}: it is {self.state}")
@@ -74,11 +71,10 @@ class InsideHost:
         self.state = transition.ends
 
     def look(self) -> str | None:
-        """See Host."""
         return self.problem or None
 
     def step(self, seconds: float) -> None:
-        """Lets so many seconds pass for it, in the thread that ticks."""
+        """Let so many seconds pass for the component, in the thread that ticks."""
         component = self._component
         if self.state != ACTIVE or not component.rate:
             return
@@ -98,11 +94,9 @@ class InsideHost:
     def leaf(
         self, method: str, outputs: tuple[str, ...], robot: Any, wake: Callable[[], object], beside: set[object]
     ) -> InsideLeaf:
-        """See Host."""
         return InsideLeaf(self, self._method(method), robot)
 
     def ask(self, method: str, ports: Mapping[str, Any], robot: Any) -> Any:
-        """See Host."""
         return _call(self._method(method), ports, robot)
 
     def _method(self, name: str) -> Callable[..., Any]:
@@ -112,12 +106,12 @@ class InsideHost:
         return found  # type: ignore[no-any-return]
 
     def close(self) -> None:
-        """See Host. What goes on in a thread of it moves nothing any more."""
+        """Implement Host. What goes on in one of its threads can't move anything any more."""
         self.state = UNCONFIGURED
         self._component._devices = {}
 
     def check_active(self) -> None:
-        """Raises ActionFailed where it isn't active any more."""
+        """Raise ActionFailed if the component isn't active any more."""
         if self.state != ACTIVE:
             raise ActionFailed(NotThere(f"the {self._part.name} {self.problem or f'is {self.state}'}"))
 
@@ -147,7 +141,7 @@ class InsideLeaf:
         self._generator: Generator[object, Any, object] | None = None
 
     def start(self, **ports: Any) -> object:
-        """Calls the method; of a generator function it is the first `next`."""
+        """Call the method; a generator function runs to its first `yield`."""
         try:
             result = _call(self._method, ports, self._proxy)
         except BaseException:
@@ -159,7 +153,7 @@ class InsideLeaf:
         return self.tick()
 
     def tick(self) -> object:
-        """Goes on."""
+        """Run a generator to its next `yield`."""
         assert self._generator is not None
         try:
             self._host.check_active()
@@ -172,7 +166,7 @@ class InsideLeaf:
         return None
 
     def halt(self) -> None:
-        """Closes it, and ends what it has set about."""
+        """Close the generator, and end what the method has started."""
         try:
             if self._generator is not None:
                 self._generator.close()

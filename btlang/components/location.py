@@ -10,7 +10,7 @@ from inspect import signature
 
 from btlang.components.component import Component, ComponentError, ParameterError
 from btlang.engine.leaves.leaf import described
-from btlang.robots.modules import module_of
+from btlang.robots.files import module_of
 from btlang.text.output import pass_on, show
 
 TYPE_CHECKING = False
@@ -21,8 +21,8 @@ ENTRY_POINTS = "btlang.components"
 WRONG_PARAMETERS = 3
 
 
-def located(place: str) -> str:
-    """The `module:Class` of a name among the entry points; what is one already stays. Raises ComponentError."""
+def locate_class(place: str) -> str:
+    """Return the `module:Class` of a name among the entry points; a `module:Class` stays. Raises ComponentError."""
     if ":" in place:
         return place
     from importlib.metadata import entry_points
@@ -33,8 +33,10 @@ def located(place: str) -> str:
 
 
 def words_file(place: str, folder: str) -> str | None:
-    """The keyword file of a component, `coffee.toml` beside `coffee.py`; None without one. Imports no component."""
-    module = located(place).partition(":")[0]
+    """Return the keyword file of a component, `coffee.toml` next to `coffee.py`; None without one. Imports no
+    component.
+    """
+    module = locate_class(place).partition(":")[0]
     if folder and "." not in module:
         path = os.path.join(folder, f"{module}.toml")
         if os.path.exists(os.path.join(folder, f"{module}.py")):
@@ -50,8 +52,8 @@ def words_file(place: str, folder: str) -> str | None:
 
 
 def load_class(place: str, folder: str) -> type[Component]:
-    """The class, from the folder of its robot file or from what is installed. Raises ComponentError."""
-    module, _, name = located(place).partition(":")
+    """Return the class, from the folder of its robot file or from installed packages. Raises ComponentError."""
+    module, _, name = locate_class(place).partition(":")
     try:
         found: Any = module_of(module, folder)
         for part in name.split("."):
@@ -64,7 +66,7 @@ def load_class(place: str, folder: str) -> type[Component]:
 
 
 def describe(component: Component) -> dict[str, Any]:
-    """What the class of a component says of itself, as JSON: version, needs, rate, parameters and methods."""
+    """Return the description of a component's class as JSON: version, needs, rate, parameters and methods."""
     kind = type(component)
     parameters = [parameter.described() for parameter in kind.parameters().values()]
     methods = {name: _takes(getattr(component, name)) for name in dir(kind) if _is_method(kind, name)}
@@ -79,7 +81,7 @@ def _is_method(kind: type[Component], name: str) -> bool:
 
 
 def _takes(method: Any) -> dict[str, Any]:
-    """The names of its parameters, of those without a default, and whether it takes all others, too."""
+    """Return the names of a method's parameters, those without a default, and whether it takes any others."""
     try:
         parameters = signature(method).parameters.values()
     except (TypeError, ValueError):  # of a method that isn't written in Python
@@ -93,9 +95,10 @@ def _takes(method: Any) -> dict[str, Any]:
 
 
 def main(place: str, folder: str, parameters: str) -> int:
-    """Prints what a class says of itself, for `btc robot check`: in a process of its own, as the class is loaded.
+    """Print the description of a class, for `btc robot check`, which runs this in another process, since it loads the
+    class.
 
-    Returns WRONG_PARAMETERS where only these are wrong.
+    Returns WRONG_PARAMETERS if only these are wrong.
     """
     try:
         component = load_class(place, folder)()

@@ -1,4 +1,4 @@
-"""Leads components through their life: up in the order of their needs, down in reverse, up again after a failure."""
+"""Leads components through their life: started by their needs, shut down in reverse, restarted after a failure."""
 
 from __future__ import annotations
 
@@ -7,18 +7,17 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from btlang.components.component import ComponentAbsent, ComponentError
-from btlang.components.life_cycle import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED
-from btlang.components.location import located
+from btlang.components.component import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, ComponentAbsent, ComponentError
+from btlang.components.location import locate_class
 from btlang.engine.leaves.leaf import ActionFailed, NotThere, described
 from btlang.record import Record
-from btlang.robots.body import ComponentPart
+from btlang.robots.bodies.body import ComponentPart
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.components.host import Host
+    from btlang.components.component import Host
 
 _LOOK = 0.1  # seconds between two looks at each component
 _MINUTE = 60.0
@@ -28,7 +27,7 @@ _SOUND = 2.0  # seconds that it has to be active until pauses are short again
 
 
 class ComponentStatus(Record):
-    """What is known of a component. `why` is why it isn't active; `process` the number of its own process."""
+    """The status of a component. `why` is why it isn't active; `process` the number of its own process."""
 
     name: str
     place: str
@@ -41,11 +40,11 @@ class ComponentStatus(Record):
     parameters: Mapping[str, Any] = {}
 
 
-class Manager:
+class ComponentManager:
     """The components of one robot, by name. Each has its own thread; all methods are for any thread.
 
-    `make` makes the host of a part. `report` gets an event of each change: see PartChanged.
-    `in_use` says whether a running mission uses the component of a name: then it is not replaced.
+    `make` makes the host of a part. `report` gets an event of each change: see PartChanged. `in_use` returns whether a
+    running mission uses the component of a name: then it isn't replaced.
     """
 
     def __init__(
@@ -59,23 +58,23 @@ class Manager:
         self.changed = threading.Condition()
         """Notified whenever the state of one of them changes."""
         self._closing = False
-        self._keepers: dict[str, Keeper] = {}
+        self._keepers: dict[str, ComponentKeeper] = {}
         for part in parts:
-            self._keepers[part.name] = Keeper(self, part)
+            self._keepers[part.name] = ComponentKeeper(self, part)
 
     def start(self) -> None:
-        """Begins to bring all of them up."""
+        """Begin to start all components."""
         for keeper in self.keepers:
             keeper.start()
 
     def wait(self, seconds: float) -> bool:
-        """Waits until none is on its way up; whether all are active then."""
+        """Wait until none is starting; return whether all are active then."""
         with self.changed:
             self.changed.wait_for(lambda: all(keeper.settled for keeper in self._keepers.values()), seconds)
             return all(keeper.state == ACTIVE for keeper in self._keepers.values())
 
     def close(self) -> None:
-        """Brings all of them down, those first that others don't need, and waits for it. May be called twice."""
+        """Shut all components down, dependents first, and wait for it. May be called twice."""
         with self.changed:
             self._closing = True
             self.changed.notify_all()
@@ -86,27 +85,27 @@ class Manager:
 
     @property
     def closing(self) -> bool:
-        """Whether all of them go down."""
+        """Whether all components shut down."""
         return self._closing
 
-    def keeper(self, name: str) -> Keeper:
-        """The keeper of a component. Raises ComponentError for an unknown name."""
+    def keeper(self, name: str) -> ComponentKeeper:
+        """Return the keeper of a component. Raises ComponentError for an unknown name."""
         if name not in self._keepers:
             listed = ", ".join(self._keepers) or "none"
             raise ComponentError(f'there is no component "{name}"; the components are {listed}')
         return self._keepers[name]
 
     @property
-    def keepers(self) -> Sequence[Keeper]:
-        """Those of all components."""
+    def keepers(self) -> Sequence[ComponentKeeper]:
+        """The keepers of all components."""
         return tuple(self._keepers.values())
 
     def statuses(self) -> list[ComponentStatus]:
-        """Of all components, in the order of the robot file."""
+        """Return the statuses of all components, in the order of the robot file."""
         return [keeper.status() for keeper in self.keepers]
 
     def load(self, part: ComponentPart) -> None:
-        """One more, or another one in place of that of its name: as soon as no running mission uses that.
+        """Add a component, or replace that of its name as soon as no running mission uses it.
 
         Raises ComponentError for one that isn't installed.
         """
@@ -114,27 +113,27 @@ class Manager:
         with self.changed:
             found = self._keepers.get(part.name)
             if found is None or found.gone:
-                found = self._keepers[part.name] = Keeper(self, part)
+                found = self._keepers[part.name] = ComponentKeeper(self, part)
                 found.start()
             else:
                 found.replace(part)
             self.changed.notify_all()
 
     def unload(self, name: str) -> None:
-        """Brings one down for good, as soon as no running mission uses it. Raises ComponentError."""
+        """Shut one down for good, as soon as no running mission uses it. Raises ComponentError."""
         with self.changed:
             self.keeper(name).replace(None)
             self.changed.notify_all()
 
     def restart(self, name: str) -> None:
-        """Starts one again, even one that was given up. Raises ComponentError."""
+        """Restart a component, even one that was given up. Raises ComponentError."""
         with self.changed:
             keeper = self.keeper(name)
             keeper.replace(keeper.next or keeper.part)
             self.changed.notify_all()
 
-    def report(self, keeper: Keeper) -> None:
-        """Reports a changed state; called with the lock."""
+    def report(self, keeper: ComponentKeeper) -> None:
+        """Report a changed state; called with the lock."""
         self.changed.notify_all()
         name, state = keeper.part.name, keeper.state
         why = keeper.why if keeper.has_failed else ""
@@ -142,28 +141,28 @@ class Manager:
         self._report("part", {"kind": "component", "name": name, "state": state, "text": text})
 
     def make(self, part: ComponentPart) -> Host:
-        """A host, not started."""
+        """Return a host that isn't started."""
         return self._make(part, self._wake)
 
     def needs_met(self, names: Iterable[str]) -> str | None:
-        """The first of the components among these names that isn't active, or won't be for long; None: all are."""
+        """Return the first component among these names that isn't active, or soon won't be; None if all are."""
         known = ((name, self._keepers[name]) for name in names if name in self._keepers)
         return next((name for name, keeper in known if keeper.state != ACTIVE or keeper.leaving), None)
 
     def is_needed(self, name: str) -> bool:
-        """Whether one that needs it is still active."""
+        """Return whether a component that needs it is still active."""
         keepers = self.keepers
         return any(keeper.state == ACTIVE and name in keeper.needs for keeper in keepers)
 
     def is_free(self, name: str) -> bool:
-        """Whether no running mission uses it, or one that needs it."""
+        """Return whether no running mission uses it, or a component that needs it."""
         users, keepers = [name], self.keepers
         for user in users:  # which grows
             users += [each.part.name for each in keepers if user in each.needs and each.part.name not in users]
         return self._closing or not any(map(self._in_use, users))
 
-    def forget(self, keeper: Keeper) -> None:
-        """It was unloaded."""
+    def forget(self, keeper: ComponentKeeper) -> None:
+        """Remove a component that was unloaded."""
         if self._keepers.get(keeper.part.name) is keeper:
             del self._keepers[keeper.part.name]
 
@@ -173,17 +172,19 @@ class Manager:
 
 
 def class_of(part: ComponentPart) -> str | None:
-    """The `module:Class` of a part; None of a ROS 2 node. Raises ComponentError for one that isn't installed."""
-    return located(part.place) if part.node is None else None
+    """Return the `module:Class` of a part; None for a ROS 2 node. Raises ComponentError for
+    one that isn't installed.
+    """
+    return locate_class(part.place) if part.node is None else None
 
 
-class Keeper:
-    """Leads one component through its life, in a thread that also starts its process."""
+class ComponentKeeper:
+    """The thread that leads one component through its life and starts its process."""
 
-    def __init__(self, manager: Manager, part: ComponentPart) -> None:
+    def __init__(self, manager: ComponentManager, part: ComponentPart) -> None:
         self._manager, self.part = manager, part
         self.class_place = class_of(part)
-        """The `module:Class` of the part, found once: looking through what is installed takes long."""
+        """The `module:Class` of the part, found once: looking through installed packages takes long."""
         self.next: ComponentPart | None = part  # what it is to be; None: unloaded. Changed with the lock
         self._asked = False
         self.host: Host | None = None
@@ -198,46 +199,46 @@ class Keeper:
         self._thread = threading.Thread(target=self._keep, name=f"btlang component {part.name}", daemon=True)
 
     def start(self) -> None:
-        """Begins to bring it up."""
+        """Begin to start the component."""
         self._thread.start()
 
     def join(self, seconds: float) -> bool:
-        """Waits until it is down, but no longer than that; whether it is."""
+        """Wait at most so long until the component is down; return whether it is."""
         if self._thread.ident is not None:
             self._thread.join(max(0.0, seconds))
         return not self._thread.is_alive()
 
     def abandon(self) -> None:
-        """Lets go of it, whatever it does."""
+        """Close the host, whatever it does."""
         if self.host is not None:
             self.host.close()
         self.join(_LOOK * 10)
 
     def replace(self, part: ComponentPart | None) -> None:
-        """It is to be another one, or none; called with the lock of the manager."""
+        """Request another component, or none, in its place; called with the lock of the manager."""
         self.next, self._asked, self._given_up, self._due, self._in_a_row = part, True, False, 0.0, 0
         self._failures.clear()
 
     @property
     def settled(self) -> bool:
-        """Whether it is active, or will not be without help."""
+        """Whether it is active, or won't be without help."""
         return self.state == ACTIVE or self._given_up or self._absent or self.gone or bool(self._failures)
 
     @property
     def has_failed(self) -> bool:
-        """Whether it is down since it failed."""
+        """Whether it is down because it failed."""
         return bool(self._failures) and self.state == UNCONFIGURED
 
     def status(self) -> ComponentStatus:
-        """What is known of it."""
+        """Return the status of the component."""
         part, process = self.part, getattr(self.host, "process", None)
         return ComponentStatus(
             part.name, part.place, self.version, self.state, self.why, self._starts, process, self.needs,
             part.parameters,
         )  # fmt: skip
 
-    def working(self) -> Host:
-        """Where it lives now. Raises ActionFailed where it isn't active."""
+    def active_host(self) -> Host:
+        """Return the current host. Raises ActionFailed if the component isn't active."""
         host = self.host
         if host is None or self.state != ACTIVE or host.state != ACTIVE:
             raise ActionFailed(NotThere(f"the {self.part.name} {self.why or f'is {self.state}'}"))
@@ -267,17 +268,17 @@ class Keeper:
         return self._manager.closing or self.next is None
 
     def _may_begin(self) -> bool:
-        return not self._given_up and time.monotonic() >= self._due and self._has(self.part.needs)
+        return not self._given_up and time.monotonic() >= self._due and self._has_needs(self.part.needs)
 
-    def _has(self, needs: Iterable[str]) -> bool:
-        """Whether all that it needs is active; where it isn't, that is what it waits for. Called with the lock."""
+    def _has_needs(self, needs: Iterable[str]) -> bool:
+        """Return whether all that it needs is active; if not, note what it waits for. Called with the lock."""
         missing = self._manager.needs_met(needs)
         if missing is not None:
             self._set(self.state, f"waits for the {missing}")
         return missing is None
 
     def _live(self) -> None:
-        """From its start to its end or failure."""
+        """Lead the component from its start to its end or failure."""
         host = self.host = self._manager.make(self.part)
         self.leaving, self._starts = False, self._starts + 1
         try:
@@ -287,7 +288,7 @@ class Keeper:
             self.version, self.needs = known["version"], tuple({*self.part.needs, *known["needs"]})
             host.transition("configure")
             self._change(INACTIVE, "")
-            while not self._leaves():
+            while not self._must_end():
                 if self._wait_for_needs():
                     host.transition("activate")
                     self._active_since = time.monotonic()
@@ -305,27 +306,27 @@ class Keeper:
         finally:
             host.close()
 
-    def _leaves(self) -> bool:
-        """Whether it is to end, or to be another one, and may."""
+    def _must_end(self) -> bool:
+        """Return whether the component is to end or to be replaced, and may."""
         self.leaving = (self._over() or self._asked) and self._manager.is_free(self.part.name)
         return self.leaving
 
     def _wait_for_needs(self) -> bool:
         with self._manager.changed:
-            if self._has(self.needs):
+            if self._has_needs(self.needs):
                 return True
             self._manager.changed.wait(_LOOK)
         self._look()
         return False
 
     def _watch(self, host: Host) -> None:
-        """While it is active; where what it needs is gone, it is deactivated."""
+        """Watch the active component; deactivate it if what it needs is gone."""
         manager = self._manager
         while True:
             self._look()
             with manager.changed:
                 missing = manager.needs_met(self.needs)
-                if missing is not None or (self._leaves() and not manager.is_needed(self.part.name)):
+                if missing is not None or (self._must_end() and not manager.is_needed(self.part.name)):
                     break
                 manager.changed.wait(_LOOK)
         self._change(INACTIVE, f"waits for the {missing}" if missing is not None else "")
@@ -341,7 +342,7 @@ class Keeper:
         host.transition("shut down")
 
     def _fail(self, reason: str) -> None:
-        """After growing pauses it is started again, until that was tried too often in a minute."""
+        """Wait before the next start, longer each time, until too many failed within a minute."""
         now = time.monotonic()
         with self._manager.changed:
             while self._failures and now - self._failures[0] > _MINUTE:

@@ -1,4 +1,4 @@
-"""A component in a process of its own: a crash, a leak or an endless loop of it stays there."""
+"""A component in its own process, which contains crashes, leaks and endless loops."""
 
 from __future__ import annotations
 
@@ -16,20 +16,18 @@ from contextlib import suppress
 from hashlib import sha256
 from multiprocessing.connection import Connection
 
-from btlang.components.component import ComponentError
-from btlang.components.host import SHARED
-from btlang.components.life_cycle import ACTIVE, UNCONFIGURED
-from btlang.components.plain import packed, refused, unpacked
-from btlang.components.remote_leaf import RemoteLeaf, Request
+from btlang.components.calls import pack, pack_error, unpack
+from btlang.components.component import ACTIVE, SHARED, UNCONFIGURED, ComponentError
+from btlang.components.remote_leaf import RemoteLeaf, WorkerRequest
 from btlang.devices.driver import DeviceError
 from btlang.engine.leaves.leaf import ActionFailed, NotThere, Unknown, described
-from btlang.robots.sockets import socket_folder
+from btlang.robots.files import socket_folder
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.robots.body import ComponentPart
+    from btlang.robots.bodies.body import ComponentPart
 
 _BEAT = 0.1  # seconds between two looks at it
 _ANSWER = 0.2  # seconds that a tick waits for a condition: late is better than not known
@@ -41,7 +39,7 @@ _END = 0.5  # seconds that a process gets to end by itself
 
 
 class ProcessHost:
-    """See btlang.components.host.Host. `changed` is called, from any thread, when there is something to look at."""
+    """A host in another process. `changed` is called, from any thread, when there is something to look at."""
 
     def __init__(
         self,
@@ -56,7 +54,7 @@ class ProcessHost:
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection | None = None
         self._sending, self._numbering = threading.Lock(), threading.Lock()
-        self._requests: dict[int, Request] = {}
+        self._requests: dict[int, WorkerRequest] = {}
         self._numbers = 0
         self._lost: str | None = None
         self._heard = math.inf  # until it says something first
@@ -74,16 +72,16 @@ class ProcessHost:
             return self._peer
         return self._process.pid if self._process is not None and self._process.poll() is None else None
 
-    def _own(self) -> socket.socket:
-        """The way to a process of its own."""
+    def _connect_own(self) -> socket.socket:
+        """Return a socket to a new process of its own."""
         ours, its = socket.socketpair()
         with its:
             words = [str(its.fileno()), str(os.getpid())]
             self._process = _begin(words, pass_fds=[its.fileno()])
         return ours
 
-    def _shared(self) -> socket.socket:
-        """The way to the process that other robots of this user share; it is started if there is none."""
+    def _connect_shared(self) -> socket.socket:
+        """Return a socket to the process that other robots of this user share; start it if there is none."""
         path = os.path.join(socket_folder(), f"component-{sha256(self._part.shared.encode()).hexdigest()[:16]}.sock")
         link, until = socket.socket(socket.AF_UNIX), time.monotonic() + _LOADING
         while True:
@@ -101,8 +99,7 @@ class ProcessHost:
         return link
 
     def load(self) -> Mapping[str, Any]:
-        """See Host."""
-        link = self._own() if not self._part.shared else self._shared()
+        link = self._connect_own() if not self._part.shared else self._connect_shared()
         link.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, _SEND)
         self._connection = Connection(link.detach())
         self._reader = threading.Thread(target=self._read, name="btlang component", daemon=True)
@@ -119,16 +116,15 @@ class ProcessHost:
         return dict(value)
 
     def transition(self, name: str) -> None:
-        """See Host."""
         self._wait(self._request(name), name, self._part.limit)
 
     def look(self) -> str | None:
-        """See Host; to be called every 0.1 s. It asks for the state each time: a slow answer alone is no failure."""
+        """Implement Host; call this every 0.1 s. It asks for the state each time: a slow answer alone is no failure."""
         if self._lost is None and self._connection is not None:
             now = time.monotonic()
             if now - self._heard > self._part.silence:
                 self._hangs = True
-                self._lose(f"hasn't answered for {now - self._heard:.1f} s")
+                self._disconnect(f"hasn't answered for {now - self._heard:.1f} s")
             elif now - self._beaten >= _BEAT:
                 self._beaten = now
                 done = [number for number, request in tuple(self._requests.items()) if request.done.is_set()]
@@ -138,11 +134,10 @@ class ProcessHost:
     def leaf(
         self, method: str, outputs: tuple[str, ...], robot: Any, wake: Callable[[], object], beside: set[object]
     ) -> RemoteLeaf:
-        """See Host."""
         return RemoteLeaf(self, method, outputs, robot, wake, beside)
 
     def ask(self, method: str, ports: Mapping[str, Any], robot: Any) -> Any:
-        """See Host. What it asks of the robot meanwhile is answered at once."""
+        """Implement Host. Questions to the robot are answered at once in the meantime."""
         news = threading.Event()
         leaf = RemoteLeaf(self, method, (), robot, news.set, set())
         leaf.start(**ports)
@@ -154,22 +149,22 @@ class ProcessHost:
             news.clear()
         return answer
 
-    def begin(self, method: str, arguments: dict[str, Any], wake: Callable[[], object]) -> Request:
-        """Calls a method. Raises ActionFailed where it can't be called now."""
+    def begin(self, method: str, arguments: dict[str, Any], wake: Callable[[], object]) -> WorkerRequest:
+        """Call a method. Raises ActionFailed if it can't be called now."""
         if self._lost is not None or self.state != ACTIVE:
             raise ActionFailed(NotThere(f"the {self._part.name} {self._lost or f'is {self.state}'}"))
         return self._request("call", wake, method=method, arguments=arguments)
 
-    def halt(self, request: Request) -> None:
-        """It need not be done any more."""
+    def halt(self, request: WorkerRequest) -> None:
+        """Cancel a request."""
         self._send({"halt": request.number})
         request.end({"problem": "it was halted"})
 
-    def answer(self, request: Request, asked: dict[str, Any], answer: dict[str, Any]) -> None:
-        """Answers a question of a call."""
+    def answer(self, request: WorkerRequest, asked: dict[str, Any], answer: dict[str, Any]) -> None:
+        """Answer a question of a call."""
         message = {"answer": asked["ask"], "call": request.number, **answer}
         try:
-            packed(message)
+            pack(message)
         except TypeError as problem:
             message = {"answer": asked["ask"], "call": request.number, "problem": str(problem)}
         if asked["ask"] == request.latest:
@@ -177,9 +172,11 @@ class ProcessHost:
         self._send(message)
 
     def close(self) -> None:
-        """See Host. Its process ends with the socket; where it doesn't, it is killed with all that it has started."""
+        """Implement Host. The process ends with the socket; if it doesn't, it is killed with everything that it has
+        started.
+        """
         patience = 0.0 if self._lost is not None else _END
-        self._lose("is being shut down")
+        self._disconnect("is being shut down")
         connection, self._connection = self._connection, None
         process = self._process
         if connection is not None:
@@ -202,11 +199,11 @@ class ProcessHost:
                 os.killpg(process.pid, signal.SIGKILL)
             process.wait()
 
-    def _request(self, do: str, wake: Callable[[], object] = lambda: None, **data: Any) -> Request:
+    def _request(self, do: str, wake: Callable[[], object] = lambda: None, **data: Any) -> WorkerRequest:
         with self._numbering:  # so that they come in their order
             self._numbers += 1
             message = {"id": self._numbers, "do": do, **data}
-            request = self._requests[self._numbers] = Request(self._numbers, message, wake)
+            request = self._requests[self._numbers] = WorkerRequest(self._numbers, message, wake)
             try:
                 self._send(message)
             except ActionFailed:
@@ -216,12 +213,12 @@ class ProcessHost:
             request.end({"problem": f"the {self._part.name} {self._lost}"})
         return request
 
-    def _wait(self, request: Request, what: str, limit: float) -> Any:
+    def _wait(self, request: WorkerRequest, what: str, limit: float) -> Any:
         until = time.monotonic() + limit
         while not request.done.wait(_BEAT):
             self.look()
             if time.monotonic() > until:
-                self._lose(f"did not {what} within {limit:g} s")
+                self._disconnect(f"did not {what} within {limit:g} s")
         if self._lost is not None:
             raise ComponentError(self._lost)
         try:
@@ -231,7 +228,7 @@ class ProcessHost:
 
     def _send(self, message: dict[str, Any]) -> None:
         try:
-            data = packed(message)
+            data = pack(message)
         except TypeError as problem:
             raise ActionFailed(str(problem)) from None
         connection = self._connection
@@ -241,7 +238,7 @@ class ProcessHost:
                     connection.send_bytes(data)
             except BlockingIOError:
                 self._hangs = True
-                self._lose("doesn't read its messages")
+                self._disconnect("doesn't read its messages")
             except (OSError, ValueError):
                 pass  # it is gone, which the reader notices too
 
@@ -249,15 +246,15 @@ class ProcessHost:
         connection = self._connection
         while connection is not None:
             try:
-                self._take(unpacked(connection.recv_bytes(_LONGEST)))
+                self._take(unpack(connection.recv_bytes(_LONGEST)))
             except (EOFError, OSError) as problem:
                 if "bad message length" in str(problem):
-                    self._lose(f"says what can't be understood: a message of more than {_LONGEST >> 20} MB")
+                    self._disconnect(f"says what can't be understood: a message of more than {_LONGEST >> 20} MB")
                 break
             except Exception as problem:  # whatever it says, and whoever hears it
-                self._lose(f"says what can't be understood: {described(problem)}")
+                self._disconnect(f"says what can't be understood: {described(problem)}")
                 break
-        self._lose(self._ending())
+        self._disconnect(self._ending())
 
     def _take(self, message: dict[str, Any]) -> None:
         self._heard = time.monotonic()
@@ -267,7 +264,7 @@ class ProcessHost:
                 request = self._requests.get(int(number))
                 if request is not None:
                     request.end(outcome if isinstance(outcome, dict) else {"problem": "its outcome makes no sense"})
-            self._tidy({*message["known"], *map(int, message["ended"])})
+            self._forget_ended({*message["known"], *map(int, message["ended"])})
             if self.problem:
                 self._changed()
         elif "ask" in message:
@@ -297,10 +294,10 @@ class ProcessHost:
         try:
             return {"value": self._devices[name].read(name)}
         except ActionFailed as problem:
-            return {**refused(problem), "unknown": True}
+            return {**pack_error(problem), "unknown": True}
 
-    def _tidy(self, known: set[int]) -> None:
-        """Forgets what is over on both sides; what the component knows nothing of is sent again."""
+    def _forget_ended(self, known: set[int]) -> None:
+        """Forget requests that are over on both sides; send again what the component doesn't know."""
         now = time.monotonic()
         for number, request in tuple(self._requests.items()):
             if number in known:
@@ -311,8 +308,8 @@ class ProcessHost:
                 request.sent = now
                 self._send({**request.message, "again": True})
 
-    def _lose(self, reason: str) -> None:
-        """Nothing can be asked of it any more; all that waits for it fails with this reason."""
+    def _disconnect(self, reason: str) -> None:
+        """Close the link; everything that waits for an answer fails with this reason."""
         if self._lost is None:
             self._lost = reason
             for request in tuple(self._requests.values()):

@@ -7,24 +7,24 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-from btlang.components.plain import refused, value_of
+from btlang.components.calls import pack_error, value_of
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.proxy import RobotProxy
+from btlang.robots.command_gate import RobotProxy
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Protocol
 
     class Link(Protocol):
-        """The way to the process: see btlang.components.process_host.ProcessHost."""
+        """The link to the process; see btlang.components.process_host.ProcessHost."""
 
-        def begin(self, method: str, arguments: dict[str, Any], wake: Callable[[], object]) -> Request: ...
-        def halt(self, request: Request) -> None: ...
-        def answer(self, request: Request, asked: dict[str, Any], answer: dict[str, Any]) -> None: ...
+        def begin(self, method: str, arguments: dict[str, Any], wake: Callable[[], object]) -> WorkerRequest: ...
+        def halt(self, request: WorkerRequest) -> None: ...
+        def answer(self, request: WorkerRequest, asked: dict[str, Any], answer: dict[str, Any]) -> None: ...
 
 
-class Request:
-    """Something that the component is to do. `outcome` is there once `done` is set."""
+class WorkerRequest:
+    """A request to the component. `outcome` is there once `done` is set."""
 
     def __init__(self, number: int, message: dict[str, Any], wake: Callable[[], object]) -> None:
         self.number, self.message, self.sent, self._wake = number, message, time.monotonic(), wake
@@ -35,26 +35,26 @@ class Request:
         self.answer: dict[str, Any] | None = None
 
     def end(self, outcome: dict[str, Any]) -> None:
-        """It is done, or nobody will do it."""
+        """End the request: it is done, or nobody will do it."""
         if not self.done.is_set():
             self.outcome = outcome
             self.done.set()
             self._wake()
 
     def ask(self, message: dict[str, Any]) -> None:
-        """A question to the robot, for the thread that ticks."""
+        """Queue a question to the robot, for the thread that ticks."""
         self.latest, self.answer = message["ask"], None
         self.asked.append(message)
         self._wake()
 
     @property
     def value(self) -> Any:
-        """What it has led to. Raises ActionFailed."""
+        """The value of the outcome. Raises ActionFailed."""
         return value_of(self.outcome)
 
 
 class RemoteLeaf:
-    """A method of a component as a leaf. What the method asks of the robot is done in the thread that ticks."""
+    """A method of a component as a leaf. Its questions to the robot are answered in the thread that ticks."""
 
     def __init__(
         self,
@@ -67,12 +67,12 @@ class RemoteLeaf:
     ) -> None:
         self._host, self._method, self._outputs, self._wake, self._beside = host, method, outputs, wake, beside
         self._proxy = RobotProxy(robot, lambda call: call())
-        self._request: Request | None = None
+        self._request: WorkerRequest | None = None
         self._stores: dict[str, Callable[[Any], object]] = {}
         self._operations: list[Any] = []
 
     def start(self, **ports: Any) -> object:
-        """Calls the method."""
+        """Call the method."""
         self._stores = {name: ports.pop(name) for name in self._outputs if name in ports}
         self._operations = []
         arguments = {**ports, "outputs": list(self._stores)} if self._stores else ports
@@ -81,7 +81,7 @@ class RemoteLeaf:
         return None
 
     def tick(self) -> object:
-        """Does what it asks for, and looks whether it has ended."""
+        """Answer the method's questions, and check whether it has ended."""
         request = self._request
         assert request is not None
         if request.asked:
@@ -101,7 +101,7 @@ class RemoteLeaf:
         return True if value is None else value
 
     def halt(self) -> None:
-        """Ends the method, and what it has set about."""
+        """End the method, and what it has started."""
         request, self._request = self._request, None
         self._beside.discard(self)
         if request is not None:
@@ -109,7 +109,7 @@ class RemoteLeaf:
             self._host.halt(request)
 
     def _do(self, asked: dict[str, Any]) -> dict[str, Any]:
-        """A use of the robot, or of an operation that it has begun."""
+        """Do one use of the robot, or of an operation that the method has begun."""
         try:
             subject = self._operations[asked["operation"]] if "operation" in asked else self._proxy
             name = asked["robot"]
@@ -121,7 +121,7 @@ class RemoteLeaf:
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
-            return refused(problem)
+            return pack_error(problem)
         if hasattr(value, "cancel"):
             self._operations.append(value)
             return {"value": {"operation": len(self._operations) - 1}}

@@ -1,4 +1,4 @@
-"""A program that lives as long as its component: it ends with the robot, however that ends, with all it has started.
+"""A program that lives as long as its component: it ends with the robot, with everything it has started.
 
 `python -m btlang.components.started_process COMMAND ...` stands between the two: it says the number of the process on
 standard output, or why there is none, and kills its group when standard input is closed.
@@ -25,7 +25,7 @@ _WHEELS = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"  # keeps a Python of another environm
 
 
 class StartedProcess:
-    """A program in a session of its own. Raises ComponentError where it can't be started."""
+    """A program in its own session. Raises ComponentError if it can't be started."""
 
     def __init__(self, command: Sequence[str]) -> None:
         words = [sys.executable, "-m", __name__, *command]
@@ -38,18 +38,18 @@ class StartedProcess:
             self.close(0.0)
             raise ComponentError(f"{command[0]} can't be started: {said or 'it ended at once'}")
         self.number = int(said)
-        """Of its process."""
+        """The number of its process."""
 
     @property
     def ending(self) -> str | None:
-        """How it has ended, to be read behind its name; None while it runs."""
+        """How it has ended, to be read after its name; None while it runs."""
         code = self._between.poll()
         if code is None:
             return None
         return f"was killed by signal {code - 128}" if code > 128 else f"ended with exit code {code}"
 
     def close(self, patience: float) -> None:
-        """Asks it to end, and kills it where it hasn't after so many seconds. May be called twice."""
+        """Ask it to end, and kill it if it hasn't after so many seconds. May be called twice."""
         between = self._between
         if patience and between.poll() is None:
             with suppress(ProcessLookupError):
@@ -64,7 +64,7 @@ class StartedProcess:
 
 
 def main(command: Sequence[str]) -> int:
-    """Until the program or the robot ends; the exit code is that of the program, 128 and the number of its signal."""
+    """Run the program until it or the robot ends; return its exit code, or 128 plus the number of its signal."""
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: None)  # not ignored: the program would inherit that
     environment = {name: value for name, value in os.environ.items() if name != _WHEELS}

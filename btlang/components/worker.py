@@ -19,22 +19,22 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from queue import Empty, SimpleQueue
 
-from btlang.components.calls import Call, Questions, RemoteDevice
-from btlang.components.component import Component, ComponentError
-from btlang.components.host import SHARED
-from btlang.components.life_cycle import (
+from btlang.components.calls import MethodCall, RemoteDevice, RobotQuestions, pack, pack_error, unpack
+from btlang.components.component import (
     ACTIVE,
     FINALIZED,
     INACTIVE,
+    SHARED,
     TRANSITIONS,
     UNCONFIGURED,
     UPWARDS,
+    Component,
+    ComponentError,
     Transition,
 )
 from btlang.components.location import describe, load_class
-from btlang.components.plain import packed, refused, unpacked
 from btlang.engine.leaves.leaf import described
-from btlang.robots.body_file import load_body
+from btlang.robots.bodies.body_file import load_body
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -50,14 +50,14 @@ _HEIGHTS = {FINALIZED: -1, UNCONFIGURED: 0, INACTIVE: 1, ACTIVE: 2}
 
 
 class Worker:
-    """What one robot says to the component, and what is under way for it. `state` is what this robot led it to."""
+    """The requests of one robot to the component. `state` is the one that this robot led it to."""
 
-    def __init__(self, connection: Connection, life: Life) -> None:
+    def __init__(self, connection: Connection, life: ComponentLifeCycle) -> None:
         self._connection, self._life = connection, life
         self._sending = threading.Lock()
-        self.questions = Questions(self)
+        self.questions = RobotQuestions(self)
         self.state = UNCONFIGURED
-        self._calls: dict[int, Call] = {}
+        self._calls: dict[int, MethodCall] = {}
         self._ended: dict[int, dict[str, Any]] = {}
         self._begun: set[int] = set()  # requests of the life that wait or are under way
         self._latest = 0  # the newest request that was begun
@@ -65,14 +65,14 @@ class Worker:
 
     @property
     def component(self) -> Component:
-        """What it speaks for."""
+        """The component that it talks for."""
         return self._life.component
 
     def run(self) -> None:
-        """Until the robot is gone."""
+        """Serve the robot until it is gone."""
         while True:
             try:
-                message = unpacked(self._connection.recv_bytes())
+                message = unpack(self._connection.recv_bytes())
             except (EOFError, OSError):
                 break
             self._take(message)
@@ -81,16 +81,16 @@ class Worker:
         self.questions.halt()
 
     def send(self, message: dict[str, Any]) -> None:
-        """Sends a message to the robot, if it is still there. Raises TypeError for values that can't be sent."""
-        data = packed(message)
+        """Send a message to the robot, if it still exists. Raises TypeError for values that can't be sent."""
+        data = pack(message)
         if not self._gone:
             with self._sending, suppress(OSError):  # the robot is gone, which `run` notices too
                 self._connection.send_bytes(data)
 
-    def ended(self, number: int, outcome: dict[str, Any]) -> None:
-        """A request is done; its outcome is sent until the robot says that it knows."""
+    def report_end(self, number: int, outcome: dict[str, Any]) -> None:
+        """Note that a request is done; its outcome is sent until the robot confirms it."""
         try:
-            packed(outcome)
+            pack(outcome)
         except TypeError as problem:
             outcome = {"problem": str(problem)}
         self._ended[number] = outcome
@@ -99,12 +99,12 @@ class Worker:
         self.report()
 
     def report(self) -> None:
-        """Sends what is known, again and again, so that no answer is lost for good."""
+        """Send the state again and again, so that no answer is lost for good."""
         known = [*self._calls, *self._begun]
         self.send({"state": self.state, "known": known, "ended": dict(self._ended), "problem": self._life.problem})
 
     def halt_calls(self) -> None:
-        """Ends what this robot has begun."""
+        """End all calls of this robot."""
         for call in tuple(self._calls.values()):
             call.halt()
 
@@ -124,7 +124,7 @@ class Worker:
             self._latest = max(self._latest, message["id"])
             if message["do"] == "call":
                 number = message["id"]
-                call = self._calls[number] = Call(self, number, message["method"], message["arguments"])
+                call = self._calls[number] = MethodCall(self, number, message["method"], message["arguments"])
                 call.start()
             else:
                 self._begun.add(message["id"])
@@ -134,10 +134,10 @@ class Worker:
         return number in self._calls or number in self._ended or number in self._begun
 
 
-class Life:
-    """The component and its life, in a thread of its own: for one robot, or for several that share it.
+class ComponentLifeCycle:
+    """The component and its life cycle, in a thread: for one robot, or for several that share it.
 
-    With several it is as far up as the one that needs it most; a hook is called when that changes.
+    With several, its state is that of the robot that needs it most; a hook is called when that changes.
     """
 
     def __init__(self, shared: bool = False) -> None:
@@ -149,7 +149,7 @@ class Life:
         threading.Thread(target=self._work, name="btlang life", daemon=True).start()
 
     def put(self, worker: Worker, message: dict[str, Any]) -> None:
-        """A request of a robot, to be done in its turn."""
+        """Queue a request of a robot."""
         self._asked.put((worker, message))
 
     def _work(self) -> None:
@@ -167,9 +167,9 @@ class Life:
             try:
                 value = self._load(worker, message) if message["do"] == "load" else self._go(worker, message["do"])
                 due = last = time.monotonic()
-                worker.ended(message["id"], {"value": value})
+                worker.report_end(message["id"], {"value": value})
             except BaseException as problem:
-                worker.ended(message["id"], refused(problem))
+                worker.report_end(message["id"], pack_error(problem))
 
     def _load(self, worker: Worker, message: dict[str, Any]) -> object:
         if self._loaded is None:
@@ -206,14 +206,14 @@ class Life:
         return worker.state
 
     def _is_due(self, worker: Worker, transition: Transition) -> bool:
-        """Whether the hook has to be called: no robot has led it there yet, or none needs it any more."""
+        """Return whether the hook has to be called: no robot has led it there yet, or none needs it any more."""
         if transition.name in UPWARDS:
             return _HEIGHTS[self.state] < _HEIGHTS[transition.ends]
         others = (_HEIGHTS[other.state] for other in self.workers if other is not worker)
         return all(height <= _HEIGHTS[transition.ends] for height in others)
 
     def _step(self, seconds: float) -> None:
-        """A step that raises ends the activity."""
+        """Do a step; if it raises, the component isn't active any more."""
         try:
             self.component.step(seconds)
         except BaseException as problem:
@@ -237,12 +237,12 @@ class Life:
 
 
 def _end() -> None:
-    """With all that it has started."""
+    """End this process with everything that it has started."""
     os.killpg(0, signal.SIGKILL)
 
 
-def _leave_nothing() -> None:
-    """Forks a process that waits for the end of this one, however it ends, and ends what this one has started."""
+def _fork_reaper() -> None:
+    """Fork a process that waits for the end of this one, however it ends, and ends what this one has started."""
     waits, held = os.pipe()
     if os.fork():
         os.close(waits)
@@ -255,22 +255,22 @@ def _leave_nothing() -> None:
 
 
 def main(descriptor: int, robot: int) -> None:
-    """Works for the robot whose process has the number `robot`, over an inherited socket."""
+    """Work for the robot whose process has the number `robot`, over an inherited socket."""
     ctypes.CDLL(None).prctl(_DIE_WITH_PARENT, signal.SIGKILL)  # also while this process is stopped
     if os.getppid() == robot:
-        _leave_nothing()
-        life = Life()
+        _fork_reaper()
+        life = ComponentLifeCycle()
         life.workers.append(worker := Worker(Connection(descriptor), life))
         worker.run()
     _end()
 
 
 def main_shared(path: str) -> None:
-    """Works for all robots that come to a socket, until none is left; where another process does that, it ends."""
+    """Work for all robots that connect to a socket, until none is left; end if another process does that already."""
     if os.fork():  # no robot is its parent: whoever started it may be gone before the others
         os._exit(0)
     os.setsid()
-    _leave_nothing()
+    _fork_reaper()
     with open(f"{path}.lock", "w") as lock, socket.socket(socket.AF_UNIX) as door:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -280,7 +280,7 @@ def main_shared(path: str) -> None:
             os.unlink(path)
         door.bind(path)
         door.listen()
-        life = Life(shared=True)
+        life = ComponentLifeCycle(shared=True)
         door.settimeout(_ALONE)
         while True:
             try:
@@ -296,7 +296,7 @@ def main_shared(path: str) -> None:
     _end()
 
 
-def _converse(worker: Worker, life: Life) -> None:
+def _converse(worker: Worker, life: ComponentLifeCycle) -> None:
     worker.run()
     life.workers.remove(worker)
     if life.problem:  # whoever needs it starts it again

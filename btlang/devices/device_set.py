@@ -6,8 +6,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
-from btlang.devices.driver import DeviceError, DeviceSilent
-from btlang.devices.drivers import SIMULATED, make_driver
+from btlang.devices.driver import SIMULATED, DeviceError, DeviceSilent, make_driver
 from btlang.devices.kinds import KINDS, Command, Reading
 from btlang.devices.loop import DeviceLoop
 from btlang.devices.simulated import SimulatedDevice
@@ -16,13 +15,13 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.robots.body import Body, Device
+    from btlang.robots.bodies.body import Body, Device
 
 _FIRST = 3.0  # seconds
 
 
 class Reads(Protocol):
-    """What reads and writes devices by their names; see DeviceLoop."""
+    """An object that reads and writes devices by their names; see DeviceLoop."""
 
     def read(self, name: str) -> Reading: ...
     def write(self, name: str, command: Command) -> None: ...
@@ -30,16 +29,17 @@ class Reads(Protocol):
 
 
 def reader(devices: Mapping[str, Reads], name: str, part: str) -> Reads:
-    """That of a device. Raises DeviceSilent where a part has none."""
+    """Return the reader of a device. Raises DeviceSilent if a part has none."""
     if name not in devices:
         raise DeviceSilent(f"the {part} has no device")
     return devices[name]
 
 
 class DeviceSet:
-    """The devices of a body: those of one driver and port share a loop. `robot` is where simulated ones act.
+    """The devices of a body: those of one driver and port share a loop.
 
-    `report` gets an event when a device falls silent or is back: see btlang.run.events.PartChanged.
+    Simulated ones act on `robot`. `report` gets an event when a device falls silent or is back: see
+    btlang.run.events.PartChanged.
     """
 
     def __init__(self, body: Body, robot: Any, report: Callable[[str, Mapping[str, Any]], object]) -> None:
@@ -59,12 +59,12 @@ class DeviceSet:
             else:
                 ports.setdefault((device.driver, device.port), []).append(device)
         for (driver, port), devices in ports.items():
-            loop = DeviceLoop(make_driver(driver, body.folder, port, devices), tuple(devices), self._changed)
+            loop = DeviceLoop(make_driver(driver, body.folder, port, devices), tuple(devices), self._on_change)
             self.loops.append(loop)
             self._reads.update(dict.fromkeys(loop.devices, loop))
 
     def start(self) -> None:
-        """Begins to read and write; waits a moment for what the devices say first, so that a mission has it."""
+        """Begin to read and write; wait a moment for first readings, so that a mission has them."""
         for loop in self.loops:
             loop.start()
         until = time.monotonic() + _FIRST
@@ -72,35 +72,35 @@ class DeviceSet:
             loop.settled.wait(max(0.0, until - time.monotonic()))
 
     def close(self) -> None:
-        """Brings what moves to rest, and lets go of the ports. May be called twice."""
+        """Bring what moves to rest, and close the ports. May be called twice."""
         for loop in self.loops:
             loop.close()
 
     def step(self) -> None:
-        """The world of the simulated ones has moved on, in the thread of the robot: those not commanded again stop."""
+        """Step the simulated devices, in the thread of the robot: those not commanded again stop."""
         for device in self._simulated:
             device.step()
 
     @property
     def readers(self) -> Mapping[str, Reads]:
-        """What reads and writes each device, by its name."""
+        """The reader of each device, by its name."""
         return self._reads
 
     def first(self, kind: str) -> str:
-        """The name of the first device of a kind; "" if there is none."""
+        """Return the name of the first device of a kind; "" if there is none."""
         return next((name for name, device in self.devices.items() if device.kind == kind), "")
 
     def follow(self, name: str, take: Callable[[Reading], object]) -> None:
-        """As DeviceLoop.follow; a simulated device has nothing to follow."""
+        """Follow the readings, as DeviceLoop does; a simulated device has nothing to follow."""
         for loop in self.loops:
             if name in loop.devices:
                 loop.follow(name, take)
 
     def states(self) -> Sequence[tuple[Device, str | None]]:
-        """All devices, with why each is silent."""
+        """Return all devices, with the reason why each is silent."""
         return [(device, self._reads[name].silent(name)) for name, device in self.devices.items()]
 
-    def _changed(self, name: str, reason: str | None) -> None:
+    def _on_change(self, name: str, reason: str | None) -> None:
         state = "works" if reason is None else "silent"
         text = f"the {name} works" if reason is None else f"the {name} is silent: {reason}"
         self._report("part", {"kind": "device", "name": name, "state": state, "text": text})

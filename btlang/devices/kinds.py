@@ -1,13 +1,14 @@
-"""The kinds of devices: their readings and their commands, in metres, degrees, seconds and percent.
-
-A driver fills these records, and whoever uses a device knows nothing else of it. Angles are counter-clockwise positive.
-"""
+"""The kinds of devices: their readings and commands, in metres, degrees, seconds and percent; and images as PNG."""
 
 from __future__ import annotations
 
+import struct
+import zlib
 from collections.abc import Sequence
 
 from btlang.record import Record
+
+_SIGNATURE = b"\x89PNG\r\n\x1a\n"
 
 
 class Reading(Record):
@@ -19,13 +20,13 @@ class Command(Record):
 
 
 class Distance(Reading):
-    """Of an ultrasonic or infrared sensor: metres to the nearest thing in its cone, inf if there is none in range."""
+    """A reading of an ultrasonic or infrared sensor: metres to the nearest thing in its cone, inf for none in range."""
 
     distance: float
 
 
 class Scan(Reading):
-    """Of a lidar: metres, inf where nothing is in range, NaN for a beam without a valid measurement.
+    """A reading of a lidar: metres, inf if nothing is in range, NaN for a beam without a valid measurement.
 
     The first one is `start` degrees left of ahead, then every `step` degrees.
     """
@@ -36,7 +37,9 @@ class Scan(Reading):
 
 
 class Wheels(Reading):
-    """Of the encoders of two driven wheels: metres that each has rolled since the start, and metres a second."""
+    """A reading of the encoders of two driven wheels: metres that each has rolled since the
+    start, and metres a second.
+    """
 
     left: float
     right: float
@@ -45,15 +48,18 @@ class Wheels(Reading):
 
 
 class WheelSpeeds(Command):
-    """Metres a second of each wheel."""
+    """A command to two driven wheels: metres a second of each."""
 
     left: float = 0.0
     right: float = 0.0
 
 
 class Motion(Reading):
-    """Of an inertial unit: degrees a second to the left, metres a second squared ahead, left and up, and the heading in
-    degrees since it was switched on."""
+    """A reading of an inertial unit.
+
+    Degrees a second to the left, metres a second squared ahead, left and up, and the heading in degrees since it was
+    switched on.
+    """
 
     turning: float
     ahead: float | None = None
@@ -63,7 +69,7 @@ class Motion(Reading):
 
 
 class Charge(Reading):
-    """Of a battery: percent left, volts, amperes into it, degrees Celsius."""
+    """A reading of a battery: percent left, volts, amperes into it, degrees Celsius."""
 
     percent: float
     volts: float | None = None
@@ -73,7 +79,7 @@ class Charge(Reading):
 
 
 class JointState(Reading):
-    """Of a servo: degrees (metres where it slides), those a second, load in percent, degrees Celsius."""
+    """A reading of a servo: degrees (metres if it slides), those a second, load in percent, degrees Celsius."""
 
     position: float
     speed: float = 0.0
@@ -83,7 +89,7 @@ class JointState(Reading):
 
 
 class JointTarget(Command):
-    """Degrees (metres) to go to, at most that fast; None: it stays where it is. `loose` takes its torque away."""
+    """A command to a servo: degrees (metres) to go to, at most that fast; None: stay. `loose` takes its torque away."""
 
     position: float | None = None
     speed: float | None = None
@@ -91,27 +97,27 @@ class JointTarget(Command):
 
 
 class Grip(Reading):
-    """Of a hand: how far it is closed, 0 to 1, and whether something is in it."""
+    """A reading of a hand: how far it is closed, 0 to 1, and whether something is in it."""
 
     closed: float
     holds: bool | None = None
 
 
 class GripTarget(Command):
-    """How far it closes, 0 to 1; None: it stays as it is."""
+    """A command to a hand: how far to close, 0 to 1; None: stay."""
 
     closed: float | None = None
 
 
 class Image(Reading):
-    """Of a camera: rows of pixels from the top, three bytes (red, green, blue) each."""
+    """A reading of a camera: rows of pixels from the top, three bytes (red, green, blue) each."""
 
     width: int
     height: int
     pixels: bytes
 
     def smaller(self, widest: int) -> Image:
-        """At most so many pixels wide: every second one, or third one, and so on."""
+        """Return the image at most so many pixels wide: every second pixel, or third one, and so on."""
         each = -(-self.width // widest)
         if each <= 1:
             return self
@@ -122,39 +128,39 @@ class Image(Reading):
 
 
 class Sound(Reading):
-    """Of a microphone: samples since the last reading, 16 bits signed, little-endian, one channel."""
+    """A reading of a microphone: samples since the last reading, 16 bits signed, little-endian, one channel."""
 
     samples: bytes
     rate: int
 
 
 class Play(Command):
-    """Samples for a speaker, as those of Sound; none: silence at once."""
+    """A command to a speaker: samples as those of Sound; none: silence at once."""
 
     samples: bytes = b""
     rate: int = 16_000
 
 
 class Playing(Reading):
-    """Of a speaker: seconds that it still has to play."""
+    """A reading of a speaker: seconds that it still has to play."""
 
     left: float
 
 
 class Pressed(Reading):
-    """Of a button or a bumper."""
+    """A reading of a button or a bumper."""
 
     pressed: bool
 
 
 class Measured(Reading):
-    """Of any other sensor, such as a thermometer: a number in the unit that is usual for what it measures."""
+    """A reading of any other sensor, such as a thermometer, in its usual unit."""
 
     value: float
 
 
 class Colour(Command):
-    """Red, green and blue of a light, 0 to 1."""
+    """A command to a light: red, green and blue, 0 to 1."""
 
     red: float = 0.0
     green: float = 0.0
@@ -162,13 +168,13 @@ class Colour(Command):
 
 
 class Shown(Command):
-    """The text on a display."""
+    """A command to a display: the text to show."""
 
     text: str = ""
 
 
-class Kind(Record):
-    """A kind of device: its readings and its commands, None where it has none.
+class DeviceKind(Record):
+    """A kind of device: its readings and its commands, None if it has none.
 
     `moves`: it is brought to rest as soon as either side is silent. A calibration scales the fields named in `scaled`,
     and both scales and shifts those in `shifted`, in readings and in commands.
@@ -183,27 +189,39 @@ class Kind(Record):
 
     @property
     def rest(self) -> Command | None:
-        """What brings a device that moves to rest; None of the others."""
+        """The command that brings a device that moves to rest; None for others."""
         return self.command() if self.moves and self.command is not None else None
 
 
 KINDS = {
     kind.name: kind
     for kind in (
-        Kind("range", Distance, shifted=("distance",)),
-        Kind("lidar", Scan),
-        Kind("drive", Wheels, WheelSpeeds, moves=True, scaled=("left", "right", "left_speed", "right_speed")),
-        Kind("imu", Motion, shifted=("turning",)),
-        Kind("battery", Charge, shifted=("percent",)),
-        Kind("joint", JointState, JointTarget, moves=True, scaled=("speed",), shifted=("position",)),
-        Kind("hand", Grip, GripTarget, moves=True),
-        Kind("camera", Image),
-        Kind("microphone", Sound),
-        Kind("speaker", Playing, Play),
-        Kind("button", Pressed),
-        Kind("gauge", Measured, shifted=("value",)),
-        Kind("light", None, Colour),
-        Kind("display", None, Shown),
+        DeviceKind("range", Distance, shifted=("distance",)),
+        DeviceKind("lidar", Scan),
+        DeviceKind("drive", Wheels, WheelSpeeds, moves=True, scaled=("left", "right", "left_speed", "right_speed")),
+        DeviceKind("imu", Motion, shifted=("turning",)),
+        DeviceKind("battery", Charge, shifted=("percent",)),
+        DeviceKind("joint", JointState, JointTarget, moves=True, scaled=("speed",), shifted=("position",)),
+        DeviceKind("hand", Grip, GripTarget, moves=True),
+        DeviceKind("camera", Image),
+        DeviceKind("microphone", Sound),
+        DeviceKind("speaker", Playing, Play),
+        DeviceKind("button", Pressed),
+        DeviceKind("gauge", Measured, shifted=("value",)),
+        DeviceKind("light", None, Colour),
+        DeviceKind("display", None, Shown),
     )
 }
-"""By name."""
+"""The kinds by name."""
+
+
+def png(image: Image) -> bytes:
+    """Return an image as a PNG file."""
+    row = 3 * image.width
+    lines = b"".join(b"\0" + image.pixels[at : at + row] for at in range(0, row * image.height, row))
+    header = struct.pack(">IIBBBBB", image.width, image.height, 8, 2, 0, 0, 0)
+    return _SIGNATURE + _chunk(b"IHDR", header) + _chunk(b"IDAT", zlib.compress(lines, 1)) + _chunk(b"IEND", b"")
+
+
+def _chunk(kind: bytes, data: bytes) -> bytes:
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))

@@ -1,8 +1,4 @@
-"""Reads and writes the devices of a port in a thread apart from the tick, at the rate of their driver.
-
-It is a watchdog too: a command that isn't repeated for a moment is replaced by one that brings the device to rest,
-and a reading is only given while it is new. Readings and commands are in true units; the driver's are scaled here.
-"""
+"""Reads and writes the devices of a port in their own thread, and checks all values, whoever made them."""
 
 from __future__ import annotations
 
@@ -10,13 +6,15 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from functools import cache
+from math import fsum, isfinite, isnan
 
 from btlang.devices.driver import Device, DeviceError, DeviceSilent, Driver
-from btlang.devices.kinds import KINDS, Charge, Command, JointTarget, Reading
-from btlang.devices.value_checks import check_command, wrong_content, wrong_field
+from btlang.devices.kinds import KINDS, Charge, Command, Distance, Image, JointTarget, Reading, Scan
 from btlang.engine.leaves.leaf import described
-from btlang.robots.charge import ChargeCheck
+from btlang.robots.motion.guard.readings import ChargeCheck
 
+_NUMBERS, _NO_NUMBER, _NOT_FINITE = ("float", "int"), "not a number", "not finite"
 SILENCE = 0.2
 """Seconds after which a command no longer counts, and after which a device that moves is silent."""
 _RETRY = 0.25  # seconds until a lost port is opened again
@@ -24,8 +22,58 @@ _JOIN = 2.0
 _NOT_YET, _NOTHING_NEW, _CLOSED = "it has not answered yet", "it reports nothing new", "its loop is closed"
 
 
+def wrong_field(record: Reading | Command) -> tuple[str, str] | None:
+    """Return the name of the first field that isn't a number although it has to be, and what is wrong with it.
+
+    Distances may be infinite.
+    """
+    for name, may_lack in _number_fields(type(record)):
+        value = getattr(record, name)
+        if value is None and may_lack:
+            continue
+        try:
+            if isnan(value):
+                return name, _NO_NUMBER
+        except (TypeError, OverflowError):  # OverflowError: a whole number of hundreds of digits
+            return name, _NO_NUMBER
+        if not isfinite(value) and not isinstance(record, Distance):
+            return name, _NOT_FINITE
+    return None
+
+
+def check_command(name: str, kind: str, command: Command) -> None:
+    """Raise DeviceError for a command that a device of this name and kind doesn't take."""
+    wanted = KINDS[kind].command
+    if wanted is None or not isinstance(command, wanted):
+        raise DeviceError(f"the {name} doesn't take a {type(command).__name__}")
+    if wrong := wrong_field(command):
+        raise DeviceError(f"the {name} doesn't take a {wrong[0]} that is {wrong[1]}")
+
+
+def wrong_content(reading: Reading) -> str:
+    """Return why the beams of a scan or the pixels of a picture can't be used, "" if they can."""
+    if isinstance(reading, Scan):
+        try:
+            all_invalid = isnan(fsum(reading.ranges)) and all(map(isnan, reading.ranges))
+        except (TypeError, ValueError):  # ValueError: infinity of both signs
+            return "its ranges have what is not a number"
+        return "its scan has no valid beam" if all_invalid else ""
+    if isinstance(reading, Image):
+        size, wanted = len(reading.pixels), 3 * reading.width * reading.height
+        if reading.width <= 0 or size != wanted:
+            return f"its picture has {size} bytes, not {wanted}: 3 for each of {reading.width} by {reading.height}"
+    return ""
+
+
+@cache
+def _number_fields(kind: type[Reading | Command]) -> tuple[tuple[str, bool], ...]:
+    """Return the fields that are numbers, and whether each may be None."""
+    kinds = ((name, str(kind.__annotations__.get(name, "")).split(" | ")) for name in kind.fields)
+    return tuple((name, "None" in each) for name, each in kinds if each[0] in _NUMBERS)
+
+
 class DeviceLoop:
-    """The loop of one driver, from `start` to `close`. All else is for any thread.
+    """The loop of one driver, from `start` to `close`. All other methods are for any thread.
 
     `changed` is called, in the thread of the loop, with a device and why it is silent (None: it is back).
     """
@@ -45,47 +93,47 @@ class DeviceLoop:
         self._followers: dict[str, list[Callable[[Reading], object]]] = {}
         self._charges = {device.name: ChargeCheck() for device in devices if device.kind == "battery"}
         self.settled = threading.Event()
-        """Set once it is known of each device whether it answers."""
+        """Set once it is known for each device whether it answers."""
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=self._work, name="btlang devices", daemon=True)
         self.rate = 0.0
         """Cycles a second that it reaches, over about a second; 0 while the port is not open."""
 
     def start(self) -> None:
-        """Begins to open the port, and goes on trying until it can."""
+        """Begin to open the port, and retry until it can be opened."""
         self._thread.start()
 
     def close(self) -> None:
-        """Brings the devices to rest and lets go of the port. May be called twice."""
+        """Bring the devices to rest and close the port. May be called twice."""
         self._stopped.set()
         if self._thread.ident is not None:
             self._thread.join(_JOIN)
 
     def read(self, name: str) -> Reading:
-        """The latest reading. Raises DeviceSilent if there is no new one."""
+        """Return the latest reading. Raises DeviceSilent if there is no new one."""
         found, wrong = self._readings.get(name), self.silent(name)
         if wrong is None and found is not None:
             return found[0]
         raise DeviceSilent(f"the {name} is silent: {wrong or _NOTHING_NEW}")
 
     def follow(self, name: str, take: Callable[[Reading], object]) -> None:
-        """`take` gets each new reading from now on, in the thread of the loop; it must return at once."""
+        """Call `take` with each new reading from now on, in the thread of the loop; it must return at once."""
         self._followers[name] = [*self._followers.get(name, ()), take]
 
     def write(self, name: str, command: Command) -> None:
-        """Commands a device; the command counts for `silence` seconds, so whoever drives repeats it.
+        """Command a device; the command counts for `silence` seconds, so whoever drives repeats it.
 
-        Raises DeviceError for one that the device doesn't take, or with a field that isn't a finite number.
+        Raises DeviceError for an invalid command, or for a field that isn't a finite number.
         """
         check_command(name, self.devices[name].kind, command)
         self._commands[name] = command, time.monotonic()
 
     def rest(self) -> None:
-        """Forgets all commands: what moves comes to rest in the next cycle. Takes no lock."""
+        """Forget all commands: what moves comes to rest in the next cycle. Takes no lock."""
         self._commands.clear()
 
     def silent(self, name: str) -> str | None:
-        """Why a device is silent, None if it isn't."""
+        """Return why a device is silent, None if it isn't."""
         found, wrong = self._readings.get(name), self._wrong[name]
         if wrong is None and (found is None or time.monotonic() - found[1] > self._silence):
             return _NOTHING_NEW  # its driver hangs
@@ -128,7 +176,7 @@ class DeviceLoop:
                 self._stopped.wait(due - now)
 
     def _due_commands(self, until: float) -> dict[str, Command]:
-        """Commands that count until then, when the next ones are sent. A device that moves rests while it's silent."""
+        """Return the commands that count until the next cycle. A device that moves rests while it's silent."""
         found: dict[str, Command] = {}
         for name, device in self.devices.items():
             kind = KINDS[device.kind]
@@ -149,7 +197,7 @@ class DeviceLoop:
             self._readings.pop(name, None)
             self._set_wrong(name, wrong)
         else:
-            calibrated = _calibrated(reading, self.devices[name])
+            calibrated = _calibrate(reading, self.devices[name])
             if isinstance(calibrated, Charge) and not self._charges[name].believes(calibrated.percent, now):
                 before = self._readings.get(name)
                 if before is not None and self._charges[name].is_recent(now):
@@ -176,7 +224,7 @@ class DeviceLoop:
 
 
 def _untrue(reading: Reading, device: Device) -> str:
-    """Why a reading can't be used, "" where it can."""
+    """Return why a reading can't be used, "" if it can."""
     wanted = KINDS[device.kind].reading or Reading
     if not isinstance(reading, wanted):
         return f"its driver gives {type(reading).__name__}, not {wanted.__name__}"
@@ -184,7 +232,7 @@ def _untrue(reading: Reading, device: Device) -> str:
     return f"its {wrong[0]} is {wrong[1]}" if wrong else wrong_content(reading)
 
 
-def _calibrated(reading: Reading, device: Device) -> Reading:
+def _calibrate(reading: Reading, device: Device) -> Reading:
     if (device.scale, device.offset) == (1.0, 0.0):
         return reading
     kind, scale, offset = KINDS[device.kind], device.scale, device.offset

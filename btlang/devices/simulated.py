@@ -8,8 +8,7 @@ from contextlib import suppress
 from math import inf, isfinite, radians
 from random import Random
 
-from btlang.devices.driver import Device, DeviceError, DeviceSilent
-from btlang.devices.drivers import SIMULATED
+from btlang.devices.driver import SIMULATED, Device, DeviceError, DeviceSilent
 from btlang.devices.kinds import (
     KINDS,
     Charge,
@@ -31,9 +30,8 @@ from btlang.devices.kinds import (
     Wheels,
     WheelSpeeds,
 )
-from btlang.devices.loop import SILENCE
-from btlang.devices.value_checks import check_command
-from btlang.robots.body import Body
+from btlang.devices.loop import SILENCE, check_command
+from btlang.robots.bodies.body import Body
 from btlang.robots.geometry import CENTRE
 from btlang.robots.robot import RobotError
 
@@ -43,14 +41,18 @@ if TYPE_CHECKING:
 
 _WIDTH, _HEIGHT = 160, 120
 _RATE = 16_000
+_OPTIONS = {
+    "range": ("cone", "range"), "camera": ("view",), "joint": ("part",), "hand": ("part",),
+    "button": ("bumper",), "gauge": ("value",),
+}  # fmt: skip
 
 
 class SimulatedDevice:
     """One device. `read` and `write` are for any thread, `step` for that of the robot. Seconds are those of its world.
 
-    Options of all kinds: `noise` (standard deviation), `delay` in seconds, `silent` and `frozen` as [from, until].
-    Of a range sensor: `cone` (degrees), `range` (metres). Of a camera: `view` (degrees). Of a joint or hand: `part`,
-    the name in the body, by default that of the device. Of a button: `bumper`. Of a gauge: `value`.
+    Options of all kinds: `noise` (standard deviation), `delay` in seconds, `silent` and `frozen` as [from, until]. Of a
+    range sensor: `cone` (degrees), `range` (metres). Of a camera: `view` (degrees). Of a joint or hand: `part`, the
+    name in the body, by default that of the device. Of a button: `bumper`. Of a gauge: `value`.
     """
 
     def __init__(self, device: Device, robot: Any) -> None:
@@ -70,7 +72,7 @@ class SimulatedDevice:
         self._begun = 0.0
         self._at_dock = False
         self.is_pressed = False
-        """Of a button: whether somebody presses it."""
+        """Whether somebody presses this button."""
 
     @property
     def shown(self) -> Command | None:
@@ -78,7 +80,7 @@ class SimulatedDevice:
         return self._command
 
     def read(self, name: str) -> Reading:
-        """The latest reading. Raises DeviceSilent."""
+        """Return the latest reading. Raises DeviceSilent."""
         if self._is_perfect:
             return self._read()
         now = self._robot.time
@@ -95,7 +97,7 @@ class SimulatedDevice:
 
     @property
     def exact(self) -> Any:
-        """The base around which a lidar sees all exactly, so that there's no need to measure it; else None."""
+        """The base around which a lidar sees everything exactly, so that there's no need to measure it; else None."""
         sees = self._is_perfect and self._device.kind == "lidar" and not self._robot.faults.scanner_silent
         return self._robot.base if sees else None
 
@@ -106,7 +108,7 @@ class SimulatedDevice:
             raise DeviceSilent(f"the {self._device.name} is silent: {problem}") from None
 
     def write(self, name: str, command: Command) -> None:
-        """Commands the device. Raises DeviceError for a command that it doesn't take."""
+        """Command the device. Raises DeviceError for an invalid command."""
         check_command(name, self._device.kind, command)
         self._command, self._command_time = command, self._robot.time
         act = _WRITE.get(self._device.kind)
@@ -114,14 +116,14 @@ class SimulatedDevice:
             act(self, command)
 
     def step(self) -> None:
-        """Brings the device to rest if it moves and its command isn't repeated."""
+        """Bring the device to rest if it moves and its command isn't repeated."""
         rest = self._kind.rest
         if rest is not None and self._command is not None and self._robot.time - self._command_time > SILENCE:
             self._command = None
             _WRITE[self._device.kind](self, rest)
 
     def silent(self, name: str) -> str | None:
-        """Why it is silent."""
+        """Return why it is silent."""
         return "it is switched off in the robot file" if self._within("silent", self._robot.time) else None
 
     def _option(self, name: str, usual: Any) -> Any:
@@ -155,7 +157,7 @@ class SimulatedDevice:
         return Distance(nearest if nearest <= float(self._option("range", 4.0)) else inf)
 
     def _scan(self) -> Scan:
-        from btlang.robots.scan import as_measured  # brings numpy
+        from btlang.robots.worlds.scan import as_measured  # brings numpy
 
         scanner = self._robot.body.sensor("scanner")
         ranges: Any = as_measured(self._robot.scan(), CENTRE if scanner is None else scanner.pose)
@@ -214,7 +216,7 @@ class SimulatedDevice:
             pass
 
     def _image(self) -> Image:
-        """What the scanner sees, as walls that are darker and lower the farther they are."""
+        """Return an image of what the scanner sees, as walls that are darker and lower the farther they are."""
         import numpy as np  # most missions need none
 
         view, angle = float(self._option("view", 60.0)), self._device.angle
@@ -257,11 +259,7 @@ _VALUES: dict[str, tuple[Callable[[Any], bool], str]] = {
     "part": (lambda value: isinstance(value, str), "a name"),
     "bumper": (lambda value: isinstance(value, bool), "true or false"),
 }
-"""What options may be, where that isn't a number."""
-_OPTIONS = {
-    "range": ("cone", "range"), "camera": ("view",), "joint": ("part",), "hand": ("part",),
-    "button": ("bumper",), "gauge": ("value",),
-}  # fmt: skip
+"""The valid values of options that aren't numbers."""
 _READ: dict[str, Callable[[SimulatedDevice], Reading]] = {
     "range": SimulatedDevice._distance,
     "lidar": SimulatedDevice._scan,
@@ -284,7 +282,7 @@ _WRITE: dict[str, Callable[[SimulatedDevice, Command], None]] = {
 
 
 def twins(body: Body) -> tuple[Device, ...]:
-    """A simulated device for each of the body's own, and for each of its parts that has none."""
+    """Return a simulated device for each device of the body, and for each part without a device."""
     made = {device.name: twin(device) for device in body.devices}
     kinds = {device.kind for device in body.devices}
     parts = [
@@ -306,7 +304,7 @@ def twins(body: Body) -> tuple[Device, ...]:
 
 
 def twin(device: Device) -> Device:
-    """A simulated one in its place, to which the options of its driver say nothing."""
+    """Return a simulated device in place of another one. The options of its driver don't count."""
     if device.driver == SIMULATED:
         return device
     options = {"bumper": True} if device.kind == "button" and "bumper" in device.name else {}

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.reading import read_source
-from btlang.robots.body import Body
-from btlang.robots.data_file import as_mission_error, placed
-from btlang.robots.gesture import Gesture
-from btlang.robots.gesture_file import GestureError, load_gestures
-from btlang.robots.rehearsal import Rehearsal, rehearse
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.gesture import Gesture
+from btlang.robots.bodies.gesture_file import GestureError, load_gestures
+from btlang.robots.files import as_mission_error, locate_problems
+from btlang.robots.simulation.rehearsal import Rehearsal, rehearse
 from btlang.text.source import Source, Span
 from btlang.text.toml_positions import positions
 from btlang.text.toml_table import Problem
@@ -19,7 +19,7 @@ _SLOWED = 1.02  # times as long
 
 
 def check_file(path: str, body: Body) -> Iterator[Diagnostic]:
-    """What is wrong with a gesture file for a body (BT076), and what would be slowed (BT077)."""
+    """Return what is wrong with a gesture file for a body (BT076), and what would be slowed (BT077)."""
     source = read_source(path)
     try:
         gestures = load_gestures(source, body.joints)
@@ -31,14 +31,14 @@ def check_file(path: str, body: Body) -> Iterator[Diagnostic]:
 
 
 def check_gesture(gesture: Gesture, body: Body, source: Source) -> Iterator[Diagnostic]:
-    """As `check_file`, of one that was read."""
+    """Return what is wrong with a gesture that was read, like `check_file`."""
     rehearsal = rehearse(body, gesture)
     if not rehearsal.problem and rehearsal.slower <= _SLOWED:
         return
     index = _first(gesture, body, rehearsal)
     if rehearsal.problem:
         says = f"{gesture.name}: {rehearsal.problem}"
-        for error in placed([Problem(says, "frame", index, "at")], source, source.name, GestureError):
+        for error in locate_problems([Problem(says, "frame", index, "at")], source, source.name, GestureError):
             yield from as_mission_error(error).diagnostics
         return
     found = positions(source.text)
@@ -49,7 +49,7 @@ def check_gesture(gesture: Gesture, body: Body, source: Source) -> Iterator[Diag
 
 
 def _first(gesture: Gesture, body: Body, whole: Rehearsal) -> int:
-    """The number in the file of the first key frame up to which it goes wrong as the whole gesture does."""
+    """Return the number in the file of the first key frame up to which it goes wrong as the whole gesture does."""
     for count in range(1, len(gesture.frames)):
         part = rehearse(body, _until(gesture, count))
         if part.problem if whole.problem else part.slower > _SLOWED:
@@ -64,6 +64,6 @@ def _until(gesture: Gesture, count: int) -> Gesture:
 
 
 def _written(gesture: Gesture, index: int) -> int:
-    """Of a repeated key frame, which is in the file once."""
+    """Return the place of a repeated key frame, which is in the file once."""
     written = list(dict.fromkeys(id(frame.joints) for frame in gesture.frames))
     return written.index(id(gesture.frames[index].joints))

@@ -15,11 +15,11 @@ from btlang.diagnostics.reading import read_source
 from btlang.gestures.checking import check_file
 from btlang.gestures.recording import record
 from btlang.pictures.files import MOVING, STILL, check_picture, ending
-from btlang.robots.body import Body
-from btlang.robots.gesture import Gesture
-from btlang.robots.gesture_file import TARGET, phrase_forms
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.gesture import Gesture
+from btlang.robots.bodies.gesture_file import TARGET, phrase_forms
 from btlang.robots.registry import Connector, body_of, runs_in_real_time, runs_on
-from btlang.robots.rehearsal import rehearse
+from btlang.robots.simulation.rehearsal import rehearse
 from btlang.text.output import show
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
@@ -35,7 +35,7 @@ _GIVEN = {"at": None, "over": None, "speed": "real", "out": None}
 
 
 def serve(options: argparse.Namespace) -> int:
-    """Does the verb `gesture`; returns the exit code. Raises MissionError."""
+    """Do the verb `gesture`; return the exit code. Raises MissionError."""
     act, items = options.act, options.items
     for name, usual in _GIVEN.items():
         if getattr(options, name) != usual and name not in _TAKES[act]:
@@ -51,11 +51,11 @@ def serve(options: argparse.Namespace) -> int:
     body, over = runs_on(options.robot, options.over)
     if act == "record":
         return record(items[0], options.out, body, over)
-    gesture = _named(items[0], body)
+    gesture = _find_gesture(items[0], body)
     return _play(options, body, over, gesture) if act == "play" else _draw(options.out, body, gesture)
 
 
-def _named(name: str, body: Body) -> Gesture:
+def _find_gesture(name: str, body: Body) -> Gesture:
     found = body.gestures.get(name)
     if found is None:
         near = nearest(name, body.gestures)
@@ -84,7 +84,7 @@ def _play(options: argparse.Namespace, body: Body, over: str, gesture: Gesture) 
 
 
 def _said(options: argparse.Namespace, gesture: Gesture) -> str:
-    """The gesture as a mission."""
+    """Return the gesture as a mission."""
     for form in phrase_forms(gesture):
         if (options.at is not None) == (Slot(TARGET) in form):
             return " ".join(part if isinstance(part, str) else str(options.at) for part in form)
@@ -93,7 +93,7 @@ def _said(options: argparse.Namespace, gesture: Gesture) -> str:
 
 
 def _check(options: argparse.Namespace) -> int:
-    """Of files of gestures, and of all gestures of robot files."""
+    """Check files of gestures, and all gestures of robot files."""
     found = []
     for path in options.items:
         source = read_source(path)
@@ -118,7 +118,7 @@ def _is_gesture(source: Source) -> bool:
 
 
 def _robot_above(path: str) -> str | None:
-    """The robot file that is in the folder of a gesture, or in one above it."""
+    """Return the robot file that is in the folder of a gesture, or in one above it."""
     folder = os.path.dirname(os.path.abspath(path))
     places = (os.path.join(each, _ROBOT) for each in (folder, os.path.dirname(folder)))
     return next((place for place in places if os.path.isfile(place)), None)

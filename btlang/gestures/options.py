@@ -1,4 +1,4 @@
-"""The options of `btc gesture`, apart from what it does."""
+"""The options of `btc gesture`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ACTS = {
 
 
 def add_gesture_options(parser: argparse.ArgumentParser) -> None:
-    """Those of `btc gesture`."""
+    """Add the options of `btc gesture`."""
     parser.usage = (
         "btc gesture play NAME --robot FILE [--at TARGET] [--over PLATFORM] [--speed SPEED]\n"
         "       btc gesture check FILE ... [--robot FILE]\n"

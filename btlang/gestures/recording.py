@@ -3,18 +3,29 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 
 from btlang.backends.files import write_file
-from btlang.devices.driver import DeviceError
-from btlang.gestures.loose_joints import loose, servos_of
-from btlang.robots.body import Body
-from btlang.robots.data_file import as_mission_error
-from btlang.robots.gesture_file import GestureError, load_gestures
+from btlang.devices.device_set import DeviceSet
+from btlang.devices.driver import SIMULATED, Device, DeviceError
+from btlang.devices.kinds import JointState, JointTarget
+from btlang.interrupts import interrupts_later
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.body_file import unusable_robot
+from btlang.robots.bodies.gesture_file import GestureError, load_gestures
+from btlang.robots.files import as_mission_error
+from btlang.robots.robot import joint_of
 from btlang.text.output import show
 from btlang.text.source import Source
 from btlang.text.toml_writing import toml_key, toml_value
 
+_EACH = 0.1  # seconds between two commands that keep servos loose
+_WAITS = 2.0  # seconds until servos must have let go, or hold again
+_LOOKS = 0.02  # seconds between two looks at them meanwhile
+_SLOW = 5.0  # degrees a second at most until a servo holds
 Pose = dict[str, float]
 _LEAST = 0.5  # seconds between two poses
 _SMOOTH = 2.2  # times as long as at top speed, for a smooth start and end
@@ -22,11 +33,116 @@ _HELP = "Enter takes the pose, 'end' writes the file."
 _TYPED = "Type joints with their angles, such as: head tilt = -15, head turn = 20. 'end' writes the file."
 
 
-def record(name: str, path: str, body: Body, over: str) -> int:
-    """Takes poses from standard input until it ends, and writes the gesture; returns the exit code.
+def servos_of(body: Body) -> tuple[Device, ...]:
+    """Return the real servos of a robot's joints."""
+    return tuple(each for each in body.devices if each.driver != SIMULATED and body.joint(each.name) is not None)
 
-    Where the robot has servos, they are loose meanwhile. Ctrl-C writes nothing. Raises MissionError (BT071 for devices
-    that can't be used, BT076 for poses that can't make a gesture).
+
+@contextmanager
+def loose(body: Body) -> Iterator[Callable[[], dict[str, float]]]:
+    """Yield a body's servos without torque, and a reader of their positions; at the end they hold there.
+
+    Raises MissionError (BT071) if one can't be used. The reader raises DeviceError for a silent servo, and ValueError
+    for one that was moved beyond the limits of its joint.
+    """
+    servos = _Servos(body)
+    try:
+        try:
+            servos.release()
+        except DeviceError as problem:
+            raise unusable_robot(problem) from None
+        yield servos.pose
+    finally:
+        with interrupts_later():
+            servos.hold()
+            servos.devices.close()
+
+
+class _Servos:
+    """Servos, and a thread that repeats their commands, as their loop requires."""
+
+    def __init__(self, body: Body) -> None:
+        self._body = body
+        self._names = [servo.name for servo in servos_of(body)]
+        try:
+            self.devices = DeviceSet(body.replace(devices=servos_of(body)), None, _ignore)
+        except DeviceError as problem:
+            raise unusable_robot(problem) from None
+        self._done = threading.Event()
+        self._thread = threading.Thread(target=self._keep, name="loose joints", daemon=True)
+
+    def release(self) -> None:
+        """Take their torque away. Raises DeviceError if one is silent."""
+        self.devices.start()
+        self._thread.start()
+        for name in self._until(lambda name: self._state(name).loose):
+            self._state(name)
+            raise DeviceError(f"the {name} doesn't let go")
+
+    def hold(self) -> None:
+        """Hold the servos where they are; report the silent ones, which stay as they are."""
+        self._done.set()
+        if self._thread.ident is not None:
+            self._thread.join()
+        for name in self._until(self._holds):
+            show(f"The {name} can't be told to hold its place.", sys.stderr)
+        for name in self._names:
+            self.devices.readers[name].write(name, JointTarget())
+
+    def pose(self) -> dict[str, float]:
+        """Return the positions of the servos; see `loose`."""
+        self._until(lambda name: bool(self._state(name)))  # one may be silent for a moment
+        return {name: self._angle(name) for name in self._names}
+
+    def _angle(self, name: str) -> float:
+        joint, at = joint_of(self._body, name), self._state(name).position
+        within = min(joint.high, max(joint.low, at))
+        if abs(at - within) > joint.close_enough:
+            says = f"it goes from {joint.low:g} to {joint.high:g}"
+            raise ValueError(f"the {name} is at {at:.4g}, but {says}; move it back, then press Enter again")
+        return round(within, 3 if joint.slides else 1)
+
+    def _state(self, name: str) -> JointState:
+        state = self.devices.readers[name].read(name)
+        assert isinstance(state, JointState)
+        return state
+
+    def _keep(self) -> None:
+        while not self._done.wait(_EACH):
+            for name in self._names:
+                self.devices.readers[name].write(name, JointTarget(loose=True))
+
+    def _holds(self, name: str) -> bool:
+        state = self._state(name)
+        self.devices.readers[name].write(name, JointTarget(state.position, _SLOW))
+        return not state.loose
+
+    def _until(self, reached: Callable[[str], bool]) -> list[str]:
+        """Ask again and again for servos that haven't reached something; return those that don't."""
+        left, end = self._names, time.monotonic() + _WAITS
+        while left and time.monotonic() < end:
+            left = [name for name in left if not _is_so(reached, name)]
+            if left:
+                time.sleep(_LOOKS)
+        return left
+
+
+def _is_so(reached: Callable[[str], bool], name: str) -> bool:
+    try:
+        return reached(name)
+    except DeviceError:  # silent; it may come back
+        return False
+
+
+def _ignore(kind: str, data: Mapping[str, object]) -> None:
+    """Ignore that devices fall silent: reading reports it."""
+
+
+def record(name: str, path: str, body: Body, over: str) -> int:
+    """Take poses from standard input until it ends, and write the gesture; return the exit code.
+
+    Servos of the robot are loose meanwhile. Ctrl-C writes nothing. Raises MissionError (BT071 for devices that can't be
+    used, BT076 for poses that can't make a gesture).
     """
     if over != "devices" or not servos_of(body):
         show(f"The robot runs {over}, so nobody can move it by hand. {_TYPED}", sys.stderr)
@@ -38,13 +154,13 @@ def record(name: str, path: str, body: Body, over: str) -> int:
 
 
 def poses_of(lines: Iterable[str], body: Body, read: Callable[[], Pose] | None) -> Iterator[Pose]:
-    """The pose of each line that has one; what is wrong with a line is said."""
+    """Yield the pose of each line that has one; report what is wrong with a line."""
     for line in lines:
         if line.strip() == "end":
             return
         try:
             if line.strip():
-                pose = _typed(line, body)
+                pose = _read_typed(line, body)
             elif read is None:
                 raise ValueError(_TYPED)
             else:
@@ -57,7 +173,7 @@ def poses_of(lines: Iterable[str], body: Body, read: Callable[[], Pose] | None) 
 
 
 def text_of(name: str, body: Body, poses: Iterable[Pose]) -> str:
-    """The file of a gesture: one key frame for each pose, as far apart as the joints need."""
+    """Return the file of a gesture: one key frame for each pose, as far apart as the joints need."""
     at, last = 0.0, {joint.name: joint.rest for joint in body.joints}
     text = f"name = {toml_value(name)}\n"
     for pose in poses:
@@ -88,7 +204,7 @@ def _write(name: str, path: str, body: Body, poses: Iterable[Pose]) -> int:
     return 0
 
 
-def _typed(line: str, body: Body) -> Pose:
+def _read_typed(line: str, body: Body) -> Pose:
     pose: Pose = {}
     for part in line.split(","):
         name, equals, text = (piece.strip() for piece in part.partition("="))

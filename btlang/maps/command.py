@@ -1,19 +1,20 @@
-"""What `btc world` does: checks, draws, imports and exports worlds."""
+"""What `btc world` does: checks, draws, imports, exports and summarizes worlds."""
 
 from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Iterator
 from shutil import get_terminal_size
 
 from btlang.backends.files import write_file
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, unwritable
 from btlang.maps.options import ACTS, TARGETS, USUAL_RESOLUTION
-from btlang.maps.summary import summary
 from btlang.robots.registry import body_of
-from btlang.robots.world_problem import read_world
-from btlang.robots.world_writing import to_toml
+from btlang.robots.worlds.world import Person, World, WorldObject, Zone
+from btlang.robots.worlds.world_file import read_world
+from btlang.robots.worlds.world_writing import to_toml
 from btlang.run.robot_state import RobotState
 from btlang.text.escaping import one_line
 from btlang.text.output import WIDEST, can_draw, is_unicode, show
@@ -26,8 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from btlang.diagnostics.diagnostic import Diagnostic
-    from btlang.robots.body import Body
-    from btlang.robots.world import World
+    from btlang.robots.bodies.body import Body
 
 _BAD_INPUT = 2
 _ROWS = 10  # that the map leaves for the names
@@ -35,8 +35,55 @@ _GIVEN = {"picture": "--picture", "out": "-o", "to": "--to", "start": "--start",
 _TAKES = {"": {"picture"}, "check": set[str](), "import": {"out", "start"}, "export": {"out", "to", "resolution"}}
 
 
+def summary(world: World) -> Iterator[str]:
+    """Return a line for the size and the start of a world, and one for each kind of things with their names."""
+    points = [point for wall in world.walls for point in wall]
+    points += [edge[:2] for box in world.boxes for edge in box.edges()]
+    if points:
+        xs, ys = zip(*points, strict=True)
+        yield f"size: {max(xs) - min(xs):g} m x {max(ys) - min(ys):g} m"
+    yield f"start: ({world.start.x:g}, {world.start.y:g}), facing {world.start.heading:g}"
+    groups = {
+        "places": [place.name for place in world.places],
+        "objects": [_object(thing) for thing in world.objects],
+        "people": [_person(person) for person in world.people],
+        "zones": [_zone(zone) for zone in world.zones],
+        "doors": [f"{door.name} ({'open' if door.open else 'closed'})" for door in world.doors],
+        "faults": [fault.kind for fault in world.faults],
+    }
+    yield from (f"{kind}: {one_line(', '.join(listed))}" for kind, listed in groups.items() if listed)
+    if world.seed is not None:
+        yield f"seed: {world.seed}"
+
+
+def _with(name: str, *more: str) -> str:
+    details = ", ".join(each for each in more if each)
+    return f"{name} ({details})" if details else name
+
+
+def _object(thing: WorldObject) -> str:
+    switch, owner = thing.switch and f"is {thing.switch}", thing.owner and f"owner {thing.owner}"
+    like = (thing.sized, *thing.state, thing.color, thing.kind)
+    holds, has = thing.content and f"of {thing.content}", (f"with {each}" for each in thing.having)
+    return _with(thing.name, *like, holds, *has, owner, switch, _unknown(thing.known))
+
+
+def _person(person: Person) -> str:
+    comes = f"comes at {person.comes:g} s" if person.comes else ""
+    walks = "walks anywhere" if person.wanders else f"walks to {len(person.walks)} stops" if person.walks else ""
+    return _with(person.name, comes, walks, _unknown(person.known))
+
+
+def _unknown(known: bool) -> str:
+    return "" if known else "not known"
+
+
+def _zone(zone: Zone) -> str:
+    return _with(zone.name, zone.kind if zone.is_closed else f"{zone.kind}, {zone.speed:g} m/s")
+
+
 def serve(options: argparse.Namespace) -> int:
-    """Does the verb `world`; returns the exit code. Raises MissionError."""
+    """Do the verb `world`; return the exit code. Raises MissionError."""
     words = options.words or [DEFAULT_WORLD]
     act, files = ("", words) if words[0] not in ACTS else (words[0], words[1:])
     _check_words(options, act, files)
@@ -68,7 +115,7 @@ def _on_terminal(world: World) -> object:
 
 
 def _check_words(options: argparse.Namespace, act: str, files: list[str]) -> None:
-    """Ends with a usage error where options and files don't fit the act."""
+    """Exit with a usage error if options and files don't fit the act."""
     for name, option in _GIVEN.items():
         if getattr(options, name) is not None and name not in _TAKES[act]:
             options.refuse(f"{option} isn't for {act or 'a world alone'}")
@@ -111,8 +158,7 @@ def _import(options: argparse.Namespace, files: list[str], body: Body) -> int:
 
 def _export(options: argparse.Namespace, world: World, body: Body) -> int:
     if options.to == "nav2":
-        from btlang.maps.nav2 import nav2_files
-        from btlang.maps.raster import GridTooLarge
+        from btlang.maps.nav2 import GridTooLarge, nav2_files
 
         try:
             files = nav2_files(world, options.resolution or USUAL_RESOLUTION, body.driving.speed or 1.0)
@@ -120,7 +166,7 @@ def _export(options: argparse.Namespace, world: World, body: Body) -> int:
             options.refuse(str(problem))
         _write_folder(options.out, files)
     else:
-        from btlang.maps.notation import notation
+        from btlang.maps.data_text import notation
 
         write_file(options.out, notation(world, options.to))
         show(f"Wrote {options.out}.")

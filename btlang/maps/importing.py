@@ -9,16 +9,14 @@ from math import cos, pi, sin
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
-from btlang.maps.contours import walls_of
-from btlang.maps.data_text import ForeignFileError, read_data
-from btlang.maps.notation import is_world, read_world_data
-from btlang.maps.occupancy import is_map, read_map
+from btlang.maps.data_text import ForeignFileError, is_world, read_data, read_world_data
+from btlang.maps.occupancy import is_map, read_map, walls_of
 from btlang.maps.way_points import way_points
-from btlang.robots.data_file import as_mission_error
+from btlang.robots.files import as_mission_error
 from btlang.robots.geometry import Point, Pose, Segment, contains
-from btlang.robots.world import Place, World
-from btlang.robots.world_bounds import outer_wall
-from btlang.robots.world_file import WorldError, has_room
+from btlang.robots.worlds.world import Place, World
+from btlang.robots.worlds.world_bounds import outer_wall
+from btlang.robots.worlds.world_file import WorldError, has_room
 from btlang.text.source import NOWHERE
 from btlang.text.toml_table import Problem
 
@@ -27,7 +25,7 @@ _MOST_CHECKS = 5_000_000  # of a place with a piece of wall: as many as a world 
 
 
 def import_world(paths: Sequence[str], radius: float, start: Pose | None = None) -> tuple[World, list[str]]:
-    """The world of all files together, and a line for each place that was moved, renamed or left out.
+    """Return the world of all files together, and a line for each place that was moved, renamed or left out.
 
     It starts at `start`, by default at the first way point, and leaves room for a robot of that radius. Raises
     MissionError with what is wrong in all files.
@@ -44,7 +42,7 @@ def import_world(paths: Sequence[str], radius: float, start: Pose | None = None)
 
 
 def _read(path: str) -> World | list[Place] | tuple[tuple[Point, ...], ...]:
-    """A world, way points, or walls."""
+    """Read a file: a world, way points, or walls."""
     source = read_source(path)
     try:
         data = read_data(source)
@@ -91,7 +89,7 @@ def _unusable(reason: str) -> MissionError:
 
 
 def _with_room(world: World, more: Sequence[Place], radius: float) -> tuple[World, list[str]]:
-    """The world with further places where the robot has room, and its start too, with a line for each change."""
+    """Return the world with places and a start where the robot has room, with a line for each change."""
     segments, notes = world.segments(), list[str]()
     if len(segments) * (len(more) + len(world.places) + 1) > _MOST_CHECKS:
         raise _unusable(f"{len(segments):,} pieces of wall are too many for {len(more):,} way points")
@@ -100,14 +98,14 @@ def _with_room(world: World, more: Sequence[Place], radius: float) -> tuple[Worl
     if moved is None:
         raise _unusable(f"the start at ({start.x:g}, {start.y:g}) is too near to a wall; give one with --start X,Y")
     if moved != (start.x, start.y):
-        notes.append(_changed("the start", (start.x, start.y), moved))
+        notes.append(_describe_change("the start", (start.x, start.y), moved))
     known = {name.lower(): 1 for names in world.names.by_type.values() for name in names}
     added: list[Place] = []
     for place in more:
         at = (place.x, place.y)
         spot = _room_near(world, at, radius, segments)
         if spot is None or spot != at:
-            notes.append(_changed(f'the place "{place.name}"', at, spot))
+            notes.append(_describe_change(f'the place "{place.name}"', at, spot))
         if spot is not None:
             name = _free(place.name, known)
             if name != place.name:
@@ -128,7 +126,9 @@ def _beyond(places: Iterable[Place], wall: Sequence[Point] | None) -> Iterator[P
 
 
 def _free(name: str, known: dict[str, int]) -> str:
-    """The name, or the first of "name 2", "name 3" ... that isn't known, and now is; `known` has the last number."""
+    """Return the name, or the first of "name 2", "name 3" ... that isn't known, and make it known; `known` has the last
+    number.
+    """
     free = name
     while free.lower() in known:
         known[name.lower()] += 1
@@ -138,7 +138,7 @@ def _free(name: str, known: dict[str, int]) -> str:
 
 
 def _room_near(world: World, point: Point, radius: float, segments: Sequence[Segment]) -> Point | None:
-    """The nearest point with room for the robot, at most half a metre away; None where there isn't any."""
+    """Return the nearest point with room for the robot, at most half a metre away; None if there isn't any."""
     if has_room(world, point, radius, segments):
         return point
     x, y = point
@@ -155,13 +155,13 @@ def _room_near(world: World, point: Point, radius: float, segments: Sequence[Seg
 
 
 def _touches(segment: Segment, area: tuple[float, float, float, float]) -> bool:
-    """Whether the rectangle around a segment overlaps one."""
+    """Return whether the rectangle around a segment overlaps one."""
     ax, ay, bx, by = segment
     left, low, right, high = area
     return min(ax, bx) <= right and max(ax, bx) >= left and min(ay, by) <= high and max(ay, by) >= low
 
 
-def _changed(what: str, at: Point, to: Point | None) -> str:
+def _describe_change(what: str, at: Point, to: Point | None) -> str:
     x, y = at
     done = "is left out" if to is None else f"is moved to ({to[0]:g}, {to[1]:g})"
     return f"{what} at ({x:g}, {y:g}) is too near to a wall, so it {done}"

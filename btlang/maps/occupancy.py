@@ -1,17 +1,20 @@
-"""Maps of ROS: a YAML file and its image become cells that are occupied or not."""
+"""Maps of ROS: a YAML file and its image become occupied cells, and these become walls."""
 
 from __future__ import annotations
 
+import io
 import os
+import re
+import warnings
 from collections.abc import Mapping
+from math import cos, radians, sin
 
 import numpy as np
 
 from btlang.diagnostics.reading import is_below, real_path, reason_of
-from btlang.maps.fields import number, numbers, shown
-from btlang.maps.images import MapImage, read_image
+from btlang.maps.data_text import missing_package, number, numbers, shown
 from btlang.record import Record
-from btlang.robots.geometry import Pose
+from btlang.robots.geometry import Point, Pose
 from btlang.text.toml_table import Problem
 
 TYPE_CHECKING = False
@@ -20,11 +23,93 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
+    Corners = npt.NDArray[np.int64]
+
+MOST_CELLS = 25_000_000
+"""The most cells of a map."""
+_MOST_IN_TEXT = 4_000_000  # pixels; each is an object while it is read
+_MOST_BYTES = 60_000_000
+_GAP = rb"(?:\s|#[^\n]*\n)+"
+_PGM = re.compile(rb"P([25])" + _GAP + rb"(\d{1,6})" + _GAP + rb"(\d{1,6})" + _GAP + rb"(\d{1,5})(?:#[^\n]*\n|\s)")
 _MODES = ("trinary", "scale", "raw")
+_MOST_SIDES = 2_000_000  # of cells, on outlines; following so many takes seconds
+_NEAR = 1.0  # cells; walls are this near to the outlines
+_RIGHT, _AHEAD, _LEFT = 3, 0, 1  # quarters of a turn to the left
+
+
+class MapImage(Record):
+    """Brightness from 0 (black) to 1, a row from the top for each first index; `alpha` (1 is opaque) None for none."""
+
+    shades: npt.NDArray[np.float32]
+    alpha: npt.NDArray[np.float32] | None = None
+
+
+def read_image(path: str) -> MapImage:
+    """Read a PGM, PNG or BMP file. Raises Problem, OSError, and MissionError (BT087) if it needs Pillow."""
+    with open(path, "rb") as file:
+        data = file.read(_MOST_BYTES + 1)
+    if len(data) > _MOST_BYTES:
+        raise Problem(f"the image may have at most {_MOST_BYTES:,} bytes")
+    return _read_pgm(data) if data[:2] in (b"P2", b"P5") else _read_other(data)
+
+
+def _read_pgm(data: bytes) -> MapImage:
+    header = _PGM.match(data)
+    if header is None:
+        raise Problem("the image has no complete PGM header")
+    width, height, white = int(header[2]), int(header[3]), int(header[4])
+    _check_size(width, height)
+    if not 0 < white < 65_536:
+        raise Problem("the image has a wrong PGM header: its white must be from 1 to 65535")
+    count, body = width * height, data[header.end() :]
+    if header[1] == b"5":
+        wide = np.dtype(">u2") if white > 255 else np.dtype(np.uint8)
+        if len(body) < count * wide.itemsize:
+            raise Problem(f"the image ends before its {count:,} pixels")
+        pixels = np.frombuffer(body, wide, count).astype(np.float32)
+    else:
+        if count > _MOST_IN_TEXT:
+            raise Problem(f"an image whose pixels are text may have at most {_MOST_IN_TEXT:,} pixels, not {count:,}")
+        words = re.sub(rb"#[^\n]*", b"", body).split(None, count)[:count]
+        if len(words) < count:
+            raise Problem(f"the image ends before its {count:,} pixels")
+        if not all(word.isdigit() and len(word) < 6 for word in words):
+            raise Problem("a pixel of the image isn't a number")
+        pixels = np.array(words, dtype=np.float32)
+    return MapImage(np.minimum(pixels / np.float32(white), 1.0).reshape(height, width))
+
+
+def _read_other(data: bytes) -> MapImage:
+    try:
+        from PIL import Image
+    except ImportError:
+        raise missing_package("images that aren't PGM", "Pillow") from None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of a large image; it is looked at here
+            with Image.open(io.BytesIO(data), formats=("PNG", "BMP", "PPM")) as image:
+                _check_size(*image.size)
+                if image.mode.startswith(("I", "F")):  # 16 bits a pixel, which Pillow would cut off
+                    return MapImage(np.minimum(np.asarray(image, dtype=np.float32) / 65_535, 1.0))
+                has_alpha = image.has_transparency_data
+                pixels = np.asarray(image.convert("RGBA"), dtype=np.uint8)
+    except Problem:
+        raise
+    except Exception as error:  # what a decoder raises for a broken file is not one class
+        raise Problem(
+            f"the image can't be read: {str(error).splitlines()[0] if str(error) else 'it is broken'}"
+        ) from None
+    shades = pixels[:, :, :3].mean(axis=2, dtype=np.float32) / np.float32(255)
+    return MapImage(shades, pixels[:, :, 3].astype(np.float32) / np.float32(255) if has_alpha else None)
+
+
+def _check_size(width: int, height: int) -> None:
+    if width < 1 or height < 1 or width * height > MOST_CELLS:
+        raise Problem(f"an image must have from 1 to {MOST_CELLS:,} pixels, not {width:,} x {height:,}")
 
 
 class OccupancyMap(Record):
-    """Which cells are occupied, a row from the south for each first index.
+    """The occupied cells of a map, a row from the south for each first index.
 
     A cell has sides of `resolution` metres; `origin` is the corner of the first cell and the direction of its row.
     """
@@ -35,15 +120,15 @@ class OccupancyMap(Record):
 
 
 def is_map(data: object) -> bool:
-    """Whether the data of a file are those of a map."""
+    """Return whether the data of a file are a map."""
     return isinstance(data, Mapping) and "image" in data and "resolution" in data
 
 
 def read_map(data: Mapping[str, Any], folder: str) -> OccupancyMap:
-    """A map whose image is in the folder of its YAML file. Cells are what nav2_map_server takes them for; of "raw"
-    images a cell is occupied as in "scale": above `occupied_thresh`.
+    """Return a map whose image is in the folder of its YAML file.
 
-    Raises Problem, and MissionError (BT087).
+    Cells are interpreted as nav2_map_server does it; in "raw" images a cell is occupied as in "scale": above
+    `occupied_thresh`. Raises Problem, and MissionError (BT087).
     """
     resolution = number(data["resolution"], '"resolution"', 0.001, 1000.0)
     x, y, angle = numbers(data.get("origin", [0.0, 0.0, 0.0]), '"origin"', 3)
@@ -55,7 +140,7 @@ def read_map(data: Mapping[str, Any], folder: str) -> OccupancyMap:
     if negate not in (0, 1):
         raise Problem(f'"negate" must be 0 or 1, not {shown(negate)}')
     image = _image(data["image"], folder)
-    occupied = _occupied(image, str(mode), bool(negate), occupied_above)
+    occupied = _find_occupied(image, str(mode), bool(negate), occupied_above)
     return OccupancyMap(occupied[::-1], resolution, Pose(x, y, float(np.degrees(angle))))
 
 
@@ -73,7 +158,7 @@ def _image(name: Any, folder: str) -> MapImage:
         raise Problem(f"I can't read the image {shown(name)}: {reason_of(error)}") from None
 
 
-def _occupied(image: MapImage, mode: str, negate: bool, above: float) -> npt.NDArray[np.bool_]:
+def _find_occupied(image: MapImage, mode: str, negate: bool, above: float) -> npt.NDArray[np.bool_]:
     shades, alpha = image.shades, image.alpha
     if mode == "raw":
         percent = np.rint(shades * 255)
@@ -84,3 +169,99 @@ def _occupied(image: MapImage, mode: str, negate: bool, above: float) -> npt.NDA
     if mode == "scale" and alpha is not None:
         found &= alpha == 1
     return found
+
+
+def walls_of(occupancy: OccupancyMap) -> tuple[tuple[Point, ...], ...]:
+    """Return the walls around the occupied cells, at most one cell from their outlines. Raises Problem for too many."""
+    return tuple(
+        tuple(_metres(corner, occupancy) for corner in simplify(loop).tolist()) for loop in outlines(occupancy.occupied)
+    )
+
+
+def _metres(corner: list[int], occupancy: OccupancyMap) -> Point:
+    origin, size = occupancy.origin, occupancy.resolution
+    c, s = cos(radians(origin.heading)) * size, sin(radians(origin.heading)) * size
+    column, row = corner
+    return round(origin.x + column * c - row * s, 4), round(origin.y + column * s + row * c, 4)
+
+
+def outlines(occupied: npt.NDArray[np.bool_]) -> list[Corners]:
+    """Return the closed outlines of occupied cells, as the corners (column, row) where they turn.
+
+    They go around occupied cells counter-clockwise; cells that touch at a corner are one thing. Raises Problem.
+    """
+    sides = _sides(occupied)
+    left = set(sides)
+    across = occupied.shape[1] + 1
+    steps = (1, across, -1, -across)
+    found: list[Corners] = []
+    for first in sides:
+        if first not in left:
+            continue
+        loop: list[int] = []
+        at = -1
+        corner, way = first // 4 + steps[first % 4], first % 4
+        while at != first:
+            turn = next(turn for turn in (_RIGHT, _AHEAD, _LEFT) if corner * 4 + (way + turn) % 4 in left)
+            way = (way + turn) % 4
+            at = corner * 4 + way
+            left.remove(at)
+            if turn:
+                loop.append(corner)
+            corner += steps[way]
+        found.append(np.stack(np.divmod(np.array(loop, dtype=np.int64), across)[::-1], axis=1))
+    return found
+
+
+def _sides(occupied: npt.NDArray[np.bool_]) -> list[int]:
+    """Return the sides between occupied cells and others, each as four times its first corner plus its direction.
+
+    Directions count from east in quarters of a turn; the occupied cell is on the left.
+    """
+    padded = np.pad(occupied, 1)
+    inner, across = padded[1:-1, 1:-1], occupied.shape[1] + 1
+    others = (padded[:-2, 1:-1], padded[1:-1, 2:], padded[2:, 1:-1], padded[1:-1, :-2])  # south, east, north, west
+    corners = (0, 1, across + 1, across)
+    parts = []
+    for way, (other, corner) in enumerate(zip(others, corners, strict=True)):
+        rows, columns = np.nonzero(inner & ~other)
+        parts.append((rows * across + columns + corner) * 4 + way)
+    sides = np.sort(np.concatenate(parts))
+    if len(sides) > _MOST_SIDES:
+        raise Problem(f"the map has too much detail: {len(sides):,} sides of occupied cells, at most {_MOST_SIDES:,}")
+    found: list[int] = sides.tolist()
+    return found
+
+
+def simplify(loop: Corners) -> Corners:
+    """Return a closed outline in few pieces (Ramer-Douglas-Peucker), each corner at most one cell from them.
+
+    It ends where it begins; what is as thin as a cell becomes one line.
+    """
+    first = int(np.lexsort((loop[:, 1], loop[:, 0]))[0])
+    loop = np.concatenate([loop[first:], loop[: first + 1]])
+    far = int(np.argmax(((loop - loop[0]) ** 2).sum(axis=1)))
+    kept = {0, far, len(loop) - 1}
+    pieces = [(0, far), (far, len(loop) - 1)]
+    while pieces:
+        start, end = pieces.pop()
+        if end - start < 2:
+            continue
+        distances = _distances(loop[start + 1 : end], loop[start], loop[end])
+        worst = int(np.argmax(distances))
+        if distances[worst] > _NEAR:
+            middle = start + 1 + worst
+            kept.add(middle)
+            pieces += [(start, middle), (middle, end)]
+    return loop[sorted(kept)] if len(kept) > 3 else loop[[0, far]]
+
+
+def _distances(points: Corners, start: Corners, end: Corners) -> npt.NDArray[np.float64]:
+    """Return the distances of points from the piece between two of them."""
+    along = (end - start).astype(np.float64)
+    length = float(along @ along)
+    if not length:
+        return np.asarray(np.hypot(*(points - start).T))
+    share = np.clip((points - start) @ along / length, 0.0, 1.0)
+    gaps = points - start - share[:, None] * along
+    return np.asarray(np.hypot(gaps[:, 0], gaps[:, 1]))

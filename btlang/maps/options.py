@@ -1,4 +1,4 @@
-"""The options of `btc world`, apart from what it does."""
+"""The options of `btc world`."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from btlang.text.toml_table import is_coordinate
 ACTS = ("check", "import", "export")
 TARGETS = ("nav2", "json", "yaml")
 USUAL_RESOLUTION = 0.05
-"""Metres that a cell of an exported map is wide."""
+"""The default width of a cell of an exported map, in metres."""
 
 
 def add_world_options(parser: argparse.ArgumentParser) -> None:
-    """Those of `btc world`."""
+    """Add the options of `btc world`."""
     parser.usage = (
         "btc world [FILE] [--picture OUT]\n       btc world check FILE ...\n"
         "       btc world import FILE ... -o OUT [--start X,Y[,FACING]]\n"

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import degrees
 
-from btlang.maps.fields import number, numbers, shown, yaw
+from btlang.maps.data_text import number, numbers, shown, yaw
 from btlang.robots.geometry import wrap
-from btlang.robots.world import Place
+from btlang.robots.worlds.world import Place
 from btlang.text.toml_table import Problem
 
 TYPE_CHECKING = False
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 MOST = 10_000
-"""Way points of one file."""
+"""The most way points of one file."""
 _LISTS = ("waypoints", "way_points", "poses", "points", "goals", "places", "locations", "stations", "route")
 _NAMES = ("name", "label", "id", "frame_name")
 _ABOUT = ("frame_id", "frame", "map", "version", "name", "resolution")  # of the whole list
@@ -23,14 +23,14 @@ _YAWS = ("yaw", "theta", "heading")  # radians, as everywhere in ROS
 
 
 def way_points(data: Any) -> list[Place]:
-    """All way points in the order of the file. Those without a name are called "point 1" and so on.
+    """Return all way points in the order of the file. Those without a name are called "point 1" and so on.
 
     A point is [x, y], [x, y, yaw], a table with x and y, or one with a position (or pose) and perhaps an orientation.
     Angles are in radians; orientations are quaternions: tables with x, y, z, w, lists [w, x, y, z] beside a list "pose"
     as RViz saves them, other lists [x, y, z, w]. Raises Problem for any other form.
     """
     found: list[Place] = []
-    for what, name, value in _listed(data, ""):
+    for what, name, value in _list_points(data, ""):
         if len(found) == MOST:
             raise Problem(f"a file may have at most {MOST:,} way points")
         x, y, facing = _pose(value, what)
@@ -40,8 +40,8 @@ def way_points(data: Any) -> list[Place]:
     return found
 
 
-def _listed(data: Any, what: str) -> Iterator[tuple[str, str, Any]]:
-    """What each point is called in messages, its name where it is a key, and the point."""
+def _list_points(data: Any, what: str) -> Iterator[tuple[str, str, Any]]:
+    """Return for each point its name in messages, its own name if it is a key, and the point."""
     if isinstance(data, list):
         for index, value in enumerate(data):
             yield f"{what or 'the list'}[{index}]", "", value
@@ -51,7 +51,7 @@ def _listed(data: Any, what: str) -> Iterator[tuple[str, str, Any]]:
     lists = [key for key in _LISTS if isinstance(data.get(key), list | dict) and not _is_point(data[key])]
     if lists:
         for key in lists:
-            yield from _listed(data[key], key)
+            yield from _list_points(data[key], key)
     elif _is_point(data):
         yield what or "the way point", "", data
     else:
@@ -72,7 +72,7 @@ def _name(value: Any) -> str:
 
 
 def _pose(value: Any, what: str) -> tuple[float, float, float | None]:
-    """x and y in metres, and the direction in degrees where there is one."""
+    """Return x and y in metres, and the direction in degrees if there is one."""
     for _ in range(3):  # PoseStamped has a pose in a pose
         if isinstance(value, dict) and isinstance(value.get("pose"), dict):
             value = value["pose"]
@@ -81,27 +81,27 @@ def _pose(value: Any, what: str) -> tuple[float, float, float | None]:
     if not _is_point(value):
         raise Problem(f"{what} must be a way point: a table with x and y, or with a position, or [x, y, yaw]")
     if "x" in value:
-        return number(value["x"], f"{what}.x"), number(value.get("y"), f"{what}.y"), _facing(value, what)
+        return number(value["x"], f"{what}.x"), number(value.get("y"), f"{what}.y"), _find_facing(value, what)
     is_rviz = "position" not in value
     position = value["pose" if is_rviz else "position"]
     if isinstance(position, dict):
         x, y = number(position.get("x"), f"{what}.position.x"), number(position.get("y"), f"{what}.position.y")
-        return x, y, _facing(value, what)
+        return x, y, _find_facing(value, what)
     x, y, *_ = numbers(position, f"{what}.{'pose' if is_rviz else 'position'}", 2, 3)
     if is_rviz and "orientation" not in value and len(position) == 3:
         return _pose_list(position, what)
-    return x, y, _facing(value, what, w_first=is_rviz)
+    return x, y, _find_facing(value, what, w_first=is_rviz)
 
 
 def _pose_list(value: list[Any], what: str) -> tuple[float, float, float | None]:
-    """[x, y], [x, y, yaw], or [x, y, z, then a quaternion x, y, z, w]."""
+    """Return the pose in [x, y], [x, y, yaw], or [x, y, z, then a quaternion x, y, z, w]."""
     x, y, *more = numbers(value, what, 2, 3, 7)
     if len(more) == 5:
         return x, y, yaw(what, *more[1:])
     return x, y, wrap(degrees(more[0])) if more else None
 
 
-def _facing(value: Mapping[str, Any], what: str, w_first: bool = False) -> float | None:
+def _find_facing(value: Mapping[str, Any], what: str, w_first: bool = False) -> float | None:
     turned = value.get("orientation")
     if turned is None:
         return _angle(value, what)

@@ -17,7 +17,7 @@ from btlang.pictures.track import END, draw_body, way
 from btlang.pictures.world_details import DOOR_COLOUR, draw_door, draw_route
 from btlang.pictures.world_map import OBJECT, WorldMap
 from btlang.robots.geometry import Point, Pose, wrap
-from btlang.robots.world import PERSON_RADIUS, World
+from btlang.robots.worlds.world import PERSON_RADIUS, World
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

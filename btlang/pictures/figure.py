@@ -9,11 +9,11 @@ import numpy as np
 
 from btlang.pictures.canvas import Canvas
 from btlang.pictures.drawing import drawing
-from btlang.robots.body import Body
-from btlang.robots.gesture import Gesture
-from btlang.robots.joint_tables import BASE
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.gesture import Gesture
+from btlang.robots.bodies.joint_tables import BASE
 from btlang.robots.motion.kinematics import Kinematics
-from btlang.robots.rehearsal import STEP, Rehearsal
+from btlang.robots.simulation.rehearsal import STEP, Rehearsal
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from btlang.pictures.run_record import RunRecord, Sighting
 from btlang.pictures.style import SMALL
 from btlang.pictures.world_map import OBJECT, WorldMap
 from btlang.robots.geometry import Point
-from btlang.robots.world import PERSON_RADIUS, World
+from btlang.robots.worlds.world import PERSON_RADIUS, World
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from btlang.pictures.style import BUBBLES, HEADING, INK, LOOKS, SMALL, SOFT, TIT
 from btlang.pictures.track import END, START, draw_body, draw_track, shade, way
 from btlang.pictures.world_map import WorldMap
 from btlang.robots.geometry import Point
-from btlang.robots.world import World
+from btlang.robots.worlds.world import World
 from btlang.run.bus import INLINE
 from btlang.tree.node import Node
 

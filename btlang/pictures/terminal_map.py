@@ -12,7 +12,7 @@ from operator import itemgetter
 from rich.cells import cell_len
 
 from btlang.robots.geometry import Point
-from btlang.robots.world import World
+from btlang.robots.worlds.world import World
 from btlang.run.robot_state import RobotState
 from btlang.text.escaping import one_line
 

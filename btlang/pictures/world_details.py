@@ -7,7 +7,7 @@ from itertools import pairwise
 from math import hypot
 
 from btlang.robots.geometry import Point, edges
-from btlang.robots.world import Door, Person, World, Zone
+from btlang.robots.worlds.world import Door, Person, World, Zone
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from btlang.pictures.world_details import (
     zone_colour,
 )
 from btlang.robots.geometry import Point
-from btlang.robots.world import Thing, World
+from btlang.robots.worlds.world import Thing, World
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

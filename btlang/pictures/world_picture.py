@@ -10,8 +10,8 @@ from btlang.pictures.placing import Area, Placer
 from btlang.pictures.style import HEADING, TITLE
 from btlang.pictures.track import START, draw_body
 from btlang.pictures.world_map import WorldMap
-from btlang.robots.body_file import standard_body
-from btlang.robots.world import World
+from btlang.robots.bodies.body_file import standard_body
+from btlang.robots.worlds.world import World
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

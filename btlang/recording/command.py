@@ -26,8 +26,8 @@ from btlang.recording.reader import RecordedNodes, Recording
 from btlang.recording.recorder import Recorder
 from btlang.recording.replay import Player, Timeline
 from btlang.recording.story import Story
-from btlang.robots.body_file import shipped_bodies
-from btlang.robots.world_problem import read_world
+from btlang.robots.bodies.body_file import shipped_bodies
+from btlang.robots.worlds.world_file import read_world
 from btlang.run.command import live_view
 from btlang.run.controls import Controls
 from btlang.run.events import Event

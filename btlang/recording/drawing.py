@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.body_file import standard_body
+from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.geometry import Point, Pose
 from btlang.run.events import Event, PeriodPassed
 from btlang.run.robot_state import RobotState

@@ -10,7 +10,7 @@ from btlang.engine.status import NAMES
 from btlang.passes.scripts import is_prepared
 from btlang.recording.reader import RecordedNodes
 from btlang.recording.story import Story
-from btlang.robots.world_problem import read_world
+from btlang.robots.worlds.world_file import read_world
 from btlang.run.bus import BLOCK
 from btlang.run.events import LOGGED, Event, PeriodPassed, Sampled, StatusesChanged
 from btlang.run.json_log import as_json

@@ -15,7 +15,7 @@ from btlang.record import Record
 from btlang.repl.draft import Entry, MissionDraft
 from btlang.repl.store import Store
 from btlang.robots.robot import Robot, RobotError
-from btlang.robots.world import said
+from btlang.robots.worlds.world import said
 from btlang.text.output import can_draw, listing_width
 from btlang.text.source import Source
 from btlang.text.table import Table

@@ -1,4 +1,4 @@
-"""What the robot hears, what it listens for at this moment, and the question that it waits for an answer to."""
+"""What a robot hears and listens for, the question that it waits for an answer to, and files with answers."""
 
 from __future__ import annotations
 
@@ -7,19 +7,22 @@ from contextlib import contextmanager
 from math import inf
 
 from btlang.record import Record
-from btlang.speech.grammar import spoken
-from btlang.speech.recogniser import Expected
+from btlang.robots.files import DataFileError, as_mission_error, load_data
+from btlang.speech.recogniser import Expected, spoken
+from btlang.text.source import Source
+from btlang.text.toml_table import Problem, Table
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+
 _MOST = 100
 _LISTENS = 5.0  # seconds for which it listens for what a condition has looked for
 
 
-class Heard(Record):
-    """A text that somebody said at a second of the run; `who` is "" where that isn't known."""
+class HeardText(Record):
+    """A text that somebody said at a second of the run; `who` is "" if that isn't known."""
 
     text: str
     who: str
@@ -27,28 +30,31 @@ class Heard(Record):
 
 
 class Ears:
-    """The latest 100 texts. Who types an answer, and whoever speaks in the world, is heard by `hear`."""
+    """The latest 100 texts that the robot has heard, and what it listens for.
+
+    `hear` takes typed answers as well as what people in the world say.
+    """
 
     def __init__(self) -> None:
-        self._heard: list[Heard] = []
+        self._heard: list[HeardText] = []
         self._count = 0
         self._awaited: list[Expected] = []
         self._looks: dict[str, tuple[float, int, int]] = {}
         self.asking = ""
         """The open question; "" if there is none."""
         self.answer = ""
-        """What answered the last question."""
+        """The answer to the last question."""
         self.commands: Any = None
-        """A btlang.robots.spoken.SpokenCommands: those that people may speak; None where there are none."""
+        """The commands that people may speak (SpokenCommands); None for none."""
         self.problem = ""
-        """Why nothing is heard but what is typed; "" while the ears work."""
+        """Why only typed texts are heard; "" while the ears work."""
         self.talk: Callable[[bool], object] | None = None
-        """Somebody holds, or lets go of, the button that isn't one of the robot; None where it needs none."""
+        """A function to press and release a remote talk button; None if it needs none."""
         self.choices: tuple[str, ...] = ()
         """The answers that the mission asks about: "if the answer is tea"."""
 
     def begin(self) -> None:
-        """A run begins: nobody is asked anything, and nothing is listened for."""
+        """Begin a run, without a question and without anything to listen for."""
         self.asking = self.answer = ""
         self._awaited, self._looks = [], {}
 
@@ -57,29 +63,29 @@ class Ears:
         """How many texts were heard so far."""
         return self._count
 
-    def since(self, count: int) -> list[Heard]:
-        """What was heard after so many texts, oldest first."""
+    def since(self, count: int) -> list[HeardText]:
+        """Return what was heard after so many texts, oldest first."""
         new = self._count - count
         return self._heard[-new:] if new > 0 else []
 
     def hear(self, text: str, who: str = "", time: float = 0.0) -> None:
-        """Somebody said this, or typed it."""
-        self._heard = [*self._heard[-_MOST + 1 :], Heard(text, who, time)]
+        """Take a text that somebody said or typed."""
+        self._heard = [*self._heard[-_MOST + 1 :], HeardText(text, who, time)]
         self._count += 1
 
     @contextmanager
-    def awaiting(self, expected: Expected) -> Iterator[None]:
-        """Listens for this meanwhile."""
+    def expect(self, expected: Expected) -> Iterator[None]:
+        """Listen for this in the meantime."""
         self._awaited = [*self._awaited, expected]
         try:
             yield
         finally:
             self._awaited = [each for each in self._awaited if each is not expected]
 
-    def news(self, text: str, now: float) -> list[Heard]:
-        """What was heard since this text was last looked for, and may contain it; nothing at the first look.
+    def news(self, text: str, now: float) -> list[HeardText]:
+        """Return what was heard since the last search for this text, and may contain it; nothing at the first search.
 
-        The robot listens for the text until 5 seconds after the last look. All who look at one time see the same.
+        The robot listens for the text until 5 seconds after the last search. All who search at one time get the same.
         """
         looked, before, then = self._looks.get(text, (-inf, 0, 0))
         if now - looked > _LISTENS:
@@ -90,9 +96,37 @@ class Ears:
         return self.since(before)
 
     def expected(self, now: float) -> Expected:
-        """What the robot listens for."""
+        """Return what the robot listens for."""
         texts = (spoken(text) for text, (looked, _, _) in self._looks.items() if now - looked <= _LISTENS)
         found = Expected(tuple(filter(None, texts)))
         for each in self._awaited:
             found |= each
         return found
+
+
+class AnswersError(DataFileError):
+    """The reason why a file of answers can't be used."""
+
+    code = "BT073"
+
+
+def read_answers(file: str | Source) -> dict[str, list[str]]:
+    """Read answers by words of the question, "*" for any: `"coffee" = "yes"`, or a list of them in order.
+
+    Raises MissionError (BT073).
+    """
+    try:
+        return load_data(file, "answers", _answers, AnswersError)
+    except AnswersError as error:
+        raise as_mission_error(error) from None
+
+
+def _answers(top: Table) -> dict[str, list[str]]:
+    return {words: _texts(top, words) for words in top.keys()}  # noqa: SIM118 - it is no dict
+
+
+def _texts(top: Table, words: str) -> list[str]:
+    texts = list(top.texts(words)) if top.is_list(words) else [top.text(words)]
+    if not texts:
+        raise Problem(f'an answer is a text or a list of texts; write "{words}" = "yes"', words)
+    return texts

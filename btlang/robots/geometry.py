@@ -12,7 +12,7 @@ Segment = tuple[float, float, float, float]
 
 
 def wrap(angle: float) -> float:
-    """The same direction in (-180, 180] degrees."""
+    """Return the same direction in (-180, 180] degrees."""
     wrapped = angle % 360.0
     return wrapped - 360.0 if wrapped > 180.0 else wrapped
 
@@ -25,15 +25,15 @@ class Pose(Record):
     heading: float = 0.0
 
     def distance_to(self, point: Point) -> float:
-        """Metres in a straight line."""
+        """Return the metres in a straight line."""
         return hypot(point[0] - self.x, point[1] - self.y)
 
     def bearing_to(self, point: Point) -> float:
-        """Degrees to turn (left positive) to face the point, in (-180, 180]."""
+        """Return the degrees to turn (left positive) to face the point, in (-180, 180]."""
         return wrap(degrees(atan2(point[1] - self.y, point[0] - self.x)) - self.heading)
 
     def ahead(self, forward: float, left: float = 0.0) -> Point:
-        """The point that lies so many metres ahead and to the left."""
+        """Return the point so many metres ahead and to the left."""
         c, s = cos(radians(self.heading)), sin(radians(self.heading))
         return self.x + forward * c - left * s, self.y + forward * s + left * c
 
@@ -44,7 +44,7 @@ class Pose(Record):
         return Pose(-self.x * c - self.y * s, self.x * s - self.y * c, -self.heading)
 
     def progress_of(self, other: Pose) -> float:
-        """How many metres `other` lies ahead of this pose (negative: behind)."""
+        """Return how many metres `other` lies ahead of this pose (negative: behind)."""
         heading = radians(self.heading)
         return (other.x - self.x) * cos(heading) + (other.y - self.y) * sin(heading)
 
@@ -63,18 +63,18 @@ def segment_distance(point: Point, segment: Segment) -> float:
 
 
 def centre_of(points: Sequence[Point]) -> Point:
-    """The mean of some points."""
+    """Return the mean of some points."""
     xs, ys = zip(*points, strict=True)
     return sum(xs) / len(xs), sum(ys) / len(ys)
 
 
 def edges(polygon: Sequence[Point]) -> Iterator[tuple[Point, Point]]:
-    """The sides of a polygon, the one from its last point to its first included."""
+    """Return the sides of a polygon, including the one from its last point to its first."""
     return zip(polygon, (*polygon[1:], polygon[0]), strict=True)
 
 
 def contains(polygon: Sequence[Point], point: Point) -> bool:
-    """Whether a point is in a polygon, by the even-odd rule."""
+    """Return whether a point is in a polygon, by the even-odd rule."""
     x, y = point
     inside = False
     for (ax, ay), (bx, by) in edges(polygon):

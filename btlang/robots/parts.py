@@ -6,28 +6,28 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 from btlang.record import Record
-from btlang.robots.body import Body
-from btlang.robots.capabilities import Hand, Operation
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.gesture import Gesture
 from btlang.robots.geometry import Pose
-from btlang.robots.gesture import Gesture
+from btlang.robots.robot import Hand, Operation
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.motion.guard.readings import ObstacleReading
     from btlang.robots.motion.smooth_joints import SmoothJoints
-    from btlang.robots.scan import Array
+    from btlang.robots.worlds.scan import Array
     from btlang.speech.engine import Utterance
 
 
 class BasePart(Protocol):
-    """The wheels, and where they have brought the robot; see btlang.robots.base.Base."""
+    """The wheels, and the pose that they have led to; see SimulatedBase."""
 
     body: Body
     travelled: float
     bumps: int
     bumped_into: str
     grips: tuple[float, float]
-    wanted: tuple[float, float]
+    commanded: tuple[float, float]
     limits: tuple[float, float]
 
     @property
@@ -50,24 +50,31 @@ class BasePart(Protocol):
     def step(self, dt: float) -> None: ...
 
 
-class PowerPart(Protocol):
-    """The battery and the dock; see btlang.robots.power.Power."""
-
-    docked: bool
+class BatteryPart(Protocol):
+    """A battery and a dock, as a robot reports them. What isn't known raises RobotError."""
 
     @property
     def level(self) -> float: ...
     @property
     def empty(self) -> bool: ...
     @property
+    def docked(self) -> bool: ...
+    @property
     def charging(self) -> bool: ...
+
+
+class PowerPart(BatteryPart, Protocol):
+    """A battery and a dock that the robot connects to; see SimulatedPower."""
+
+    docked: bool
+
     def set_level(self, percent: float) -> None: ...
     def connect(self, pose: Pose, fails: Callable[[str], bool]) -> None: ...
     def step(self, dt: float, metres: float, pose: Pose) -> bool: ...
 
 
 class JointsPart(Protocol):
-    """The joints; see btlang.robots.joints.Joints."""
+    """The joints; see SimulatedJoints."""
 
     @property
     def moving(self) -> bool: ...
@@ -80,7 +87,7 @@ class JointsPart(Protocol):
 
 @runtime_checkable
 class SmoothPart(Protocol):
-    """Joints with limits of acceleration, whose movements are planned; see btlang.robots.motion.smooth_joints."""
+    """Joints with limits of acceleration, whose movements are planned; see SmoothJoints."""
 
     def play(self, wanted: Gesture | Sequence[Mapping[str, float]], room: float | None) -> tuple[Operation, float]: ...
     def lead(self, wanted: Gesture | Sequence[Mapping[str, float]]) -> float: ...
@@ -88,7 +95,7 @@ class SmoothPart(Protocol):
 
 @runtime_checkable
 class IdlePart(Protocol):
-    """Planned joints that move where nothing else moves them; see btlang.robots.motion.smooth_joints."""
+    """Planned joints that move when nothing else moves them; see SmoothJoints."""
 
     @property
     def planned(self) -> SmoothJoints: ...
@@ -96,7 +103,7 @@ class IdlePart(Protocol):
 
 
 class HandsPart(Protocol):
-    """The hands; see btlang.robots.hands.Hands. What isn't done at once is an operation in place of a name."""
+    """The hands; see SimulatedHands. What takes time returns an operation in place of a name."""
 
     @property
     def held(self) -> Mapping[Hand, str]: ...
@@ -110,11 +117,12 @@ class HandsPart(Protocol):
 
 
 class VoicePart(Protocol):
-    """The voice and the screen; see btlang.robots.voice.Voice."""
+    """The voice and the screen; see TimedVoice."""
 
-    said: Utterance | None
-    position: float
-
+    @property
+    def said(self) -> Utterance | None: ...
+    @property
+    def position(self) -> float: ...
     @property
     def speaking(self) -> bool: ...
     @property
@@ -128,9 +136,10 @@ class VoicePart(Protocol):
 
 
 class Parts(Record):
-    """All parts of a robot. `scan` gives the distances from a pose, see btlang.robots.capabilities.Sensors.
+    """All parts of a robot.
 
-    `sensors` gives the readings of a second of the run by which the guard lets the base drive.
+    `scan` returns the distances from a pose, as the protocol Sensors does. `sensors` returns the readings of a second
+    of the run for the guard.
     """
 
     base: BasePart

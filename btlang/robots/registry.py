@@ -1,4 +1,4 @@
-"""Which robots a mission can run on: by name, what connects to one; or a robot file."""
+"""Finds robots: by the name of what they run on, by the name of an installed package, or by a robot file."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from functools import partial
 from importlib.util import find_spec
 
 from btlang.record import Record
-from btlang.robots.body_file import read_body, shipped_bodies, standard_body
-from btlang.robots.platforms import ALL, ROBOTS, component_function, connection_function
+from btlang.robots.bodies.body_file import read_body, shipped_bodies, standard_body
+from btlang.robots.platforms import ALL, COMPONENTS, ROBOTS, import_function
 from btlang.text.source import Source
 from btlang.vocabulary.shipped import BODIES
 
@@ -18,22 +18,21 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
-    from btlang.robots.body import Body
-    from btlang.robots.world import World
+    from btlang.robots.bodies.body import Body
+    from btlang.robots.worlds.world import World
     from btlang.run.connection import Connection
 
     Connect: TypeAlias = Callable[[World], Connection]
 
 
 ENTRY_POINTS = "btlang.robots"
-"""Each names a package with a file `robot.toml`: an installed robot."""
+"""Each entry point names a package with a file `robot.toml`: an installed robot."""
 
 
 def body_of(robot: str | Source) -> Body:
-    """The body of a robot: of a name in ROBOTS that which ships, else of the robot file, of its text, or of the package
-    that is installed by this name.
+    """Return the body of a robot: a name in ROBOTS, a robot file, its text, or the name of an installed package.
 
-    Raises MissionError (BT071), and ValueError for what is no robot.
+    Raises MissionError (BT071), and ValueError if it isn't a robot.
     """
     if isinstance(robot, Source):
         return read_body(robot)
@@ -43,7 +42,7 @@ def body_of(robot: str | Source) -> Body:
         return read_body(os.path.join(BODIES, f"{robot}.toml"))
     if robot.endswith(".toml") or (os.path.exists(robot) and not os.path.isdir(robot)):
         return read_body(robot)
-    path = installed_robot(robot)
+    path = find_installed_robot(robot)
     if path is None:
         names = " or ".join(map(repr, ROBOTS))
         raise ValueError(
@@ -53,8 +52,8 @@ def body_of(robot: str | Source) -> Body:
     return read_body(path)
 
 
-def installed_robot(name: str) -> str | None:
-    """The robot file of an installed package, by the name of its entry point; None if there is none."""
+def find_installed_robot(name: str) -> str | None:
+    """Return the robot file of an installed package, by the name of its entry point; None if there is none."""
     from importlib.metadata import entry_points
 
     for entry_point in entry_points(group=ENTRY_POINTS, name=name):
@@ -66,7 +65,7 @@ def installed_robot(name: str) -> str | None:
 
 
 def runs_on(robot: str | Source, over: str | None = None) -> tuple[Body, str]:
-    """The body, and the name in ROBOTS of what it runs on: that of `over`, else what the robot says.
+    """Return the body, and the name in ROBOTS of what it runs on: `over`, or else what the robot file says.
 
     Raises as `body_of`, and ValueError for another `over`.
     """
@@ -77,8 +76,9 @@ def runs_on(robot: str | Source, over: str | None = None) -> tuple[Body, str]:
 
 
 def runs_in_real_time(body: Body, over: str, simulate: Sequence[str] = ()) -> bool:
-    """Whether it takes no other speed: it is elsewhere, or has devices that are real, since `simulate` doesn't name
-    them (see btlang.components.device_robot).
+    """Return whether it takes no other speed: it is remote, or has real devices, which `simulate` doesn't name.
+
+    See btlang.components.device_robot.
     """
     if over != "devices":
         return over != "simulated"
@@ -87,21 +87,24 @@ def runs_in_real_time(body: Body, over: str, simulate: Sequence[str] = ()) -> bo
 
 
 class Connector(Record):
-    """Connects a robot of a body, in a world, to what it runs on: `over`, a name in ROBOTS."""
+    """A function that connects a robot in a world to what it runs on: `over`, a name in ROBOTS."""
 
     body: Body
     over: str
     options: Mapping[str, Any] = {}
 
     def __call__(self, world: World) -> Connection:
-        """Raises MissionError where the robot cannot be reached."""
-        connect = partial(connection_function(self.over), world, body=self.body, **self.options)
-        if not (self.body.components or self.body.devices):
-            return connect()
-        return component_function()(connect, self.body)
+        """Connect. Raises MissionError if the robot can't be reached."""
+        connect = partial(import_function(ROBOTS[self.over]), world, body=self.body, **self.options)
+        connection: Connection
+        if self.body.components or self.body.devices:
+            connection = import_function(COMPONENTS)(connect, self.body)
+        else:
+            connection = connect()
+        return connection
 
 
 def connector(robot: str | Source, over: str | None = None, **options: Any) -> Connector:
-    """What connects to a robot. The options are for one that does not run simulated. Raises as `runs_on`."""
+    """Return the connector of a robot. The options are for one that isn't simulated. Raises as `runs_on`."""
     body, name = runs_on(robot, over)
     return Connector(body, name, {} if name == "simulated" else options)

@@ -8,15 +8,15 @@ from math import dist
 
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Point, centre_of, edges, segment_distance
-from btlang.robots.world import Zone, said
+from btlang.robots.worlds.world import Zone, said
 
 CLEAR = 0.8
-"""Metres from the border of a zone at which the robot goes that enters or leaves it."""
+"""Metres from the border of a zone to which the robot drives when it enters or leaves it."""
 _OVER, _APART = 0.4, 0.5  # metres from the border at which it has done so; between two points along it
 
 
 class Restriction:
-    """Zones that the robot keeps out of, or stays in, from `begin` to `end`; others may hold beside it.
+    """Zones that the robot keeps out of, or stays in, from `begin` to `end`; others may be active, too.
 
     A context manager: with `zones.keep_out("stairs"): ...`.
     """
@@ -25,11 +25,11 @@ class Restriction:
         self._zones, self.names, self.keeps_in = zones, names, keeps_in
 
     def begin(self) -> None:
-        """It holds from now on. Raises ActionFailed for an unknown zone."""
+        """Begin the restriction. Raises ActionFailed for an unknown zone."""
         self._zones.restrict(self, True)
 
     def end(self) -> None:
-        """It no longer holds. May be called twice."""
+        """End the restriction. May be called twice."""
         self._zones.restrict(self, False)
 
     def __enter__(self) -> Restriction:
@@ -49,37 +49,37 @@ class Zones:
         self._restrictions: list[Restriction] = []
         self.version = 0
         self.closed: Sequence[Zone] = ()
-        """Those to keep out of."""
+        """The zones to keep out of."""
         self.slow: Sequence[Zone] = ()
-        """Those to drive slowly through."""
+        """The zones to drive through slowly."""
         self.confines: Sequence[Sequence[Zone]] = ()
-        """Those to stay in: in at least one of each of these."""
+        """The zones to stay in: in at least one of each of these groups."""
         self.begin()
 
     def begin(self) -> None:
-        """A run begins: zones are as the world says."""
+        """Begin a run: zones are as in the world."""
         self._said.clear()
         self._restrictions.clear()
         self._sort()
 
     def close(self, name: str) -> None:
-        """The robot keeps out of it from now on. Raises ActionFailed for an unknown one."""
+        """Keep the robot out of a zone from now on. Raises ActionFailed for an unknown one."""
         self._say(name, True)
 
     def open(self, name: str) -> None:
-        """The robot may go there again. Raises ActionFailed for an unknown one."""
+        """Let the robot into a zone again. Raises ActionFailed for an unknown one."""
         self._say(name, False)
 
     def keep_out(self, *names: str) -> Restriction:
-        """Closes zones while it holds, whatever else is said of them meanwhile."""
+        """Return a restriction that closes zones while it is active, whatever else happens to them."""
         return Restriction(self, names, False)
 
     def keep_in(self, *names: str) -> Restriction:
-        """The robot stays in these zones while it holds: in any of them."""
+        """Return a restriction that keeps the robot in these zones: in any of them."""
         return Restriction(self, names, True)
 
     def restrict(self, restriction: Restriction, holds: bool) -> None:
-        """A restriction begins or ends."""
+        """Begin or end a restriction."""
         for name in restriction.names:
             self._zone(name)
         self._restrictions = [each for each in self._restrictions if each is not restriction]
@@ -88,11 +88,11 @@ class Zones:
         self._sort()
 
     def is_closed(self, name: str) -> bool:
-        """Whether the robot keeps out of it. Raises ActionFailed for an unknown one."""
+        """Return whether the robot keeps out of a zone. Raises ActionFailed for an unknown one."""
         return self._zone(name) in self.closed
 
     def refusal(self, name: str, point: Point) -> str | None:
-        """Why the robot may not go to a point that is called so; None where it may."""
+        """Return why the robot may not go to a named point; None if it may."""
         zone = next((zone for zone in self.closed if zone.contains(point)), None)
         if zone is not None:
             return f"{said(name)} is in the {zone.name}, where the robot may not go"
@@ -100,11 +100,11 @@ class Zones:
         return None if left is None else f"{said(name)} is outside {zone_names(left)}, where the robot has to stay"
 
     def contains(self, name: str, point: Point) -> bool:
-        """Whether a point lies in a zone. Raises ActionFailed for an unknown one."""
+        """Return whether a point lies in a zone. Raises ActionFailed for an unknown one."""
         return self._zone(name).contains(point)
 
     def spots(self, name: str, point: Point, inside: bool) -> list[Point]:
-        """Points a little inside or outside the border of a zone, the nearest to a point first."""
+        """Return points a little inside or outside the border of a zone, the nearest to a point first."""
         zone = self._zone(name)
         found: list[Point] = []
         for (ax, ay), (bx, by) in edges(zone.points):
@@ -119,15 +119,15 @@ class Zones:
         return sorted((spot for spot in found if zone.contains(spot) == inside), key=partial(dist, point))
 
     def has(self, name: str) -> bool:
-        """Whether there is a zone of this name."""
+        """Return whether there is a zone of this name."""
         return name.lower() in self._zones
 
     def corners(self, name: str) -> Sequence[Point]:
-        """The corners of a zone. Raises ActionFailed for an unknown one."""
+        """Return the corners of a zone. Raises ActionFailed for an unknown one."""
         return self._zone(name).points
 
     def is_over(self, name: str, point: Point, inside: bool) -> bool:
-        """Whether a point is in a zone, or outside, and not right at its border."""
+        """Return whether a point is in a zone, or outside, and not right at its border."""
         zone = self._zone(name)
         border = min(segment_distance(point, (*start, *end)) for start, end in edges(zone.points))
         return zone.contains(point) == inside and border >= _OVER
@@ -151,5 +151,5 @@ class Zones:
 
 
 def zone_names(zones: Sequence[Zone]) -> str:
-    """The names of zones as they are spoken of: "the hall and the lab"."""
+    """Return the names of zones as they are spoken of: "the hall and the lab"."""
     return " and ".join(f"the {zone.name}" for zone in zones)

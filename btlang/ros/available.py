@@ -1,4 +1,4 @@
-"""Whether ROS 2 is there. Imports none of it, so that it can be asked anywhere."""
+"""Checks whether ROS 2 is installed. Imports no ROS, so that it can be used anywhere."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _INSTALL = "Install it: pip install 'btlang[ros]', or source your ROS 2 Jazzy: .
 
 
 def require_ros(*packages: str) -> None:
-    """Raises MissionError (BT100) where rclpy, or one of the message packages named, cannot be imported."""
+    """Raise MissionError (BT100) if rclpy, or one of the message packages named, can't be imported."""
     for package in ("rclpy", *packages):
         try:
             import_module(package)
@@ -30,13 +30,13 @@ def require_ros(*packages: str) -> None:
 
 
 def require_package(package: str) -> None:
-    """Raises MissionError (BT100) where there is no such Python package. Imports nothing."""
+    """Raise MissionError (BT100) if there is no such Python package. Imports nothing."""
     if find_spec(package) is None:
         raise unusable(f"there is no Python package {package}", _INSTALL)
 
 
 def require_interfaces() -> None:
-    """Raises MissionError (BT110) where the interfaces of btlang are not compiled, or for another Python or btlang."""
+    """Raise MissionError (BT110) if btlang's interfaces aren't compiled, or were for another Python or btlang."""
     reason = ""
     try:
         import_module(OWN.name)
@@ -53,7 +53,7 @@ def require_interfaces() -> None:
 
 
 def optional_interface(name: str) -> Any:
-    """The class of an interface, as "nav2_msgs/msg/SpeedLimit"; None where it isn't installed."""
+    """Return the class of an interface, such as "nav2_msgs/msg/SpeedLimit"; None if it isn't installed."""
     package, kind, cls = name.split("/")
     try:
         return getattr(import_module(f"{package}.{kind}"), cls, None)
@@ -62,6 +62,6 @@ def optional_interface(name: str) -> Any:
 
 
 def unusable(reason: str, advice: str = "") -> MissionError:
-    """What to raise where ROS 2 is not there, or is there and does not start (BT100)."""
+    """Return the error to raise if ROS 2 is missing or doesn't start (BT100)."""
     why = reason.strip().rstrip(".")
     return MissionError([diagnostic("BT100", Span(Source("", "ROS 2"), 0, 0), reason=why, advice=advice)])

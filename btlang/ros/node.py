@@ -1,8 +1,9 @@
-"""A ROS 2 node that is spun in a thread of its own, and leaves nothing behind."""
+"""A ROS 2 node that is spun in its own thread, and callables that are handed over to that thread."""
 
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Callable
 from threading import Thread
 
@@ -15,9 +16,9 @@ from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
 
+from btlang.engine.leaves.leaf import described
 from btlang.ros.available import unusable
-from btlang.ros.awake import AWAKE, HEARTBEAT
-from btlang.ros.waiting import wait_until
+from btlang.ros.clocks import AWAKE, HEARTBEAT, wait_until
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -26,17 +27,46 @@ if TYPE_CHECKING:
 _LAST_DOMAIN = 232
 _TASKS_OF_AN_ANSWER = 3  # one starts the next: the goal ends, its future is done, the result is sent
 _DELIVERY = 0.2  # seconds
-
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""Who subscribes later gets the last message."""
+"""A quality of service by which late subscribers get the last message."""
+
+
+class ExecutorThread:
+    """A queue of callables for the thread that spins a node. `problems` has errors that
+    couldn't be reported at once.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self.problems: list[str] = []
+        self._posted: deque[Callable[[], object]] = deque()
+        self._guard = node.create_guard_condition(self._work)
+
+    def post(self, work: Callable[[], object]) -> None:
+        """Queue a callable, from any thread or signal handler; they run in the order of calls."""
+        self._posted.append(work)
+        self._guard.trigger()
+
+    @property
+    def left(self) -> int:
+        """How many callables haven't run yet."""
+        return len(self._posted)
+
+    def _work(self) -> None:
+        while self._posted:
+            work = self._posted[0]
+            try:
+                work()
+            except Exception as problem:  # it would end the thread that spins
+                self.problems.append(described(problem))
+            self._posted.popleft()  # only now, so that it counts as left until it is done
 
 
 class SpunNode:
-    """`node` in a ROS context of its own; its callbacks run in a thread of their own, one at a time.
+    """A ROS 2 node in its own context, whose callbacks run in one thread, one at a time.
 
-    Use it with `with`, or call `close`: a thread that spins when the process ends would abort it. Signals stay with
-    the program. With `use_sim_time` the node's clock is the topic /clock. `make` makes another sort of node. Raises
-    MissionError (BT100).
+    Use it with `with`, or call `close`: a thread that still spins when the process ends would abort it. Signals stay
+    with the program. With `use_sim_time` the node's clock is the topic /clock. `make` makes another kind of node.
+    Raises MissionError (BT100).
     """
 
     def __init__(
@@ -62,14 +92,14 @@ class SpunNode:
         self._thread = Thread(target=self._watch, name=f"ros {name}", daemon=True)
 
     def start(self) -> None:
-        """Begins to call callbacks; to be called once all publishers and subscriptions are there."""
+        """Begin to call callbacks. Call this once all publishers and subscriptions exist."""
         self.node.create_timer(HEARTBEAT, AWAKE.now, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._thread.start()
 
     def settle(self, seconds: float) -> None:
-        """Waits until what was asked of the thread before now is done and its answers are out.
+        """Wait until the thread has done everything requested so far and its answers are out.
 
-        For so many real seconds at most, and the moment that DDS needs: nothing reports when a client has its answer.
+        At most `limit` real seconds, plus the moment that DDS needs: nothing reports when a client has its answer.
         """
         until = time.monotonic() + seconds
         for _ in range(_TASKS_OF_AN_ANSWER):
@@ -77,7 +107,7 @@ class SpunNode:
         time.sleep(_DELIVERY)
 
     def close(self) -> None:
-        """Ends the thread, then the node, then its context. May be called twice."""
+        """End the thread, then the node, then its context. May be called twice."""
         self._closing = True
         self._executor.shutdown()
         if self._thread.ident is not None:
@@ -98,7 +128,7 @@ class SpunNode:
         self.close()
 
     def _check_domain(self) -> None:
-        """Fast DDS would end the process."""
+        """Check the domain id, since Fast DDS would end the process for a wrong one."""
         number = self.context.get_domain_id()
         if number > _LAST_DOMAIN:
             rclpy.shutdown(context=self.context)
@@ -112,7 +142,7 @@ class SpunNode:
             AWAKE.unwatch()
 
     def _spin(self) -> None:
-        """A callback that raises is logged, and the others go on."""
+        """Spin the node. An exception in a callback is logged, and spinning goes on."""
         while self.context.ok():
             try:
                 self._executor.spin()

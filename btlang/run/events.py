@@ -393,7 +393,7 @@ class GestureStarted(InTheWorld):
 
 
 class PartChanged(Event):
-    """A component has another state (see btlang.components.life_cycle), or a device or the ears are "silent" or not.
+    """A component has another state (see btlang.components.component), or a device or the ears are "silent" or not.
 
     `kind` is "component", "device" or "ears"; what isn't silent "works". `text` says it to people, "" for
     what they need not know.

@@ -15,7 +15,7 @@ from ipaddress import ip_address
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import reason_of
-from btlang.robots.sockets import socket_folder
+from btlang.robots.files import socket_folder
 from btlang.task.companion import require_server
 from btlang.text.output import show
 from btlang.text.source import NOWHERE

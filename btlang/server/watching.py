@@ -16,8 +16,8 @@ from starlette.routing import BaseRoute
 
 from btlang.api import Mission
 from btlang.recording.reader import read_recording
-from btlang.robots.motion.urdf import urdf
-from btlang.robots.world_problem import read_world
+from btlang.robots.bodies.urdf import urdf
+from btlang.robots.worlds.world_file import read_world
 from btlang.run.command import EMERGENCY_STOPPED
 from btlang.run.controls import Controls
 from btlang.run.world_input import WorldInput
@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     import argparse
     from typing import Any
 
-    from btlang.robots.body import Body
-    from btlang.robots.world import World
+    from btlang.robots.bodies.body import Body
+    from btlang.robots.worlds.world import World
     from btlang.run.events import Sink
 
 _PATIENCE = 10.0  # seconds for which a run waits for the page

@@ -43,7 +43,7 @@ _Callback = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_short), ctype
 
 
 class Espeak:
-    """See btlang.speech.engine.SpeechEngine. Raises SpeechError where it isn't installed, or has no such voice."""
+    """The engine `espeak`. Raises SpeechError if it isn't installed, or has no such voice."""
 
     def __init__(self, settings: Settings) -> None:
         if find_spec("espeakng_loader") is None:
@@ -54,7 +54,7 @@ class Espeak:
             _set_up(library, settings)
 
     def speak(self, text: str) -> Utterance:
-        """The text as it is, whatever looks like markup in it; what was said lately isn't spoken again."""
+        """Speak the text literally, including what looks like markup. Recent texts are cached."""
         return _spoken(self._settings, text)
 
 
@@ -108,7 +108,7 @@ def _library() -> Iterator[Any]:
 
 
 def _set_up(library: Any, settings: Settings) -> int:
-    """Chooses the voice; returns the samples a second. Raises SpeechError."""
+    """Choose the voice; return the samples a second. Raises SpeechError."""
     import os
 
     from espeakng_loader import get_data_path

@@ -11,16 +11,19 @@ _SENTENCE_ENDS = re.compile(r"[.!?…]+[\"'”»)\]]*\s+")
 _HUGS = ",.;:!?…)]}”»%"
 
 
-class Mark(Record):
+class GestureMark(Record):
     """The words in a mark, and the index in the plain text where the search for the word that it meets begins."""
 
     words: str
     index: int
 
 
-def read_marks(text: str) -> tuple[str, tuple[Mark, ...]]:
-    r"""The text without its marks, and these. `\<` is a plain `<`, as is one before a blank or digit or not closed."""
-    plain, marks, at = "", list[Mark](), 0
+def read_marks(text: str) -> tuple[str, tuple[GestureMark, ...]]:
+    r"""Return the text without its marks, and the marks.
+
+    `\<` is a plain `<`, as is one before a blank or digit or one that isn't closed.
+    """
+    plain, marks, at = "", list[GestureMark](), 0
     for match in _MARK.finditer(text):
         plain += text[at : match.start()]
         at = match.end()
@@ -32,15 +35,15 @@ def read_marks(text: str) -> tuple[str, tuple[Mark, ...]]:
             plain = plain.rstrip()
         elif not plain or plain[-1].isspace():
             at += len(text[at:]) - len(text[at:].lstrip())
-        marks.append(Mark(words, len(plain)))
+        marks.append(GestureMark(words, len(plain)))
     return plain + text[at:], tuple(marks)
 
 
 def without_marks(text: str) -> str:
-    """What is heard of a text."""
+    """Return the text without its marks."""
     return read_marks(text)[0]
 
 
 def sentence_start(text: str, index: int) -> int:
-    """Where the sentence begins that an index of the text is in."""
+    """Return where the sentence at an index of the text begins."""
     return max((match.end() for match in _SENTENCE_ENDS.finditer(text) if match.end() <= index), default=0)

@@ -10,7 +10,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.robots.body import Joint
+    from btlang.robots.bodies.body import Joint
 
 _PERIOD = 0.1  # seconds between two looks at the joints
 

@@ -8,12 +8,11 @@ from enum import StrEnum
 
 from btlang.components.component import ComponentError
 from btlang.components.connection import ComponentConnection
-from btlang.components.manager import Manager
+from btlang.components.manager import ComponentManager
 from btlang.devices.driver import DeviceError
-from btlang.devices.kinds import Image
-from btlang.devices.png import png
-from btlang.robots.body_file import read_body
-from btlang.robots.motion.urdf import urdf
+from btlang.devices.kinds import Image, png
+from btlang.robots.bodies.body_file import read_body
+from btlang.robots.bodies.urdf import urdf
 from btlang.task import messages
 from btlang.task.checks import choice, refused
 from btlang.task.messages import Answer, wrong
@@ -100,7 +99,7 @@ def component_data(session: Session) -> dict[str, list[dict[str, Any]]]:
     return {"components": components, "devices": devices}
 
 
-def _change(manager: Manager, act: Change, name: str, session: Session) -> None:
+def _change(manager: ComponentManager, act: Change, name: str, session: Session) -> None:
     if act is Change.RESTART:
         manager.restart(name)
     elif act is Change.UNLOAD:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from typing import Any, Protocol
 
     from btlang.robots.geometry import Point
-    from btlang.robots.world import World
+    from btlang.robots.worlds.world import World
     from btlang.run.events import Sink
     from btlang.task.task import Change
     from btlang.tree.node import Node

@@ -6,7 +6,7 @@ import os
 
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
-from btlang.robots.data_file import DataFileError, as_mission_error, load_data
+from btlang.robots.files import DataFileError, as_mission_error, load_data
 from btlang.task.layer import TaskLayer
 from btlang.task.messages import AddSchedule, Command, Put, RemoveSchedule
 from btlang.task.recurrence import read_rule

@@ -11,8 +11,7 @@ from btlang.api import Mission
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.house_rules import HouseRules, house_rules, no_house_rules
-from btlang.robots.needs import needs_of_tree
-from btlang.robots.preflight import check_mission
+from btlang.robots.preflight import check_mission, needs_of_tree
 from btlang.robots.registry import runs_on
 from btlang.run.controls import disable
 from btlang.run.world_input import WorldInput

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 
 from btlang.api import Mission
-from btlang.robots.body_file import read_body
-from btlang.robots.world_problem import read_world
+from btlang.robots.bodies.body_file import read_body
+from btlang.robots.worlds.world_file import read_world
 from btlang.task import messages
 from btlang.task.answers import deleted, outdated, revision_data
 from btlang.task.checks import HIGHEST, choice, refused
@@ -20,7 +20,7 @@ from btlang.text.source import Source
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.diagnostics.errors import MissionError
-    from btlang.robots.body import Body
+    from btlang.robots.bodies.body import Body
     from btlang.task.task import Revision
 
 MOST_CHARACTERS = 200_000

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.robots.world import KEEP_OUT, World, Zone
+from btlang.robots.worlds.world import KEEP_OUT, World, Zone
 from btlang.run.events import DoorMoved
 from btlang.run.robot_state import asked
 

@@ -8,8 +8,7 @@ import re
 from btlang.arguments import at_least, between, duration, kept_robot, port, speed
 from btlang.diagnostics.errors import MissionError
 from btlang.option_parser import add_acts
-from btlang.robots.options import add_simulate
-from btlang.robots.platforms import ROBOTS
+from btlang.robots.platforms import ROBOTS, add_simulate
 from btlang.task.applicable import COMPONENT_ACTS, ROBOT_ACTS, TASK_ACTS, note_given
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 
-from btlang.robots.sockets import socket_folder
+from btlang.robots.files import socket_folder
 from btlang.task.messages import wrong
 from btlang.user_dirs import user_dir
 

@@ -15,7 +15,7 @@ from urllib.parse import parse_qs, urlsplit
 from btlang.components.file_command import serve_file
 from btlang.components.words import words_of
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.answers_file import read_answers
+from btlang.robots.ears import read_answers
 from btlang.robots.registry import connector, runs_in_real_time
 from btlang.run.emergency import emergency_signal
 from btlang.task import messages

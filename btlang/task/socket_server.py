@@ -16,7 +16,7 @@ from contextlib import closing, contextmanager, suppress
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.sockets import socket_folder
+from btlang.robots.files import socket_folder
 from btlang.task.messages import Answer, EmergencyStop
 from btlang.task.paths import socket_path
 from btlang.text.json_text import load_json

@@ -8,8 +8,8 @@ from random import Random
 
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import Fault, said
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world import WorldFault, said
 from btlang.run.bus import INLINE
 from btlang.run.controls import Controls
 from btlang.run.events import Event, PeriodPassed
@@ -113,7 +113,7 @@ class Chaos:
         self._controls.emergency_stop()
 
     def _fault(self, at: float, kind: str, **more: object) -> Callable[[], object]:
-        fault = Fault(kind, at, at + self._random.uniform(*_LASTS), **more)  # type: ignore[arg-type]
+        fault = WorldFault(kind, at, at + self._random.uniform(*_LASTS), **more)  # type: ignore[arg-type]
         return lambda: self._robot.faults.begin(fault)
 
     def _slip(self, at: float) -> tuple[str, Callable[[], object]]:

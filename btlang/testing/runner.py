@@ -9,7 +9,7 @@ from btlang.api import Mission
 from btlang.engine.blackboard import Blackboard
 from btlang.record import Record
 from btlang.robots.registry import Connector, body_of
-from btlang.robots.world import World
+from btlang.robots.worlds.world import World
 from btlang.run.controls import Controls
 from btlang.run.outcome import Outcome
 from btlang.session import Run, Session
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.engine.leaves.leaf import LeafBinding
-    from btlang.robots.body import Body
+    from btlang.robots.bodies.body import Body
     from btlang.run.connection import Connection
     from btlang.run.events import Sink
     from btlang.vocabulary.entry import Entry

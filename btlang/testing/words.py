@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from btlang.actions.points import where
+from btlang.actions.common import where
 from btlang.engine.leaves.leaf import Failed
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import Hand
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import Fault
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world import WorldFault
 from btlang.run.controls import Controls
 from btlang.testing.observations import Observations
 
@@ -164,7 +164,7 @@ def put_object(
 
 
 def block_way(robot: SimulatedRobot, place: str) -> None:
-    robot.faults.begin(Fault("blocked", place=place))
+    robot.faults.begin(WorldFault("blocked", place=place))
 
 
 def free_way(robot: SimulatedRobot, place: str) -> None:
@@ -172,7 +172,7 @@ def free_way(robot: SimulatedRobot, place: str) -> None:
 
 
 def silence_scanner(robot: SimulatedRobot) -> None:
-    robot.faults.begin(Fault("silent scanner"))
+    robot.faults.begin(WorldFault("silent scanner"))
 
 
 def repair_scanner(robot: SimulatedRobot) -> None:
@@ -180,7 +180,7 @@ def repair_scanner(robot: SimulatedRobot) -> None:
 
 
 def slip(robot: SimulatedRobot, percent: float) -> None:
-    robot.faults.begin(Fault("slip", grip=min(1.0, percent / 100)))
+    robot.faults.begin(WorldFault("slip", grip=min(1.0, percent / 100)))
 
 
 def grip(robot: SimulatedRobot) -> None:
@@ -189,7 +189,7 @@ def grip(robot: SimulatedRobot) -> None:
 
 def weaken_hands(robot: SimulatedRobot) -> None:
     for hand in _HANDS:
-        robot.faults.begin(Fault("weak hand", hand=hand))
+        robot.faults.begin(WorldFault("weak hand", hand=hand))
 
 
 def restore_hands(robot: SimulatedRobot) -> None:
@@ -243,7 +243,7 @@ def somebody_closes(robot: SimulatedRobot, door: str) -> None:
 
 
 def break_dock(robot: SimulatedRobot) -> None:
-    robot.faults.begin(Fault("dock"))
+    robot.faults.begin(WorldFault("dock"))
 
 
 def repair_dock(robot: SimulatedRobot) -> None:

@@ -6,8 +6,8 @@ import pytest
 
 from btlang.engine.clock import Clock
 from btlang.robots.geometry import Pose
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import Person, World, WorldObject
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world import Person, World, WorldObject
 
 TICK = 0.05
 

@@ -5,13 +5,13 @@ from math import dist
 
 import pytest
 
-from btlang.actions import company, errands, manipulation, navigation, search, show, world
+from btlang.actions import company, errands, gestures, manipulation, navigation, search, world
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError
-from btlang.robots.world import Person, Place, Stop, World, WorldObject
-from btlang.robots.world_file import load_world
+from btlang.robots.worlds.world import Person, Place, Stop, World, WorldObject
+from btlang.robots.worlds.world_file import load_world
 
 
 def hall(*people, objects=(), **changes):
@@ -107,8 +107,8 @@ def test_patrol_and_localize(bench):
     b.run(errands.patrol, place="east")
     assert b.robot.pose.distance_to((12.0, 0.0)) < 0.2
     b.run(errands.localize)
-    b.run(show.dance)
-    b.run(show.bow)
+    b.run(gestures.dance)
+    b.run(gestures.bow)
     assert b.robot.bumps == 0
 
 

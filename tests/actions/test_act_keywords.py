@@ -5,7 +5,7 @@ from inspect import isgeneratorfunction, signature
 
 import pytest
 
-from btlang.robots.world_file import world_names
+from btlang.robots.worlds.world_file import world_names
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.vocabulary.entry import COMPARISONS

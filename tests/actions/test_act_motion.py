@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from btlang.actions import motion
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.body_file import standard_body
+from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.geometry import Pose, wrap
-from btlang.robots.world import Fault, Person, Place
+from btlang.robots.worlds.world import Person, Place, WorldFault
 
 WALL = {"walls": (((1.0, -2.0), (1.0, 2.0)),)}
 BLIND = standard_body().replace(sensors=())
@@ -58,7 +58,7 @@ def test_speed_and_its_limit(bench):
 
 
 def test_keeps_straight_with_a_slipping_wheel(bench):
-    b = bench(faults=(Fault("slip", wheel="left", grip=0.8),))
+    b = bench(faults=(WorldFault("slip", wheel="left", grip=0.8),))
     b.run(motion.move_forward, distance=3.0)
     assert b.robot.pose.x == pytest.approx(3.0, abs=0.01)
     assert abs(b.robot.pose.heading) < 20
@@ -118,7 +118,7 @@ def test_it_stops_before_what_its_scanner_sees(bench):
     [(motion.move_forward, {"distance": 1.0}, r"0\.00 m"), (motion.turn_left, {"angle": 90.0}, "0 degrees")],
 )
 def test_no_grip_fails(bench, leaf, ports, so_far):
-    b = bench(faults=(Fault("slip", grip=0.0),))
+    b = bench(faults=(WorldFault("slip", grip=0.0),))
     for _ in range(2):  # each attempt has its second
         begin = b.clock.now
         with pytest.raises(ActionFailed, match=rf"^stuck after {so_far}: the wheels turn but the robot doesn't move$"):

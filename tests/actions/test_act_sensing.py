@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from btlang.actions import motion, sensing
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Pose
-from btlang.robots.world import Box, Fault, Person, Place
-from btlang.robots.world_file import load_world
+from btlang.robots.worlds.world import FurnitureBox, Person, Place, WorldFault
+from btlang.robots.worlds.world_file import load_world
 
 ROOM = Path(__file__).parents[2] / "examples" / "worlds" / "walled_room.toml"
 
@@ -60,9 +60,9 @@ def test_each_side(bench):
 
 
 def test_passes_doors_that_are_wide_enough(bench):
-    b = bench(boxes=(Box(0.8, 0.6, 0.5, 0.5), Box(0.8, -0.6, 0.5, 0.5)))
+    b = bench(boxes=(FurnitureBox(0.8, 0.6, 0.5, 0.5), FurnitureBox(0.8, -0.6, 0.5, 0.5)))
     assert sensing.path_is_clear(b.robot)
-    b = bench(boxes=(Box(0.8, 0.45, 0.5, 0.5),))
+    b = bench(boxes=(FurnitureBox(0.8, 0.45, 0.5, 0.5),))
     assert not sensing.path_is_clear(b.robot)
 
 
@@ -76,7 +76,7 @@ def test_distance_ahead(bench):
 
 
 def test_what_a_silent_scanner_does_not_see_counts_as_blocked(bench):
-    b = bench(faults=(Fault("silent scanner"),))
+    b = bench(faults=(WorldFault("silent scanner"),))
     assert sensing.wall_in_front(b.robot)
     assert sensing.wall_behind(b.robot)
     assert not sensing.path_is_clear(b.robot)

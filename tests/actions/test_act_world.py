@@ -8,8 +8,8 @@ from btlang.actions import gestures, manipulation, motion, navigation, power, se
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.robot import RobotError
-from btlang.robots.world import Fault, Person, Place, World, WorldObject
-from btlang.robots.world_file import load_world
+from btlang.robots.worlds.world import Person, Place, World, WorldFault, WorldObject
+from btlang.robots.worlds.world_file import load_world
 
 
 def test_go_to_the_kitchen_then_pick_up_the_cup_and_bring_it(bench):
@@ -36,7 +36,7 @@ def test_every_object_of_the_default_world_can_be_picked_up(bench, name):
 
 
 def test_no_way_fails_with_the_reason(bench):
-    b = bench(load_world(), faults=(Fault("blocked", place="lab"),))
+    b = bench(load_world(), faults=(WorldFault("blocked", place="lab"),))
     with pytest.raises(ActionFailed, match=r"^there is no free way to the lab$"):
         b.run(navigation.go_to, place="lab")
     with pytest.raises(ActionFailed, match=r"^I don't know where 'moon' is$"):
@@ -153,7 +153,7 @@ def test_hands(bench, table):
 
 
 def test_a_weak_hand_loses_what_it_picked_up(bench, table):
-    b = bench(table, faults=(Fault("weak hand", seconds=4.0),))
+    b = bench(table, faults=(WorldFault("weak hand", seconds=4.0),))
     b.run(manipulation.pick_up, object="cup")
     b.tick(80)
     with pytest.raises(ActionFailed, match=r"^the robot isn't holding anything$"):
@@ -304,7 +304,7 @@ def test_where_it_stands_in_its_dock_it_only_connects(bench):
 
 @pytest.mark.parametrize(("times", "docks"), [(1, True), (2, True), (3, False), (inf, False)])
 def test_a_dock_that_does_not_connect_is_tried_again(bench, times, docks):
-    b = bench(HALL, faults=(Fault("dock", times=times),))
+    b = bench(HALL, faults=(WorldFault("dock", times=times),))
     if docks:
         b.run(power.dock)
     else:
@@ -329,7 +329,7 @@ def test_a_blocked_dock_is_not_run_into_and_tried_again(bench):
 
 
 def test_no_way_to_the_dock_is_not_tried_again(bench):
-    b = bench(HALL, faults=(Fault("blocked", place="dock"),))
+    b = bench(HALL, faults=(WorldFault("blocked", place="dock"),))
     with pytest.raises(ActionFailed, match=r"^there is no free way to the dock$"):
         b.run(power.dock, seconds=1.0)
 
@@ -349,7 +349,11 @@ def test_a_stop_ends_docking_and_halting_brakes(bench):
 
 def test_it_takes_the_nearest_dock_and_the_next_where_that_fails(bench):
     near, far = Place("dock", 0.4, 0.6, 180.0), Place("night dock", 5.6, 0.6, 0.0)
-    for faults, x in (((), 0.4), ((Fault("dock", place="dock"),), 5.6), ((Fault("dock", place="night dock"),), 0.4)):
+    for faults, x in (
+        ((), 0.4),
+        ((WorldFault("dock", place="dock"),), 5.6),
+        ((WorldFault("dock", place="night dock"),), 0.4),
+    ):
         b = bench(HALL, start=Pose(2.5, 0.6, 0.0), places=(near, far), dock=near, docks=(far,), faults=faults)
         assert [station.name for station in b.robot.stations] == ["dock", "night dock"]
         b.run(power.dock)
@@ -357,7 +361,9 @@ def test_it_takes_the_nearest_dock_and_the_next_where_that_fails(bench):
         assert b.robot.pose.x == pytest.approx(x, abs=0.1)
         b.run(power.undock)
         assert not b.robot.docked
-    b = bench(HALL, start=Pose(2.5, 0.6, 0.0), places=(near, far), dock=near, docks=(far,), faults=(Fault("dock"),))
+    b = bench(
+        HALL, start=Pose(2.5, 0.6, 0.0), places=(near, far), dock=near, docks=(far,), faults=(WorldFault("dock"),)
+    )
     with pytest.raises(ActionFailed, match=r"^the dock doesn't connect$"):
         b.run(power.dock)
 

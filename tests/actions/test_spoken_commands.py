@@ -7,12 +7,12 @@ import pytest
 import btlang
 from btlang.actions.conversation import meaning_of
 from btlang.robots.robot import RobotError
-from btlang.robots.spoken import SpokenCommands, choices
+from btlang.robots.spoken_commands import SpokenCommands, choices
 from btlang.run.bus import INLINE
 from btlang.run.events import Event, Said
 from btlang.run.world_input import WorldInput
 from btlang.session import Run
-from btlang.speech.grammar import Grammar
+from btlang.speech.recogniser import Grammar
 
 OBEY = btlang.parse_tree("obey what somebody says")
 

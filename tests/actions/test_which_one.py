@@ -6,12 +6,13 @@ from typing import Any
 
 import pytest
 
-from btlang.actions import clock, errands, navigation, sides, world
+from btlang.actions import clock, errands, navigation, world
+from btlang.actions import navigation as sides
 from btlang.engine.clock import Clock
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.robot import RobotError
-from btlang.robots.world_file import WorldError, load_world, world_names
-from btlang.robots.world_writing import as_data
+from btlang.robots.worlds.world_file import WorldError, load_world, world_names
+from btlang.robots.worlds.world_writing import as_data
 from btlang.text.source import Source
 from btlang.vocabulary.references import SELF
 

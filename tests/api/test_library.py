@@ -14,7 +14,7 @@ import pytest
 import btlang
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.robots.robot import RobotError
-from btlang.robots.world_problem import read_world
+from btlang.robots.worlds.world_file import read_world
 from btlang.run.events import Chosen, Event, Printed
 from tests.trial import Trial
 

@@ -11,9 +11,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from btlang.robots.motion.collisions import Collisions
-from btlang.robots.motion.course import PERIOD, Limits
-from btlang.robots.motion.kinematics import Kinematics
+from btlang.robots.motion.course import PERIOD, JointLimits
+from btlang.robots.motion.kinematics import Collisions, Kinematics
 from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.robot import RobotError
 from tests.robots.motion.bodies import guide, random_gesture
@@ -26,7 +25,7 @@ _ROUNDS = 50
 def main() -> None:
     """Prints the figures."""
     body, random = guide(), np.random.default_rng(1)
-    limits = Limits.of(body.joints)
+    limits = JointLimits.of(body.joints)
     many = random.uniform(limits.low, limits.high, (_CONFIGURATIONS, len(body.joints)))
     kinematics = Kinematics(body)
     collisions = Collisions(body, kinematics)

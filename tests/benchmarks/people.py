@@ -9,8 +9,8 @@ from __future__ import annotations
 import time
 from random import Random
 
-from btlang.robots.planning import Planner
-from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.planning import PathPlanner
 from tests.world.worlds import museum
 
 _SECONDS = 1200.0
@@ -29,7 +29,7 @@ def _times_real_time(people: int) -> tuple[float, float]:
     robot, random = SimulatedRobot(museum(people, zones=bool(people))), Random(5)
     robot.seed_choices(1)
     names = [place.name for place in robot.world.places]
-    longest, plan = 0.0, Planner.path
+    longest, plan = 0.0, PathPlanner.path
 
     def timed(*args: object, **named: object) -> object:
         nonlocal longest
@@ -38,7 +38,7 @@ def _times_real_time(people: int) -> tuple[float, float]:
         longest = max(longest, time.process_time() - began)
         return path
 
-    Planner.path = timed  # type: ignore[assignment,method-assign]
+    PathPlanner.path = timed  # type: ignore[assignment,method-assign]
     try:
         began, steps, goal = time.process_time(), 0, robot.navigate_to(names[0])
         while robot.time < _SECONDS:
@@ -51,7 +51,7 @@ def _times_real_time(people: int) -> tuple[float, float]:
                 goal = robot.navigate_to(random.choice(names))
         return _SECONDS / (time.process_time() - began), 1e3 * longest
     finally:
-        Planner.path = plan  # type: ignore[method-assign]
+        PathPlanner.path = plan  # type: ignore[method-assign]
 
 
 if __name__ == "__main__":

@@ -10,19 +10,18 @@ import pytest
 
 import btlang
 from btlang.components.device_robot import twins
-from btlang.components.parts import DeviceHands
+from btlang.components.parts.parts import DeviceHands
 from btlang.devices.kinds import Command, Grip, GripTarget
 from btlang.devices.simulated import SimulatedDevice
 from btlang.examples import examples
-from btlang.robots.body import Device
-from btlang.robots.body_file import standard_body
-from btlang.robots.hands import Hands
-from btlang.robots.obstacles import Obstacles
+from btlang.robots.bodies.body import Device
+from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.platforms import ALL
 from btlang.robots.registry import connector
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.simulated_parts import simulated_parts
-from btlang.robots.world_file import load_world
+from btlang.robots.simulation.parts import SimulatedHands, make_simulated_parts
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.obstacles import Obstacles
+from btlang.robots.worlds.world_file import load_world
 from btlang.run.events import Event, Said
 from btlang.vocabulary.shipped import shipped
 from tests.components.robots import robot_file
@@ -135,7 +134,7 @@ def test_a_lidar_alone_stops_it_before_a_wall(tmp_path: Path, ends: float) -> No
 def test_the_watchdog_stops_a_twin_that_nobody_commands(tmp_path: Path) -> None:
     from btlang.devices.device_set import DeviceSet
     from btlang.devices.kinds import WheelSpeeds
-    from btlang.robots.body_file import load_body
+    from btlang.robots.bodies.body_file import load_body
 
     body = load_body(robot_file(tmp_path, device("wheels", "drive")))
     twin = SimulatedRobot(load_world(), body=body)
@@ -230,8 +229,8 @@ def test_a_stop_holds_a_hand_that_closes() -> None:
             return None
 
     body = standard_body()
-    known = Hands(Obstacles(load_world()), (), body)
-    parts = simulated_parts(load_world(), Obstacles(load_world()), body)
+    known = SimulatedHands(Obstacles(load_world()), (), body)
+    parts = make_simulated_parts(load_world(), Obstacles(load_world()), body)
     name = body.hands[0].name
     hands = DeviceHands(body, {f"{name} hand": Hand()}, known)
     robot = SimulatedRobot(load_world(), make_parts=lambda world, obstacles, body: parts.replace(hands=hands))

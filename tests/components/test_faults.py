@@ -18,8 +18,8 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.components.life_cycle import ACTIVE
-from btlang.components.manager import Keeper
+from btlang.components.component import ACTIVE
+from btlang.components.manager import ComponentKeeper
 from tests.components.robots import robot_file
 from tests.profiles import amount
 
@@ -117,7 +117,7 @@ def running_in(groups: set[int | None]) -> list[int]:
     return found
 
 
-def hit(keeper: Keeper, fault: str, folder: Path) -> None:
+def hit(keeper: ComponentKeeper, fault: str, folder: Path) -> None:
     """It dies, and may go wrong when it is started again."""
     if fault in ("raise", "hang", "lose"):
         (folder / f"{keeper.part.name}.plan").write_text(fault, encoding="utf-8")

@@ -12,14 +12,14 @@ import pytest
 
 import btlang
 from btlang.actions.conversation import has_heard, somebody_says
-from btlang.components import hearing
-from btlang.components.hearing import Hearing
+from btlang.components.parts import hearing
+from btlang.components.parts.hearing import Hearing
 from btlang.devices.kinds import Sound
 from btlang.engine.leaves.leaf import Unknown
-from btlang.robots.body import Body, Ears
+from btlang.robots.bodies.body import Body, EarsSpec
 from btlang.robots.robot import RobotError
 from btlang.run.events import Event, PartChanged, Said
-from btlang.speech.recogniser import RecogniserSettings, Understood
+from btlang.speech.recogniser import RecognisedSpeech, RecogniserSettings
 
 ROBOT = """
 name = "listener"
@@ -46,7 +46,7 @@ class Recogniser:
     problem = ""
 
     def __init__(self, recogniser: Any) -> None:
-        self.said: list[Understood] = []
+        self.said: list[RecognisedSpeech] = []
         self.expected: Any = None
         self.heard = self.forgotten = self.ended = 0
 
@@ -62,7 +62,7 @@ class Recogniser:
     def forget(self) -> None:
         self.forgotten += 1
 
-    def understood(self) -> Understood | None:
+    def understood(self) -> RecognisedSpeech | None:
         return self.said.pop(0) if self.said else None
 
     def close(self) -> None:
@@ -79,7 +79,7 @@ class Rig:
 
         self.takes: dict[str, Callable[[Any], object]] = {}
         self.ears, self.said, self.texts = RobotEars(), list[str](), list[str]()
-        body = Body("listener", 0.2, ears=Ears(3.0, "pocketsphinx", RecogniserSettings(push=push), wake))
+        body = Body("listener", 0.2, ears=EarsSpec(3.0, "pocketsphinx", RecogniserSettings(push=push), wake))
         self.robot = SimpleNamespace(
             ears=self.ears, time=0.0, speaking=False, refuses=False, body=body, say=self.said.append, hear=self.hear
         )
@@ -101,7 +101,7 @@ class Rig:
         self.texts.append(text)
         self.ears.hear(text, "", self.robot.time)
 
-    def step(self, seconds: float = 0.05, *said: Understood) -> None:
+    def step(self, seconds: float = 0.05, *said: RecognisedSpeech) -> None:
         self.robot.time += seconds
         self.listener.said += said
         self.hearing.step()
@@ -112,7 +112,7 @@ def test_it_listens_for_what_is_looked_for(monkeypatch: pytest.MonkeyPatch) -> N
     assert rig.ears.news("stop", rig.robot.time) == []
     rig.step()
     assert rig.listener.expected.phrases == ("stop",)
-    rig.step(0.05, Understood("stop"))
+    rig.step(0.05, RecognisedSpeech("stop"))
     assert [heard.text for heard in rig.ears.news("stop", rig.robot.time)] == ["stop"]
     rig.step()
     assert rig.ears.news("stop", rig.robot.time) == []
@@ -127,7 +127,7 @@ def test_it_does_not_hear_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     rig.robot.speaking = True
     rig.step()
     rig.takes["microphone"](PIECE)
-    rig.step(0.05, Understood("stop"))
+    rig.step(0.05, RecognisedSpeech("stop"))
     assert (rig.listener.heard, rig.listener.forgotten, rig.texts) == (1, 1, [])
     rig.robot.speaking = False
     rig.step(0.2)
@@ -141,16 +141,16 @@ def test_it_does_not_hear_itself(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(("answer", "heard"), [("of course", ["tea"]), ("no thanks", []), (None, [])])
 def test_what_it_is_not_sure_of_is_asked(monkeypatch: pytest.MonkeyPatch, answer: str | None, heard: list[str]) -> None:
     rig = Rig(monkeypatch)
-    rig.step(0.05, Understood("tea", sure=False))
+    rig.step(0.05, RecognisedSpeech("tea", sure=False))
     assert rig.said == ['Did you say "tea"?']
     rig.step()
     assert {"yes", "no"} <= set(rig.listener.expected.phrases)
     assert rig.listener.expected.mode == "open"
-    rig.step(0.05, Understood("yes", sure=False))
+    rig.step(0.05, RecognisedSpeech("yes", sure=False))
     if answer is None:
         rig.step(9.0)
     else:
-        rig.step(0.05, Understood(answer))
+        rig.step(0.05, RecognisedSpeech(answer))
     assert rig.texts == heard
     rig.step()
     assert rig.listener.expected.phrases == ()
@@ -159,7 +159,7 @@ def test_what_it_is_not_sure_of_is_asked(monkeypatch: pytest.MonkeyPatch, answer
 def test_a_stopped_robot_asks_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     rig = Rig(monkeypatch)
     rig.robot.refuses = True
-    rig.step(0.05, Understood("tea", sure=False))
+    rig.step(0.05, RecognisedSpeech("tea", sure=False))
     assert (rig.said, rig.texts) == ([], [])
 
 
@@ -170,7 +170,7 @@ def test_without_a_voice_it_hears_only_what_it_is_sure_of(monkeypatch: pytest.Mo
         raise RobotError("the robot has no voice")
 
     rig.robot.say = say
-    rig.step(0.05, Understood("tea", sure=False), Understood("coffee"))
+    rig.step(0.05, RecognisedSpeech("tea", sure=False), RecognisedSpeech("coffee"))
     assert rig.texts == ["coffee"]
 
 
@@ -213,7 +213,7 @@ def test_ears_that_listen_all_the_time_need_no_button(monkeypatch: pytest.Monkey
 
 def test_what_ears_that_fail_have_not_heard_is_not_known(monkeypatch: pytest.MonkeyPatch) -> None:
     rig = Rig(monkeypatch)
-    rig.step(0.05, Understood("tea"))
+    rig.step(0.05, RecognisedSpeech("tea"))
     rig.listener.problem = "ValueError: no sound"
     rig.step()
     rig.step()

@@ -16,19 +16,18 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.components.component import ComponentError
-from btlang.components.life_cycle import ACTIVE
-from btlang.components.manager import Manager
-from btlang.components.plain import packed
+from btlang.components.calls import pack
+from btlang.components.component import ACTIVE, ComponentError
+from btlang.components.manager import ComponentManager
 from btlang.components.process_host import ProcessHost
 from btlang.components.remote_leaf import RemoteLeaf
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.body import ComponentPart
+from btlang.robots.bodies.body import ComponentPart
 from btlang.robots.platforms import ALL
 from btlang.robots.registry import connector
 from btlang.robots.robot import RobotError
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world_file import load_world
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world_file import load_world
 from tests.components.robots import robot_file
 from tests.components.test_faults import wait_until
 
@@ -80,7 +79,9 @@ class _LyingHost:
 
 
 def test_a_host_that_says_nonsense_of_itself_is_given_up() -> None:
-    manager = Manager([ComponentPart("villain", "hostile:Liar", restarts=0)], lambda part, changed: _LyingHost())  # type: ignore[arg-type,return-value]
+    manager = ComponentManager(
+        [ComponentPart("villain", "hostile:Liar", restarts=0)], lambda part, changed: _LyingHost()
+    )  # type: ignore[arg-type,return-value]
     manager.start()
     assert not manager.wait(5.0)
     assert [each.why for each in manager.statuses()] == [
@@ -193,7 +194,7 @@ class _Process(ProcessHost):
         """All of these, and ends."""
         with Connection(self.its.detach()) as end:
             for message in messages:
-                end.send_bytes(packed(message))
+                end.send_bytes(pack(message))
         self.listen().join(5.0)
 
 
@@ -268,7 +269,7 @@ def test_the_robot_stands_before_its_process_is_told_of_a_halt() -> None:
     order: list[str] = []
     robot = SimulatedRobot(load_world())
     host = _Process()
-    host.halt = lambda request: order.append("told, " + str(robot._base.wanted))  # type: ignore[method-assign,attr-defined]
+    host.halt = lambda request: order.append("told, " + str(robot._base.commanded))  # type: ignore[method-assign,attr-defined]
     leaf = RemoteLeaf(host, "roll", (), robot, lambda: None, set())
     leaf.start()
     host._asked({"ask": 1, "call": 1, "robot": "drive", "args": [0.3, 0.0]})
@@ -288,7 +289,7 @@ def test_a_value_nobody_expects_leaves_no_robot_driving() -> None:
     host._requests[1].end({"value": 1, "stored": {"nowhere": 1}})
     with pytest.raises(KeyError):
         leaf.tick()
-    assert robot._base.wanted == (0.0, 0.0)  # type: ignore[attr-defined]
+    assert robot._base.commanded == (0.0, 0.0)  # type: ignore[attr-defined]
     host.close()
 
 
@@ -305,7 +306,7 @@ def test_a_part_that_is_not_installed_is_refused_before_it_is_loaded(tmp_path: P
 
 
 def test_a_restart_keeps_the_newer_version_that_waits() -> None:
-    manager = Manager([ComponentPart("villain", "hostile:Liar")], lambda part, changed: _LyingHost())  # type: ignore[arg-type,return-value]
+    manager = ComponentManager([ComponentPart("villain", "hostile:Liar")], lambda part, changed: _LyingHost())  # type: ignore[arg-type,return-value]
     newer = ComponentPart("villain", "hostile:Better")
     keeper = manager.keeper("villain")
     keeper.start = lambda: None  # type: ignore[method-assign]

@@ -11,8 +11,7 @@ import btlang
 from btlang.components.checking import check_robot
 from btlang.components.component import ComponentError
 from btlang.components.location import load_class
-from btlang.devices.driver import DeviceError
-from btlang.devices.drivers import driver_class
+from btlang.devices.driver import DeviceError, driver_class
 from btlang.diagnostics.reading import read_source
 
 ROBOT = 'name = "faulty"\nradius = 0.2\nover = "devices"\n'

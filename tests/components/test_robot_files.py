@@ -8,13 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from btlang.components.checking import check_robot
+from btlang.components.checking import check_robot, circle, levels
 from btlang.components.component import ComponentError
 from btlang.components.manager import class_of
-from btlang.components.order import circle, levels
 from btlang.diagnostics.reading import read_source
-from btlang.robots.body import ComponentPart, RosNode
-from btlang.robots.body_file import read_body
+from btlang.robots.bodies.body import ComponentPart, RosNode
+from btlang.robots.bodies.body_file import read_body
 from btlang.text.source import Source
 from tests.components.robots import machine, robot_file
 

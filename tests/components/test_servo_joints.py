@@ -10,14 +10,14 @@ from typing import Any
 import pytest
 
 from btlang.components.device_robot import connect_devices
-from btlang.components.servo_joints import ServoJoints
+from btlang.components.parts.servo_joints import ServoJoints
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
 from btlang.devices.kinds import Command, JointState, JointTarget, Reading
 from btlang.devices.loop import DeviceLoop
+from btlang.robots.bodies.gesture import angle_of
 from btlang.robots.geometry import Pose
-from btlang.robots.gesture import angle_of
 from btlang.robots.platforms import ALL
-from btlang.robots.world import World
+from btlang.robots.worlds.world import World
 from tests.robots.motion.bodies import BOW, guide
 
 WAVE = [{name: angle_of(value, 0.0) for name, value in step.items()} for step in guide().postures["wave"]]

@@ -19,8 +19,7 @@ from btlang.devices.kinds import Distance, Wheels, WheelSpeeds
 from btlang.devices.loop import DeviceLoop
 from btlang.devices.serial_board import driver as driver_module
 from btlang.devices.serial_board.driver import SerialBoard
-from btlang.devices.serial_board.simulated_board import CHANNELS, SimulatedBoard
-from btlang.devices.serial_board.simulated_line import SimulatedLine
+from btlang.devices.serial_board.simulated_board import CHANNELS, SimulatedBoard, SimulatedLine
 from tests.profiles import amount
 
 FIRMWARE = Path(driver_module.__file__).parent / "firmware"

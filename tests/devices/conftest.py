@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from btlang.devices.serial_board import line as line_module
-from btlang.devices.serial_board.simulated_line import SimulatedLine
+from btlang.devices.serial_board.simulated_board import SimulatedLine
 from tests.devices.boards import FirmwareBoard, TestBoard, compiled
 
 

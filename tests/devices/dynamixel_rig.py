@@ -9,8 +9,7 @@ from typing import Any
 
 from btlang.devices.driver import Device, DeviceSilent, MakesDriver
 from btlang.devices.dynamixel.driver import DynamixelDriver
-from btlang.devices.dynamixel.fake_bus import FakeBus
-from btlang.devices.dynamixel.fake_servo import FakeServo
+from btlang.devices.dynamixel.fake_bus import FakeBus, FakeServo
 from btlang.devices.kinds import JointState, JointTarget
 from btlang.devices.loop import SILENCE, DeviceLoop
 

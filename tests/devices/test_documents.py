@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from btlang.components.life_cycle import TRANSITIONS
-from btlang.devices.drivers import DRIVERS, SIMULATED
+from btlang.components.component import TRANSITIONS
+from btlang.devices.driver import DRIVERS, SIMULATED
 from btlang.devices.kinds import KINDS
 from btlang.devices.simulated import _OPTIONS
-from btlang.robots.body import ComponentPart, Device
+from btlang.robots.bodies.body import ComponentPart, Device
 
 DOCS = Path(__file__).parent.parent.parent / "docs"
 DEVICES = (DOCS / "devices.md").read_text(encoding="utf-8")

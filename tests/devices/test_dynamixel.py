@@ -11,8 +11,7 @@ import pytest
 from btlang.devices.driver import DeviceError
 from btlang.devices.dynamixel import control_table as table
 from btlang.devices.dynamixel.driver import DynamixelDriver
-from btlang.devices.dynamixel.fake_bus import FakeBus
-from btlang.devices.dynamixel.fake_servo import FakeServo
+from btlang.devices.dynamixel.fake_bus import FakeBus, FakeServo
 from btlang.devices.dynamixel.protocol import FAST_SYNC_READ, SYNC_READ
 from btlang.devices.dynamixel.servo import WATCHDOG_SET
 from btlang.devices.kinds import JointState, JointTarget

@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from btlang.devices.dynamixel import control_table as table
-from btlang.devices.dynamixel.fake_bus import FakeBus
-from btlang.devices.dynamixel.fake_servo import FakeServo
+from btlang.devices.dynamixel.fake_bus import FakeBus, FakeServo
 from btlang.devices.kinds import JointState, JointTarget
 from tests.devices.dynamixel_rig import PATIENCE, Rig, degrees, device, rig
 from tests.profiles import amount, only_long

@@ -16,8 +16,7 @@ from dynamixel_sdk import (
 )
 
 from btlang.devices.dynamixel import control_table as table
-from btlang.devices.dynamixel.fake_bus import FakeBus
-from btlang.devices.dynamixel.fake_servo import FakeServo
+from btlang.devices.dynamixel.fake_bus import FakeBus, FakeServo
 
 HANDLER = Protocol2PacketHandler()
 ERROR_LIMIT, ERROR_ACCESS, ERROR_RANGE, ALERT = 6, 7, 4, 128

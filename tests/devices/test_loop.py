@@ -30,9 +30,9 @@ from btlang.devices.kinds import (
     Wheels,
     WheelSpeeds,
 )
-from btlang.devices.loop import DeviceLoop, _calibrated, _inverse
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world_file import load_world
+from btlang.devices.loop import DeviceLoop, _calibrate, _inverse
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world_file import load_world
 from tests.profiles import searches
 
 SILENCE = 0.06
@@ -330,12 +330,12 @@ def test_calibration_there_and_back(position: float, speed: float, scale: float,
     told = _inverse(JointTarget(position, abs(speed)), joint)
     assert isinstance(told, JointTarget)
     assert told.speed == pytest.approx(abs(speed / scale))  # at most that fast, either way
-    found = _calibrated(JointState(told.position or 0.0, speed / scale), joint)
+    found = _calibrate(JointState(told.position or 0.0, speed / scale), joint)
     assert (found.position, found.speed) == (pytest.approx(position, abs=1e-6), pytest.approx(speed, abs=1e-6))
     base = Device("base", "drive", "test", scale=scale, offset=offset)
     wheels = _inverse(WheelSpeeds(position, speed), base)
     assert isinstance(wheels, WheelSpeeds)
-    found = _calibrated(Wheels(1.0, 2.0, wheels.left, wheels.right), base)
+    found = _calibrate(Wheels(1.0, 2.0, wheels.left, wheels.right), base)
     assert (found.left, found.left_speed, found.right_speed) == pytest.approx((scale, position, speed))
 
 
@@ -343,8 +343,8 @@ def test_calibration_leaves_what_is_unknown_and_rest() -> None:
     device = Device("arm", "joint", "test", scale=2.0, offset=3.0)
     assert _inverse(JointTarget(), device) == JointTarget()
     assert _inverse(WheelSpeeds(), Device("base", "drive", "test", scale=-2.0, offset=3.0)) == WheelSpeeds()
-    assert _calibrated(Motion(1.0), Device("imu", "imu", "test", scale=2.0)) == Motion(2.0)
-    assert _calibrated(Distance(math.inf), Device("front", "range", "test", scale=2.0)) == Distance(math.inf)
+    assert _calibrate(Motion(1.0), Device("imu", "imu", "test", scale=2.0)) == Motion(2.0)
+    assert _calibrate(Distance(math.inf), Device("front", "range", "test", scale=2.0)) == Distance(math.inf)
 
 
 def test_a_battery_that_jumps_needs_a_second_sample() -> None:

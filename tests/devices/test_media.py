@@ -14,8 +14,7 @@ import pytest
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
 from btlang.devices.kinds import Command, Image, Play, Playing, Reading, Sound
 from btlang.devices.loop import DeviceLoop
-from btlang.devices.media.camera import Camera
-from btlang.devices.media.sound import SoundCard
+from btlang.devices.media import Camera, SoundCard
 
 av = pytest.importorskip("av")
 import numpy as np  # noqa: E402

@@ -30,9 +30,8 @@ from btlang.devices.kinds import (
 )
 from btlang.devices.loop import DeviceLoop
 from btlang.devices.serial_board.driver import SerialBoard
-from btlang.devices.serial_board.messages import Channel
-from btlang.devices.serial_board.simulated_line import SimulatedLine
-from btlang.devices.serial_board.values import KIND_NUMBERS
+from btlang.devices.serial_board.messages import KIND_NUMBERS, BoardChannel
+from btlang.devices.serial_board.simulated_board import SimulatedLine
 from tests.devices.boards import PATIENCE, FirmwareBoard, TestBoard, devices, running
 
 
@@ -107,7 +106,7 @@ def test_what_is_kept_is_sent_once_and_again_to_a_board_that_was_started_again(s
 
 
 def test_more_displays_than_fit_in_a_message(simulated: SimulatedLine) -> None:
-    simulated.board = TestBoard("base", [Channel(number, "display", 0.0) for number in range(20)])
+    simulated.board = TestBoard("base", [BoardChannel(number, "display", 0.0) for number in range(20)])
     made = [Device(f"d{number}", "display", "serial-board", "", {"channel": number}) for number in range(20)]
     driver = SerialBoard(simulated.path, made)
     driver.open()

@@ -14,8 +14,8 @@ from btlang.devices.kinds import Wheels, WheelSpeeds
 from btlang.devices.loop import DeviceLoop
 from btlang.devices.serial_board import line as line_module
 from btlang.devices.serial_board.driver import SerialBoard
-from btlang.devices.serial_board.messages import Channel
-from btlang.devices.serial_board.simulated_line import SimulatedLine
+from btlang.devices.serial_board.messages import BoardChannel
+from btlang.devices.serial_board.simulated_board import SimulatedLine
 from tests.devices.boards import AT_REST, TestBoard, User, at_rest_after, devices, driven, running
 from tests.profiles import amount
 
@@ -187,7 +187,7 @@ def test_time_goes_back(line: SimulatedLine) -> None:
 
 def test_answer_with_another_number(simulated: SimulatedLine) -> None:
     """Neither of the two is believed."""
-    channels = [Channel(1, "range", 0.02), Channel(2, "drive", 0.02), Channel(3, "range", 0.02)]
+    channels = [BoardChannel(1, "range", 0.02), BoardChannel(2, "drive", 0.02), BoardChannel(3, "range", 0.02)]
     simulated.board = board = TestBoard("base", channels)
     board.set_range(1.0)
     with driven(simulated, "range", "drive") as user:
@@ -201,7 +201,7 @@ def test_answer_with_another_number(simulated: SimulatedLine) -> None:
 
 
 def test_channel_of_another_kind_or_none(simulated: SimulatedLine) -> None:
-    simulated.board = TestBoard("base", [Channel(1, "imu", 0.02), Channel(2, "drive", 0.02)])
+    simulated.board = TestBoard("base", [BoardChannel(1, "imu", 0.02), BoardChannel(2, "drive", 0.02)])
     with running(simulated.path, "range", "drive", "battery") as loop:
         user = User(loop, set())
         user.until(lambda: loop.silent("drive") is None)

@@ -10,17 +10,17 @@ from random import Random
 
 import pytest
 
-from btlang.devices.serial_board.frames import decode_frame, encode_frame
+from btlang.devices.serial_board.line import decode_frame, encode_frame
 from btlang.devices.serial_board.messages import (
+    COMMANDS,
     STOP,
-    Commands,
+    BoardCommands,
     Hello,
     ask_hello,
     command_message,
     read_hello,
 )
 from btlang.devices.serial_board.simulated_board import CHANNELS, SILENCE
-from btlang.devices.serial_board.values import COMMANDS
 from tests.devices.boards import FIRMWARE, SHIM, STRICT, FirmwareBoard, TestBoard
 from tests.profiles import amount
 
@@ -82,14 +82,14 @@ def decode(frame: bytes) -> bytes:
 def test_motors_stop_alone(board: Board) -> None:
     """Heartbeats don't keep them turning, nor do half frames, nor a command to something else."""
     asked(board, ask_hello(SESSION))
-    light, faster = (7, "light", bytes(3)), command_message(Commands(SESSION, 9, (drive(0.3, 0.3),)))
+    light, faster = (7, "light", bytes(3)), command_message(BoardCommands(SESSION, 9, (drive(0.3, 0.3),)))
     for sequence, commands in enumerate([(), (light,)]):
         start = float(sequence)
-        asked(board, command_message(Commands(SESSION, sequence, (drive(0.3, -0.2),))), start)
+        asked(board, command_message(BoardCommands(SESSION, sequence, (drive(0.3, -0.2),))), start)
         assert board.speeds == (0.3, -0.2)
         for milliseconds in range(0, round(SILENCE * 1000), 20):
             board.turn(start + milliseconds / 1000)
-            asked(board, command_message(Commands(SESSION, 50, commands)), start + milliseconds / 1000)
+            asked(board, command_message(BoardCommands(SESSION, 50, commands)), start + milliseconds / 1000)
             board.receive(encode_frame(faster)[:-3] + b"\0", start + 0.1)
         board.turn(start + SILENCE - 0.001)
         assert board.speeds == (0.3, -0.2)
@@ -100,7 +100,7 @@ def test_motors_stop_alone(board: Board) -> None:
 @pytest.mark.parametrize("message", [bytes([STOP]), ask_hello(SESSION + 1)], ids=["stop", "new session"])
 def test_what_brings_it_to_rest_at_once(board: Board, message: bytes) -> None:
     asked(board, ask_hello(SESSION))
-    asked(board, command_message(Commands(SESSION, 1, (drive(0.3, 0.3),))))
+    asked(board, command_message(BoardCommands(SESSION, 1, (drive(0.3, 0.3),))))
     assert board.speeds == (0.3, 0.3)
     asked(board, message)
     assert board.speeds == (0.0, 0.0)
@@ -109,11 +109,11 @@ def test_what_brings_it_to_rest_at_once(board: Board, message: bytes) -> None:
 @pytest.mark.parametrize(
     "message",
     [
-        command_message(Commands(SESSION, 1, (drive(0.3, 0.3), (9, "light", bytes(3))))),
-        command_message(Commands(SESSION, 1, (drive(0.3, 0.3), (6, "light", bytes(3))))),
-        command_message(Commands(SESSION, 1, (drive(0.3, 0.3),))) + b"\x07",
-        command_message(Commands(SESSION, 1, (drive(0.3, 0.3),))) + b"\x07\x07\x01\x02",
-        command_message(Commands(SESSION, 1, (drive(0.3, 0.3),))) + b"\x01\x01",
+        command_message(BoardCommands(SESSION, 1, (drive(0.3, 0.3), (9, "light", bytes(3))))),
+        command_message(BoardCommands(SESSION, 1, (drive(0.3, 0.3), (6, "light", bytes(3))))),
+        command_message(BoardCommands(SESSION, 1, (drive(0.3, 0.3),))) + b"\x07",
+        command_message(BoardCommands(SESSION, 1, (drive(0.3, 0.3),))) + b"\x07\x07\x01\x02",
+        command_message(BoardCommands(SESSION, 1, (drive(0.3, 0.3),))) + b"\x01\x01",
         bytes([0x82]) + bytes(20),
         bytes([0x44]),
         ask_hello(3)[:-1],
@@ -128,7 +128,7 @@ def test_what_does_not_fit_is_not_obeyed_at_all(board: Board, message: bytes) ->
 
 def test_another_session_is_not_obeyed(board: Board) -> None:
     for session in (0, SESSION + 1):
-        assert asked(board, command_message(Commands(session, 1, (drive(0.3, 0.3),))))
+        assert asked(board, command_message(BoardCommands(session, 1, (drive(0.3, 0.3),))))
         assert board.speeds == (0.0, 0.0)
 
 
@@ -136,9 +136,11 @@ def noise(random: Random) -> bytes:
     """Anything that may come along a line."""
     whole = [
         ask_hello(random.choice([0, SESSION])),
-        command_message(Commands(SESSION, random.randrange(2**16), ())),
-        command_message(Commands(SESSION, 3, (drive(random.uniform(-1, 1), 0.0), (7, "light", random.randbytes(3))))),
-        command_message(Commands(SESSION, 4, ((8, "display", b"hello".ljust(32, b"\0")), (6, "joint", bytes(7))))),
+        command_message(BoardCommands(SESSION, random.randrange(2**16), ())),
+        command_message(
+            BoardCommands(SESSION, 3, (drive(random.uniform(-1, 1), 0.0), (7, "light", random.randbytes(3))))
+        ),
+        command_message(BoardCommands(SESSION, 4, ((8, "display", b"hello".ljust(32, b"\0")), (6, "joint", bytes(7))))),
         bytes([STOP]),
         random.choice([b"\x01", b"\x02", b"\x03", b""]) + random.randbytes(random.randrange(1, 245)),
     ]

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.devices.serial_board.frames import MOST, FrameReader, crc16, decode_frame, encode_frame
+from btlang.devices.serial_board.line import MOST, FrameReader, crc16, decode_frame, encode_frame
 from btlang.devices.serial_board.messages import (
     read_answer,
     read_ask_hello,

@@ -23,7 +23,7 @@ from btlang.devices.kinds import (
     Wheels,
     WheelSpeeds,
 )
-from btlang.devices.serial_board.values import COMMANDS, KIND_NUMBERS, READINGS, Tally
+from btlang.devices.serial_board.messages import COMMANDS, KIND_NUMBERS, READINGS, UnwrappedCounter
 from tests.profiles import searches
 
 
@@ -69,7 +69,7 @@ def test_every_kind_has_its_format() -> None:
 def test_readings_come_back(kind: str, data: st.DataObject) -> None:
     reading, made = data.draw(READ[kind]), READINGS[kind]
     packed = made.layout.pack(*made.integers(reading))
-    assert near(made.reading(made.layout.unpack(packed), (Tally(), Tally())), reading)
+    assert near(made.reading(made.layout.unpack(packed), (UnwrappedCounter(), UnwrappedCounter())), reading)
 
 
 @pytest.mark.parametrize("kind", TOLD)
@@ -102,11 +102,11 @@ def test_too_much_is_the_most() -> None:
 )
 def test_what_cannot_be_true_is_refused(kind: str, integers: tuple[int, ...]) -> None:
     with pytest.raises(DeviceError):
-        READINGS[kind].reading(integers, (Tally(), Tally()))
+        READINGS[kind].reading(integers, (UnwrappedCounter(), UnwrappedCounter()))
 
 
 def test_a_tally_goes_on_past_its_bits_and_past_a_restart() -> None:
-    tally = Tally()
+    tally = UnwrappedCounter()
     assert [tally.count(value) for value in (2**31 - 10, 2**31 - 1, -(2**31) + 5)] == [0, 9, 15]
     tally.restart()
     assert [tally.count(value) for value in (0, 4, 1)] == [15, 19, 16]

@@ -9,7 +9,7 @@ import pytest
 import btlang
 from btlang.cli import main
 from btlang.components.words import robot_words
-from btlang.robots.body_file import load_body
+from btlang.robots.bodies.body_file import load_body
 
 ROVER = Path(__file__).parents[2] / "examples" / "rover"
 

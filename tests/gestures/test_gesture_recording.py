@@ -12,8 +12,7 @@ import pytest
 
 from btlang.cli import main
 from btlang.devices.dynamixel import control_table as table
-from btlang.devices.dynamixel.fake_bus import FakeBus
-from btlang.devices.dynamixel.fake_servo import FakeServo
+from btlang.devices.dynamixel.fake_bus import FakeBus, FakeServo
 from tests.devices.dynamixel_rig import PATIENCE, degrees
 
 ARM = """name = "arm"
@@ -63,7 +62,7 @@ class Hand:
 @pytest.fixture
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
     """Servos that are silent aren't waited for that long."""
-    monkeypatch.setattr("btlang.gestures.loose_joints._WAITS", 0.7)
+    monkeypatch.setattr("btlang.gestures.recording._WAITS", 0.7)
 
 
 @pytest.fixture

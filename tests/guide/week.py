@@ -17,8 +17,8 @@ from typing import Any
 
 from btlang.components.words import robot_words
 from btlang.robots.registry import connector
-from btlang.robots.world_file import load_world
-from btlang.robots.world_writing import to_toml
+from btlang.robots.worlds.world_file import load_world
+from btlang.robots.worlds.world_writing import to_toml
 from btlang.run.events import Bumped, Called, Event, Heard, PeriodPassed, Said
 from btlang.speech.marks import read_marks
 from btlang.task.house import furnished_layer

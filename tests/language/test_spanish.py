@@ -17,7 +17,7 @@ from btlang.frontends.mission.reader import PARSERS
 from btlang.mission_vocabulary import world_vocabulary
 from btlang.printer.mission import english
 from btlang.repl.draft import MissionDraft
-from btlang.ros.mission.setup import Setup
+from btlang.ros.mission.node import Setup
 from btlang.task.task import MissionText
 from btlang.text.words import without_accents
 from btlang.vocabulary.load import load_vocabulary

@@ -8,9 +8,8 @@ from pathlib import Path
 
 import btlang
 from btlang.devices.kinds import Distance, JointState, Pressed
-from btlang.devices.serial_board.messages import Channel
-from btlang.devices.serial_board.simulated_board import SimulatedBoard
-from btlang.devices.serial_board.simulated_line import SimulatedLine
+from btlang.devices.serial_board.messages import BoardChannel
+from btlang.devices.serial_board.simulated_board import SimulatedBoard, SimulatedLine
 from btlang.robots.registry import connector
 from btlang.text.source import Source
 from tests.components.robots import robot_file
@@ -23,11 +22,11 @@ _WHEELS, _SONAR, _BUMPER, _JOINT, _TILT = 1, 2, 3, 4, 5
 _MEASURES = 0.01  # seconds
 JOINTS = {"head turn": "joint", "head tilt": "joint"}
 CHANNELS = (
-    Channel(_WHEELS, "drive", 0.02),
-    Channel(_SONAR, "range", 0.05),
-    Channel(_BUMPER, "button", 0.02),
-    Channel(_JOINT, "joint", 0.02),
-    Channel(_TILT, "joint", 0.02),
+    BoardChannel(_WHEELS, "drive", 0.02),
+    BoardChannel(_SONAR, "range", 0.05),
+    BoardChannel(_BUMPER, "button", 0.02),
+    BoardChannel(_JOINT, "joint", 0.02),
+    BoardChannel(_TILT, "joint", 0.02),
 )
 
 

@@ -7,17 +7,7 @@ from collections.abc import Mapping, Sequence
 from math import cos, radians, sin
 
 from btlang.devices.driver import Device, DeviceError
-from btlang.devices.kinds import (
-    Command,
-    Distance,
-    JointState,
-    JointTarget,
-    Pressed,
-    Reading,
-    Scan,
-    Wheels,
-    WheelSpeeds,
-)
+from btlang.devices.kinds import Command, Distance, JointState, JointTarget, Pressed, Reading, Scan, Wheels, WheelSpeeds
 from btlang.robots.geometry import Pose, wrap
 from tests.lies.lies import OdometrySaid
 from tests.lies.scene import Scene

@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 
 import btlang
-from btlang.robots.body_file import standard_body
+from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.geometry import Pose
 from btlang.robots.motion.guard.readings import ObstacleReading, ScanReading
 from btlang.robots.parts import Parts
 from btlang.robots.robot import SensorSilent
-from btlang.robots.scan import summary
-from btlang.robots.simulated_parts import simulated_parts
-from btlang.robots.simulation import Simulation
-from btlang.robots.world import World
+from btlang.robots.simulation.connection import Simulation
+from btlang.robots.simulation.parts import make_simulated_parts
+from btlang.robots.worlds.scan import summary
+from btlang.robots.worlds.world import World
 from tests.lies.lies import ODOMETRY, SCANNER, WHEELS, Liar, Lie, OdometrySaid, ScanSaid
 from tests.lies.scene import Result
 from tests.lies.true_robot import RADIUS, Witness
@@ -123,7 +123,7 @@ def run(mission: str, lies: Sequence[Lie], wall: float, after: float, end: float
     bases: list[LyingBase] = []
 
     def parts(world: World, obstacles: Any, body: Any) -> Parts:
-        made = simulated_parts(world, obstacles, body)
+        made = make_simulated_parts(world, obstacles, body)
         base = LyingBase(made.base, lies, after, end)
         bases.append(base)
         scanner = LyingScanner(base, made.scan)

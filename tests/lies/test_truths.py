@@ -10,13 +10,12 @@ from random import Random
 import numpy as np
 import pytest
 
-from btlang.robots.body_file import standard_body
+from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.geometry import Pose
 from btlang.robots.motion.guard.guard import Guard
-from btlang.robots.motion.guard.readings import ObstacleReading, OdometryReading, ScanReading
-from btlang.robots.motion.guard.stamps import StampCheck
-from btlang.robots.progress import Approach
-from btlang.robots.scan import Array, scan, summary
+from btlang.robots.motion.guard.readings import ObstacleReading, OdometryReading, ScanReading, StampCheck
+from btlang.robots.motion.progress import Approach
+from btlang.robots.worlds.scan import Array, scan, summary
 from btlang.robots.zones import Zones
 from tests.lies.true_robot import RADIUS, TrueRobot
 from tests.profiles import amount

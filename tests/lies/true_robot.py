@@ -6,9 +6,9 @@ from math import cos, hypot, inf, radians, sin
 
 import numpy as np
 
-from btlang.robots.base import towards
 from btlang.robots.geometry import Pose, Segment, segment_distance, wrap
-from btlang.robots.scan import Array, scan
+from btlang.robots.simulation.base import step_towards
+from btlang.robots.worlds.scan import Array, scan
 
 RADIUS = 0.2
 BRAKE = 2.0
@@ -69,8 +69,8 @@ class TrueRobot:
         while self._waiting and self._waiting[0][0] <= self.time:
             _, *wanted = self._waiting.pop(0)
             self._wanted = wanted[0], wanted[1]
-        self.speed = towards(self.speed, self._wanted[0], self._acceleration * passed, BRAKE * passed)
-        self.spin = towards(self.spin, self._wanted[1], 240.0 * passed, 480.0 * passed)
+        self.speed = step_towards(self.speed, self._wanted[0], self._acceleration * passed, BRAKE * passed)
+        self.spin = step_towards(self.spin, self._wanted[1], 240.0 * passed, 480.0 * passed)
         middle = radians(self.heading + self.spin * passed / 2)
         way = self.speed * self._grip * passed
         x, y = self.x + way * cos(middle), self.y + way * sin(middle)

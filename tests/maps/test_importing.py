@@ -11,10 +11,10 @@ from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 
 from btlang.diagnostics.errors import MissionError
+from btlang.maps.data_text import notation
 from btlang.maps.importing import import_world
-from btlang.maps.notation import notation
 from btlang.robots.geometry import Pose
-from btlang.robots.world import World
+from btlang.robots.worlds.world import World
 from tests.profiles import searches
 from tests.robots.random_worlds import worlds
 

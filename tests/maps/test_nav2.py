@@ -10,19 +10,18 @@ import pytest
 from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 
-from btlang.maps.images import read_image
 from btlang.maps.importing import import_world
 from btlang.maps.nav2 import nav2_files
-from btlang.maps.occupancy import read_map
+from btlang.maps.occupancy import read_image, read_map
 from btlang.robots.geometry import Pose, segment_distance
-from btlang.robots.world import KEEP_OUT, SLOW, Box, Door, Place, World, Zone
+from btlang.robots.worlds.world import KEEP_OUT, SLOW, Door, FurnitureBox, Place, World, Zone
 from tests.profiles import searches
 
 ROOM = ((0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0), (0.0, 0.0))
 WORLD = World(
     Pose(1.0, 1.0),
     walls=(ROOM,),
-    boxes=(Box(3.0, 0.5, 0.4, 0.4),),
+    boxes=(FurnitureBox(3.0, 0.5, 0.4, 0.4),),
     places=(Place("lab", 1.0, 2.0, -90.0), Place('the "ä\U0001f600" bay', 2.0, 2.0)),
     zones=(
         Zone("stairs", KEEP_OUT, ((2.0, 1.0), (3.0, 1.0), (3.0, 2.0))),

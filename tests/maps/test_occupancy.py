@@ -12,8 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.maps.contours import outlines, simplified, walls_of
-from btlang.maps.occupancy import OccupancyMap, read_map
+from btlang.maps.occupancy import OccupancyMap, outlines, read_map, simplify, walls_of
 from btlang.robots.geometry import Pose, segment_distance
 from btlang.text.toml_table import Problem
 from tests.profiles import searches
@@ -174,7 +173,7 @@ def test_walls_are_within_a_cell_of_the_outlines(rows: list[list[bool]]) -> None
     for loop in loops:
         for corner in loop.tolist():
             assert min(segment_distance((corner[0], corner[1]), piece) for piece in pieces) <= 1.0 + 1e-9
-        assert {tuple(corner) for corner in simplified(loop).tolist()} <= {tuple(corner) for corner in loop.tolist()}
+        assert {tuple(corner) for corner in simplify(loop).tolist()} <= {tuple(corner) for corner in loop.tolist()}
     area = sum(
         (a[0] * b[1] - b[0] * a[1]) / 2
         for loop in loops

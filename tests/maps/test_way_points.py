@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from btlang.maps.data_text import ForeignFileError, read_data
 from btlang.maps.way_points import way_points
-from btlang.robots.world import Place
+from btlang.robots.worlds.world import Place
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from btlang.cli import main
-from btlang.robots.world import Place
-from btlang.robots.world_file import load_world
+from btlang.robots.worlds.world import Place
+from btlang.robots.worlds.world_file import load_world
 
 SHOP = """start = { x = 1, y = 1, facing = 90 }
 dock = { x = 0.5, y = 4.5, facing = 180 }

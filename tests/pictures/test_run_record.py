@@ -14,7 +14,7 @@ from btlang.pictures.run_picture import numbers
 from btlang.pictures.run_record import RunRecord, Sighting
 from btlang.pictures.statuses import LastStatuses, by_definition
 from btlang.robots.geometry import Point
-from btlang.robots.world_file import load_world
+from btlang.robots.worlds.world_file import load_world
 from btlang.run.events import StatusesChanged
 from btlang.session import Session
 from btlang.text.source import Source

@@ -6,8 +6,8 @@ import pytest
 
 from btlang.pictures.terminal_map import TerminalMap
 from btlang.robots.geometry import Pose
-from btlang.robots.world import World
-from btlang.robots.world_problem import read_world
+from btlang.robots.worlds.world import World
+from btlang.robots.worlds.world_file import read_world
 from btlang.run.robot_state import RobotState
 from btlang.text.source import Source
 

@@ -7,19 +7,19 @@ from typing import Any
 from hypothesis import strategies as st
 
 from btlang.robots.geometry import Pose
-from btlang.robots.visits import Visits
-from btlang.robots.world import (
+from btlang.robots.worlds.world import (
     KEEP_OUT,
     NEVER,
     SLOW,
-    Box,
     Door,
-    Fault,
+    FurnitureBox,
     Person,
+    PersonUtterance,
     Place,
     Stop,
-    Utterance,
+    Visits,
     World,
+    WorldFault,
     WorldObject,
     Zone,
 )
@@ -50,7 +50,7 @@ def worlds(draw: st.DrawFn) -> World:
         Pose(*apart(), draw(_numbers)),
         draw(st.floats(0.0, 100.0)),
         tuple(tuple(draw(st.lists(_points, min_size=2, max_size=5))) for _ in some()),
-        tuple(Box(*draw(_points), draw(st.floats(0.01, 5.0)), draw(st.floats(0.01, 5.0))) for _ in some()),
+        tuple(FurnitureBox(*draw(_points), draw(st.floats(0.01, 5.0)), draw(st.floats(0.01, 5.0))) for _ in some()),
         (*places, *((dock,) if dock else ())),
         tuple(_object(draw, next(names)) for _ in some()),
         tuple(_person(draw, next(names)) for _ in some()),
@@ -101,7 +101,7 @@ def _person(draw: st.DrawFn, name: str) -> Person:
         draw(st.just(NEVER) | st.floats(comes, 2000.0)), draw(st.floats(0.05, 3.0)),
         () if wanders else tuple(draw(st.lists(stops, max_size=3))), draw(st.booleans()), wanders,
         tuple(draw(st.lists(_texts, max_size=2))), draw(st.just("") | _texts),
-        tuple(draw(st.lists(st.builds(Utterance, _seconds, _texts), max_size=2))),
+        tuple(draw(st.lists(st.builds(PersonUtterance, _seconds, _texts), max_size=2))),
         draw(st.dictionaries(_texts.map(str.lower), _texts, max_size=2)), draw(_seconds), draw(st.floats(0.0, 1.0)),
         asks=tuple(draw(st.lists(_texts, max_size=2))),
     )  # fmt: skip
@@ -113,7 +113,7 @@ def _zone(draw: st.DrawFn, name: str) -> Zone:
     return Zone(name, kind, points, draw(st.floats(0.01, 3.0)) if kind == SLOW else 0.0)
 
 
-def _fault(draw: st.DrawFn, places: tuple[Place, ...]) -> Fault:
+def _fault(draw: st.DrawFn, places: tuple[Place, ...]) -> WorldFault:
     kinds = ["slip", "silent scanner", "weak hand", *(["blocked"] if places else [])]
     kind = draw(st.sampled_from(kinds))
     more: dict[str, dict[str, Any]] = {
@@ -121,4 +121,4 @@ def _fault(draw: st.DrawFn, places: tuple[Place, ...]) -> Fault:
         "slip": {"wheel": draw(st.sampled_from(["left", "right", "both"])), "grip": draw(st.floats(0.0, 1.0))},
         "weak hand": {"hand": draw(st.sampled_from(["left", "right"])), "seconds": draw(_seconds)},
     }
-    return Fault(kind, draw(_seconds), draw(st.just(NEVER) | _seconds), **more.get(kind, {}))
+    return WorldFault(kind, draw(_seconds), draw(st.just(NEVER) | _seconds), **more.get(kind, {}))

@@ -10,13 +10,13 @@ import btlang
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.examples import Example, examples
-from btlang.robots.body import Body
-from btlang.robots.body_file import read_body
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.body_file import read_body
 from btlang.robots.geometry import Pose
-from btlang.robots.needs import lacking
+from btlang.robots.preflight import find_missing_parts
 from btlang.robots.registry import runs_on
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import World
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world import World
 from btlang.text.source import Source
 from btlang.vocabulary.shipped import BODIES, shipped
 
@@ -138,7 +138,7 @@ def test_examples_on_the_small_robot(example: Example) -> None:
 
 def test_lacking(small: Body) -> None:
     mission = btlang.parse_tree("nod then raise the left arm")
-    assert list(lacking(small, mission.tree, mission.vocabulary)) == ['posture "nod"', "left arm"]
+    assert list(find_missing_parts(small, mission.tree, mission.vocabulary)) == ['posture "nod"', "left arm"]
 
 
 def test_a_fake_needs_nothing_of_the_body(small: Body) -> None:

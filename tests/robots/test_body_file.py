@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from btlang.robots.body import Breathing, Capsule, Idle, RosNode
-from btlang.robots.body_file import BodyError, load_body, shipped_bodies, standard_body
+from btlang.robots.bodies.body import Breathing, Capsule, Idle, RosNode
+from btlang.robots.bodies.body_file import BodyError, load_body, shipped_bodies, standard_body
 from btlang.vocabulary.shipped import BODIES
 
 DOCK = "[dock]\nwithin = 0.2\nbeyond = 0.3\nbacks_off = 0.4\n"

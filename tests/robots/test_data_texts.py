@@ -11,8 +11,8 @@ import pytest
 import btlang
 from btlang.diagnostics.errors import MissionError
 from btlang.recording.bundle import files_of
-from btlang.robots.body_file import read_body
-from btlang.robots.world_problem import read_world
+from btlang.robots.bodies.body_file import read_body
+from btlang.robots.worlds.world_file import read_world
 from btlang.text.source import Source
 
 START = "start = { x = 1, y = 1 }\n"

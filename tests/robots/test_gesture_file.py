@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.robots.body_file import BodyError, load_body
-from btlang.robots.gesture import Gesture, KeyFrame
-from btlang.robots.gesture_file import GestureError, load_gestures
+from btlang.robots.bodies.body_file import BodyError, load_body
+from btlang.robots.bodies.gesture import Gesture, KeyFrame
+from btlang.robots.bodies.gesture_file import GestureError, load_gestures
 from btlang.text.source import Source
 from tests.robots.motion.bodies import GUIDE, guide
 

@@ -10,7 +10,7 @@ from btlang import MissionError, parse_tree
 from btlang.cli import main
 from btlang.components.words import robot_words
 from btlang.robots import registry
-from btlang.robots.body import Body
+from btlang.robots.bodies.body import Body
 from tests.robots.motion.bodies import GUIDE
 from tests.robots.test_gesture_file import NOD, POINT, robot_file
 

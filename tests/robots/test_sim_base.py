@@ -6,16 +6,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from btlang.robots.body_file import standard_body
+from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.geometry import Pose, segment_distance, wrap
-from btlang.robots.obstacles import Obstacles
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import Box, Fault, Person, Place, World
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.obstacles import Obstacles
+from btlang.robots.worlds.world import FurnitureBox, Person, Place, World, WorldFault
 
 ROOM = World(
     start=Pose(2.0, 2.0, 0.0),
     walls=(((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0), (0.0, 0.0)),),
-    boxes=(Box(3.2, 3.2, 0.6, 0.4),),
+    boxes=(FurnitureBox(3.2, 3.2, 0.6, 0.4),),
     people=(Person("Alice", 0.8, 3.0, 0.25),),
 )
 EMPTY = World(start=Pose(0.0, 0.0, 0.0))
@@ -144,11 +144,11 @@ def test_the_same_commands_give_the_same_run():
 
 
 def test_slipping_wheels():
-    both = SimulatedRobot(EMPTY.replace(faults=(Fault("slip", grip=0.5),)))
+    both = SimulatedRobot(EMPTY.replace(faults=(WorldFault("slip", grip=0.5),)))
     both.drive(0.5, 0.0)
     run(both, 4)
     assert both.pose.x == pytest.approx(0.5 * (0.5 * 4 - 0.125), abs=0.02)
-    left = SimulatedRobot(EMPTY.replace(faults=(Fault("slip", start=1.0, wheel="left", grip=0.8),)))
+    left = SimulatedRobot(EMPTY.replace(faults=(WorldFault("slip", start=1.0, wheel="left", grip=0.8),)))
     left.drive(0.5, 0.0)
     run(left, 0.9)
     assert left.pose.heading == 0.0
@@ -157,7 +157,7 @@ def test_slipping_wheels():
 
 
 def test_no_grip_is_stuck():
-    robot = SimulatedRobot(EMPTY.replace(faults=(Fault("slip", grip=0.0),)))
+    robot = SimulatedRobot(EMPTY.replace(faults=(WorldFault("slip", grip=0.0),)))
     robot.drive(0.5, 0.0)
     run(robot, 0.9)
     assert not robot.stuck

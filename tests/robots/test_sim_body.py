@@ -6,8 +6,8 @@ import pytest
 
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import Robot, RobotError
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import Fault, Person, World, WorldObject
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world import Person, World, WorldFault, WorldObject
 
 TABLE = World(
     start=Pose(0, 0),
@@ -67,7 +67,7 @@ def test_puts_down_where_no_wall_is():
 
 def test_a_weak_hand_drops():
     events = []
-    world = TABLE.replace(faults=(Fault("weak hand", seconds=2.0),))
+    world = TABLE.replace(faults=(WorldFault("weak hand", seconds=2.0),))
     robot = SimulatedRobot(world, lambda kind, data: events.append((kind, dict(data))))
     robot.grasp("right")
     robot.step(1.9)
@@ -79,7 +79,9 @@ def test_a_weak_hand_drops():
 
 def test_faults_are_told():
     events = []
-    world = TABLE.replace(faults=(Fault("slip", start=1.0, wheel="left", grip=0.5), Fault("silent scanner", start=2.0)))
+    world = TABLE.replace(
+        faults=(WorldFault("slip", start=1.0, wheel="left", grip=0.5), WorldFault("silent scanner", start=2.0))
+    )
     robot = SimulatedRobot(world, lambda kind, data: events.append(data.get("text")))
     robot.step(3)
     assert events == ["the left wheel slips: 50% grip", "the laser scanner is silent"]

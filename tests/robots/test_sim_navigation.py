@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from btlang.robots.geometry import Pose, segment_distance
 from btlang.robots.robot import RobotError
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import Box, Fault, Person, Place, World
-from btlang.robots.world_file import load_world
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world import FurnitureBox, Person, Place, World, WorldFault
+from btlang.robots.worlds.world_file import load_world
 
 WORLDS = Path(__file__).parents[2] / "examples" / "worlds"
 HOUSE = load_world()
@@ -83,7 +83,10 @@ def test_a_person_on_the_place_leaves_no_way_until_they_move():
 
 def test_plans_anew_when_somebody_steps_in_the_way():
     world = World(
-        start=Pose(0, 0), places=(Place("end", 6, 0),), people=(Person("Bob", 3, 3, 0.25),), boxes=(Box(3, -5, 1, 1),)
+        start=Pose(0, 0),
+        places=(Place("end", 6, 0),),
+        people=(Person("Bob", 3, 3, 0.25),),
+        boxes=(FurnitureBox(3, -5, 1, 1),),
     )
     robot = SimulatedRobot(world)
     journey = robot.navigate_to("end")
@@ -103,18 +106,18 @@ def test_a_blocked_place_is_free_again_later():
 
 
 def test_a_way_that_is_blocked_while_driving():
-    robot = SimulatedRobot(HOUSE.replace(faults=(Fault("blocked", start=3.0, place="lab"),)))
+    robot = SimulatedRobot(HOUSE.replace(faults=(WorldFault("blocked", start=3.0, place="lab"),)))
     assert travel(robot, "lab").failure == "there is no free way to the lab"
     assert robot.time == pytest.approx(3.0, abs=0.1)
 
 
 def test_no_grip_on_the_way():
-    robot = SimulatedRobot(HOUSE.replace(faults=(Fault("slip", start=2.0, grip=0.0),)))
+    robot = SimulatedRobot(HOUSE.replace(faults=(WorldFault("slip", start=2.0, grip=0.0),)))
     assert travel(robot, "lab").failure == "stuck on the way to the lab: the wheels turn but the robot doesn't move"
 
 
 def test_an_uneven_grip_does_not_matter():
-    robot = SimulatedRobot(HOUSE.replace(faults=(Fault("slip", wheel="left", grip=0.7),)))
+    robot = SimulatedRobot(HOUSE.replace(faults=(WorldFault("slip", wheel="left", grip=0.7),)))
     assert travel(robot, "lab").failure is None
 
 
@@ -183,7 +186,7 @@ def test_a_pose_without_a_way(x):
 
 def test_a_pose_on_a_place_is_that_place():
     place = HOUSE.places[0]
-    robot = SimulatedRobot(HOUSE.replace(faults=(Fault("blocked", place=place.name),)))
+    robot = SimulatedRobot(HOUSE.replace(faults=(WorldFault("blocked", place=place.name),)))
     assert to_pose(robot, Pose(place.x, place.y)).failure == f"there is no free way to the {place.name}"
 
 

@@ -8,15 +8,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from btlang.robots.body import Sensor
-from btlang.robots.body_file import standard_body
+from btlang.robots.bodies.body import Sensor
+from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.geometry import Pose, wrap
-from btlang.robots.obstacles import Obstacles
 from btlang.robots.robot import RobotError
-from btlang.robots.scan import Scanner, around
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.view import View
-from btlang.robots.world import Fault, Person, World
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.obstacles import Obstacles
+from btlang.robots.worlds.scan import Scanner, around
+from btlang.robots.worlds.sight import View
+from btlang.robots.worlds.world import Person, World, WorldFault
 
 SQUARE = World(start=Pose(2.0, 2.0), walls=(((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0), (0.0, 0.0)),))
 
@@ -114,7 +114,7 @@ def test_it_is_computed_once_until_something_moves():
 
 
 def test_a_silent_scanner_says_so():
-    robot = SimulatedRobot(SQUARE.replace(faults=(Fault("silent scanner", start=1.0, end=2.0),)))
+    robot = SimulatedRobot(SQUARE.replace(faults=(WorldFault("silent scanner", start=1.0, end=2.0),)))
     robot.scan()
     robot.step(1.5)
     with pytest.raises(RobotError, match="the laser scanner is silent"):

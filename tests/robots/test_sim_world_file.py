@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from btlang.robots.geometry import Pose
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import Place
-from btlang.robots.world_file import DEFAULT_WORLD, WorldError, load_world, world_names
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world import Place
+from btlang.robots.worlds.world_file import DEFAULT_WORLD, WorldError, load_world, world_names
 
 WORLDS = sorted((Path(__file__).parents[2] / "examples" / "worlds").glob("*.toml"))
 
@@ -28,7 +28,10 @@ def test_examples_load(path):
 
 
 def test_names_need_no_numpy():
-    code = "import sys; from btlang.robots.world_file import world_names; world_names(); print('numpy' in sys.modules)"
+    code = (
+        "import sys; from btlang.robots.worlds.world_file import world_names; world_names(); "
+        "print('numpy' in sys.modules)"
+    )
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "False\n"
 
 

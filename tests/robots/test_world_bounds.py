@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 
 from btlang.robots.geometry import Pose
-from btlang.robots.world import Door, World
-from btlang.robots.world_bounds import outer_wall
-from btlang.robots.world_file import WorldError, load_world
-from btlang.robots.world_writing import to_toml
+from btlang.robots.worlds.world import Door, World
+from btlang.robots.worlds.world_bounds import outer_wall
+from btlang.robots.worlds.world_file import WorldError, load_world
+from btlang.robots.worlds.world_writing import to_toml
 from btlang.text.source import Source
 from tests.profiles import searches
 from tests.robots.random_worlds import worlds

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.robots.world import World
-from btlang.robots.world_file import load_world
-from btlang.robots.world_writing import to_toml
+from btlang.robots.worlds.world import World
+from btlang.robots.worlds.world_file import load_world
+from btlang.robots.worlds.world_writing import to_toml
 from btlang.text.source import Source
 from tests.profiles import searches
 from tests.robots.random_worlds import worlds

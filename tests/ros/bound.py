@@ -17,14 +17,14 @@ def bind_words(file: str) -> int:
     """Prints what is wrong and returns the exit code, as `btc` does. Skips where ROS 2 is not installed."""
     pytest.importorskip("rclpy", reason="ROS 2 is not installed")
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    from btlang.ros.binding import bind_ros
-    from btlang.ros.clients import Clients
     from btlang.ros.node import SpunNode
+    from btlang.ros.words.binding import bind_ros
+    from btlang.ros.words.clients import RosClients
 
     vocabulary = load_vocabulary([file])
     problems = []
     with free_domain() as domain, SpunNode("bound", domain_id=domain) as spun:
-        clients = Clients(spun.node)
+        clients = RosClients(spun.node)
         for entry in (entry for same in vocabulary.entries.values() for entry in same):
             try:
                 bind_ros(entry, vocabulary, clients, dict[str, Any]().__getitem__)

@@ -76,7 +76,7 @@ def _interfaces() -> None:
     with _lock(Path(sys.prefix, ".btlang-interfaces.lock")):
         there = {_NAV2: all(map(_found, _NAV2_NEWEST)), _OWN: _is_current(), _COMPOSITION: _found(_COMPOSITION)}
         missing = [folder for module, folder in packages.items() if not there[module]]
-        if not missing or interfaces.missing_tools() is not None:
+        if not missing or interfaces.find_missing_tools() is not None:
             return
         command = [sys.executable, "-m", "btlang.ros.interfaces", *missing]
         environment = {**os.environ, "PYTHONPATH": str(REPOSITORY)}
@@ -88,7 +88,7 @@ def _interfaces() -> None:
 def nav2() -> Any:
     """The action NavigateToPose."""
     if not _found(_NAV2):
-        pytest.skip(f"nav2_msgs is not installed and cannot be compiled: {interfaces.missing_tools()}")
+        pytest.skip(f"nav2_msgs is not installed and cannot be compiled: {interfaces.find_missing_tools()}")
     return importlib.import_module(_NAV2).NavigateToPose
 
 
@@ -96,7 +96,7 @@ def nav2() -> Any:
 def run_mission() -> Any:
     """The action RunMission."""
     if not _found(_OWN):
-        pytest.skip(f"btlang_interfaces is not installed and cannot be compiled: {interfaces.missing_tools()}")
+        pytest.skip(f"btlang_interfaces is not installed and cannot be compiled: {interfaces.find_missing_tools()}")
     return importlib.import_module(_OWN).RunMission
 
 
@@ -104,7 +104,7 @@ def run_mission() -> Any:
 def composition() -> None:
     """The interfaces of component containers."""
     if not _found(_COMPOSITION):
-        pytest.skip(f"composition_interfaces can't be compiled: {interfaces.missing_tools()}")
+        pytest.skip(f"composition_interfaces can't be compiled: {interfaces.find_missing_tools()}")
 
 
 @pytest.fixture

@@ -96,12 +96,12 @@ class Robot:
     """A node in a domain of its own, and the missions that run on it."""
 
     def __init__(self, folder: Path, domain: int) -> None:
-        from btlang.ros.clients import Clients
         from btlang.ros.node import SpunNode
+        from btlang.ros.words.clients import RosClients
 
         self.domain = domain
         self.spun = SpunNode("declared", domain_id=self.domain)
-        self.clients = Clients(self.spun.node)
+        self.clients = RosClients(self.spun.node)
         self.spun.start()
         self.peers: list[Peer] = []
         self._file = folder / "words.toml"
@@ -119,7 +119,7 @@ class Robot:
 
     def load(self, mission: str, words: str) -> Engine:
         """A mission with the words of a keyword file."""
-        from btlang.ros.binding import bind_ros
+        from btlang.ros.words.binding import bind_ros
 
         self._file.write_text(words, encoding="utf-8")
         tree = btlang.parse_tree(mission, keywords=[str(self._file)])

@@ -15,10 +15,10 @@ from time import monotonic
 import pytest
 from std_msgs.msg import Float64
 
-from btlang.robots.world_problem import read_world
-from btlang.ros.connection import RosConnection
-from btlang.ros.ending import ending_signals
-from btlang.ros.pace import RosPace
+from btlang.robots.worlds.world_file import read_world
+from btlang.ros.clocks import RosPace
+from btlang.ros.command import keep_ending_signals
+from btlang.ros.robot.connection import RosConnection
 from btlang.ros.simulator.simulator import Simulator
 from btlang.run.controls import Controls
 
@@ -65,7 +65,7 @@ def in_lock_step(patch: pytest.MonkeyPatch) -> None:
 def serve(world: str) -> int:
     """Until a signal comes; returns the exit code, as `btc sim-ros` does."""
     allowed = 0.0
-    with ending_signals() as came:
+    with keep_ending_signals() as came:
         simulator = Simulator(read_world(world), namespace="", gives_clock=True, show=lambda line: None)
         robot = simulator.robot
 

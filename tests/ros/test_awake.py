@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from btlang.ros.awake import AwakeClock
+from btlang.ros.clocks import AwakeClock
 
 
 class Real:

@@ -11,8 +11,8 @@ from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 
 from btlang.robots.robot import RobotError
-from btlang.ros.base import RosBase
 from btlang.ros.node import SpunNode
+from btlang.ros.robot.base import RosBase
 from tests.ros.client import Client, Heard
 from tests.ros.processes import wait_until
 

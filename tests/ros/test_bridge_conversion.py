@@ -16,9 +16,9 @@ from builtin_interfaces.msg import Time
 from std_msgs.msg import Empty, Float64MultiArray, Header, Int64, String, UInt8MultiArray
 from std_srvs.srv import Trigger
 
-from btlang.ros.bridge.conversion import as_data, filled
+from btlang.ros.bridge.conversion import as_data, fill_message
 from btlang.ros.bridge.replies import BridgeError
-from btlang.ros.fields import INTEGERS, array_of, field_types
+from btlang.ros.words.fields import INTEGERS, array_of, field_types
 
 PACKAGES = (
     "action_msgs", "diagnostic_msgs", "geometry_msgs", "nav_msgs", "rcl_interfaces", "sensor_msgs", "shape_msgs",
@@ -59,9 +59,9 @@ def test_there_and_back(cls: Any) -> None:
     draw = random.Random(1)
     for _ in range(3):
         data = {field: anything(kind, draw) for field, kind in field_types(cls).items()}
-        message = filled(cls, data, noon)
+        message = fill_message(cls, data, noon)
         written = json.loads(json.dumps(as_data(message), allow_nan=False))
-        assert filled(cls, written, noon) == message
+        assert fill_message(cls, written, noon) == message
 
 
 def test_what_json_has_no_word_for() -> None:
@@ -72,11 +72,11 @@ def test_what_json_has_no_word_for() -> None:
 
 
 def test_a_header_gets_the_time() -> None:
-    assert filled(Header, {}, noon).stamp.sec == 0
+    assert fill_message(Header, {}, noon).stamp.sec == 0
     pose = import_module("geometry_msgs.msg").PoseStamped
-    assert filled(pose, {}, noon).header.stamp.sec == 12
-    assert filled(pose, {"header": {"frame_id": "map"}}, noon).header.stamp.sec == 12
-    assert filled(pose, {"header": {"stamp": {"sec": 3}}}, noon).header.stamp.sec == 3
+    assert fill_message(pose, {}, noon).header.stamp.sec == 12
+    assert fill_message(pose, {"header": {"frame_id": "map"}}, noon).header.stamp.sec == 12
+    assert fill_message(pose, {"header": {"stamp": {"sec": 3}}}, noon).header.stamp.sec == 3
 
 
 @pytest.mark.parametrize(
@@ -95,5 +95,5 @@ def test_a_header_gets_the_time() -> None:
 )
 def test_what_does_not_fit(cls: Any, data: Any, reason: str) -> None:
     with pytest.raises(BridgeError) as refused:
-        filled(cls, data, noon)
+        fill_message(cls, data, noon)
     assert reason in str(refused.value)

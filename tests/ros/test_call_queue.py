@@ -5,7 +5,7 @@ from __future__ import annotations
 from concurrent.futures import ThreadPoolExecutor
 
 from btlang.robots.robot import RobotError
-from btlang.ros.simulator.call_queue import CallQueue
+from btlang.ros.simulator.shared import CallQueue
 from tests.ros.processes import LONG, wait_until
 
 

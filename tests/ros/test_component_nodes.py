@@ -16,9 +16,9 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.components.manager import Keeper
+from btlang.components.manager import ComponentKeeper
 from btlang.robots.registry import connector
-from btlang.ros.questions import Question
+from btlang.ros.components.services import AwaitedReply
 from btlang.run.events import Event
 from tests.components.robots import robot_file
 from tests.ros.processes import LONG, REPOSITORY, start, wait_until
@@ -38,7 +38,7 @@ example = "clench"
 def _domain(domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
     monkeypatch.setenv("PYTHONPATH", str(REPOSITORY))
-    monkeypatch.setattr("btlang.ros.component_host._DISCOVERY", 1.0)
+    monkeypatch.setattr("btlang.ros.components.host._DISCOVERY", 1.0)
 
 
 def table(command: list[str] | None = None, **keys: object) -> str:
@@ -49,7 +49,7 @@ def table(command: list[str] | None = None, **keys: object) -> str:
 
 
 @contextmanager
-def up(folder: Path, component: str, over: str = "simulated") -> Iterator[tuple[Any, Keeper]]:
+def up(folder: Path, component: str, over: str = "simulated") -> Iterator[tuple[Any, ComponentKeeper]]:
     with btlang.Session(robot_file(folder, component), over=over) as session:
         yield session, session.connection.manager.keeper("arm driver")  # type: ignore[attr-defined]
 
@@ -59,7 +59,7 @@ def mission(folder: Path, text: str) -> btlang.Mission:
     return btlang.parse_tree(text, keywords=[str(folder / "arm.toml")])
 
 
-def becomes(keeper: Keeper, state: str) -> None:
+def becomes(keeper: ComponentKeeper, state: str) -> None:
     wait_until(lambda: keeper.state == state, f"{state}, not {keeper.state} ({keeper.why})", 2 * LONG)
 
 
@@ -172,8 +172,8 @@ def test_a_container(tmp_path: Path, composition: None) -> None:
 
 def test_answers_that_are_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every third of them: it is asked again, and nothing has failed."""
-    came, count = Question.came, itertools.count()
-    monkeypatch.setattr(Question, "came", lambda self, future: came(self, future) if next(count) % 3 else None)
+    came, count = AwaitedReply.came, itertools.count()
+    monkeypatch.setattr(AwaitedReply, "came", lambda self, future: came(self, future) if next(count) % 3 else None)
     with up(tmp_path, table(STARTED, parameters="{ force = 0.1 }", limit=5.0)) as (_, keeper):
         becomes(keeper, "active")
         time.sleep(2.0)  # of its heartbeat

@@ -128,14 +128,14 @@ def test_there_is_no_server(robot: Robot) -> None:
 
 
 def test_a_server_whose_answer_gets_lost(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.ros.leaves.actions.ANSWER", 0.5)
+    monkeypatch.setattr("btlang.ros.words.servers.ANSWER", 0.5)
     navigator = robot.peer("navigator", "lost")
     assert robot.run(MISSION, WORDS) == "/navigate_to_pose does not answer the goal"
     navigator.expect("cancelled")  # though nobody knows whether it accepted
 
 
 def test_a_server_that_never_answers_the_goal(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.ros.leaves.actions.ANSWER", 0.5)
+    monkeypatch.setattr("btlang.ros.words.servers.ANSWER", 0.5)
     navigator = robot.peer("navigator", "slow", "1.5")
     assert robot.run(MISSION, WORDS) == "/navigate_to_pose does not answer the goal"
     navigator.expect("executing")  # it accepts at last, and is cancelled at once

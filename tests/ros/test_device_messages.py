@@ -14,14 +14,12 @@ from std_msgs.msg import Int16MultiArray
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from btlang.devices import kinds
-from btlang.devices.driver import Device, DeviceError, DeviceSilent
-from btlang.devices.drivers import driver_class
+from btlang.devices.driver import Device, DeviceError, DeviceSilent, driver_class
 from btlang.devices.kinds import KINDS
-from btlang.ros.devices.client import TopicClient
+from btlang.ros.devices.nodes import TRANSLATIONS, TopicClient
 from btlang.ros.devices.setting import Setting, TopicDevice, topic_name
-from btlang.ros.devices.translations import TRANSLATIONS
-from btlang.ros.gate import Gate
-from btlang.ros.times import stamp
+from btlang.ros.messages import stamp
+from btlang.ros.subscriptions import MessageGate
 
 SETTING = Setting("elbow", wheel_gap=0.3, range=4.0)
 READINGS = {
@@ -121,8 +119,8 @@ def test_commands_that_are_none() -> None:
 
 def test_stamps_that_stand_still_go_back_or_fall_behind(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [500.0]
-    monkeypatch.setattr("btlang.ros.gate.time.monotonic", lambda: now[0])
-    gate, message = Gate(Range, all_stamps=True), Range()
+    monkeypatch.setattr("btlang.ros.subscriptions.time.monotonic", lambda: now[0])
+    gate, message = MessageGate(Range, all_stamps=True), Range()
     assert gate.refuses(message) == ""  # without a stamp nothing is known
     faults = []
     for at, stamped in ((500.0, 90.0), (500.1, 90.1), (500.2, 90.1), (503.0, 90.5), (503.1, 20.0), (503.2, 20.1)):
@@ -165,7 +163,7 @@ def test_a_joint_in_one_of_several_messages() -> None:
     for seconds, name in ((3.0, "elbow"), (1.0, "wrist"), (3.1, "elbow"), (2.0, "wrist")):
         message = JointState(name=[name], position=[seconds])
         message.header.stamp = stamp(seconds)
-        client.arrived(message)
+        client.on_message(message)
         told.append(client.reading())
     assert [type(each) for each in told] == [kinds.JointState] * 4
     assert told[-1].position == pytest.approx(degrees(3.1))

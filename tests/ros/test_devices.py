@@ -16,7 +16,7 @@ import btlang
 from btlang.cli import main
 from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import DeviceError
-from btlang.robots.body_file import load_body
+from btlang.robots.bodies.body_file import load_body
 from btlang.robots.registry import connector
 from tests.components.robots import robot_file
 from tests.ros.client import Client

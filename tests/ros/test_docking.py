@@ -15,8 +15,8 @@ pytest.importorskip("nav2_msgs.action._dock_robot", reason="nav2_msgs with docki
 
 from nav2_msgs.action import DockRobot, UndockRobot
 
-from btlang.ros.docking import _DOCKING
-from btlang.ros.server_goal import ServerGoal, Task
+from btlang.ros.robot.navigation import GoalTask, ServerGoal
+from btlang.ros.robot.power import _DOCKING
 from tests.ros.client import LATCHED, Client, Goal
 from tests.ros.processes import LONG, Command
 
@@ -99,7 +99,7 @@ def test_error_codes_are_reasons(code: int, message: str, retries: int, reason: 
     answer = Done(SimpleNamespace(status=GoalStatus.STATUS_ABORTED, result=result))
     handle = Done(SimpleNamespace(accepted=True, get_result_async=lambda: answer))
     client = SimpleNamespace(server_is_ready=lambda: True, send_goal_async=lambda *_, **__: handle)
-    task = Task("docking", "dock", "docking", "dock", " on the way into the dock", _DOCKING, False)
+    task = GoalTask("docking", "dock", "docking", "dock", " on the way into the dock", _DOCKING, False)
     goal = ServerGoal(
         task, client, "/dock_robot", DockRobot.Goal(), None, lambda work: work(), lambda: None, lambda: 0.0
     )

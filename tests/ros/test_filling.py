@@ -16,26 +16,25 @@ from btlang.vocabulary.ros_table import read_ros
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
-from btlang.ros.fields import reader
-from btlang.ros.filling import filler
-from btlang.ros.word import Word
+from btlang.ros.words.fields import make_filler, make_reader
+from btlang.ros.words.word import RosWord
 
 SLOTS = ("length", "angle", "percent", "duration", "count", "text", "place")
 PLACES: dict[str, Any] = {"kitchen": (4.0, -1.0, math.pi), "lobby": (1.0, 2.0, None)}
 
 
-def word(table: dict[str, Any], sort: str = "action") -> Word:
+def word(table: dict[str, Any], sort: str = "action") -> RosWord:
     """A word with a slot of each type."""
     binding, problems = read_ros(table, sort)
     assert isinstance(binding, RosBinding), problems
     entry = Entry(sort, "Word", ("word",), slots=tuple(SlotSpec(slot, slot) for slot in SLOTS), ros=binding)
-    return Word(entry, world_vocabulary(), PLACES.__getitem__)
+    return RosWord(entry, world_vocabulary(), PLACES.__getitem__)
 
 
 def filled(interface: str, message: dict[str, Any], **values: Any) -> Any:
     """A message of a type."""
     made = word({"publish": interface, "name": "/x", "message": message})
-    return filler(made, made.interface(), made.ros.get("message"), lambda: None)(values)
+    return make_filler(made, made.interface(), made.ros.get("message"), lambda: None)(values)
 
 
 def test_units() -> None:
@@ -113,7 +112,7 @@ def test_what_does_not_fit(interface: str, message: dict[str, Any], code: str) -
 def read(message: Any, interface: str, **options: Any) -> Any:
     """The value that a table names."""
     made = word({"topic": interface, "name": "/x", **options}, "condition")
-    return reader(made, made.interface())(message)
+    return make_reader(made, made.interface())(message)
 
 
 def test_fields_and_reductions() -> None:

@@ -11,8 +11,8 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float64
 
-from btlang.ros.gate import Gate
-from btlang.ros.scans import echoes
+from btlang.ros.messages import echoes
+from btlang.ros.subscriptions import MessageGate
 
 NAN, INF = math.nan, math.inf
 
@@ -60,20 +60,20 @@ def scan(*ranges: float, step: float = 0.1, low: float = 0.1, high: float = 10.0
     ],
 )
 def test_one_message(message: Any, reason: str) -> None:
-    assert Gate(type(message)).refuses(message) == reason
+    assert MessageGate(type(message)).refuses(message) == reason
 
 
 @pytest.mark.parametrize("kind", [PoseStamped, PoseWithCovarianceStamped])
 def test_poses_of_other_messages(kind: type) -> None:
     message = kind()
-    assert Gate(kind).refuses(message) == ""
+    assert MessageGate(kind).refuses(message) == ""
     getattr(message.pose, "pose", message.pose).position.y = NAN
-    assert Gate(kind).refuses(message) == "sends numbers that are not finite"
+    assert MessageGate(kind).refuses(message) == "sends numbers that are not finite"
 
 
 def test_a_jump_is_refused_once() -> None:
     """What follows agrees with it: odometry that began anew. Who drives sees how far that is."""
-    gate = Gate(Odometry, lags=False)
+    gate = MessageGate(Odometry, lags=False)
     assert gate.refuses(odometry(x=0.0, at=10)) == ""
     assert gate.refuses(odometry(x=0.5, at=11)) == ""
     assert gate.refuses(odometry(x=90.5, at=12)) == "jumps by 90 m"

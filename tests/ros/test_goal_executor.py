@@ -12,9 +12,8 @@ from btlang.backends.engine import bind_leaf
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.mission_vocabulary import world_vocabulary
 from btlang.ros.serving.goal_executor import BUSY, REST, GoalExecutor
-from btlang.ros.serving.names import action_name
-from btlang.ros.serving.request import requested_leaf
-from btlang.ros.serving.selection import chosen, servable
+from btlang.ros.serving.names import action_name, choose_actions, find_servable
+from btlang.ros.serving.server import make_leaf
 from btlang.run.bus import Bus
 
 WORDS = """
@@ -97,7 +96,7 @@ class Server:
 
     def begin(self, node_id: str, **values: str) -> tuple[Caller, Callable[[], None]]:
         caller, entries = Caller(), self.vocabulary.entries[node_id]
-        leaf = requested_leaf("", list(values), list(values.values()), entries, self.vocabulary)
+        leaf = make_leaf("", list(values), list(values.values()), entries, self.vocabulary)
         return caller, self.executor.begin(leaf, caller)
 
     def tick(self, seconds: float = 0.05) -> None:
@@ -133,7 +132,7 @@ def test_goals_of_different_resources_run_side_by_side():
 
 
 def test_a_caller_hears_again_and_again_that_it_goes_on(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("btlang.ros.serving.goal.WORD", 0.0)
+    monkeypatch.setattr("btlang.ros.serving.goal_executor.WORD", 0.0)
     server = Server()
     say, _ = server.begin("Say", text="hello there")
     server.tick(0.5)
@@ -239,7 +238,7 @@ def test_values_as_in_a_mission(phrase: str, values: dict[str, str], port: str):
     vocabulary = world_vocabulary()
     entries = vocabulary.entries["MoveForward"]
     phrase = entries[0].phrases[0] if phrase.startswith("move") else phrase
-    assert requested_leaf(phrase, list(values), list(values.values()), entries, vocabulary).port("distance") == port
+    assert make_leaf(phrase, list(values), list(values.values()), entries, vocabulary).port("distance") == port
 
 
 @pytest.mark.parametrize(
@@ -260,7 +259,7 @@ def test_values_as_in_a_mission(phrase: str, values: dict[str, str], port: str):
 def test_what_makes_no_sense(node_id: str, phrase: str, names: list[str], values: list[str], reason: str):
     vocabulary = world_vocabulary()
     with pytest.raises(ActionFailed) as caught:
-        requested_leaf(phrase, names, values, vocabulary.entries[node_id], vocabulary)
+        make_leaf(phrase, names, values, vocabulary.entries[node_id], vocabulary)
     assert str(caught.value).startswith(reason)
 
 
@@ -273,7 +272,7 @@ def test_a_value_that_is_missing():
 
 def test_all_that_ships_has_a_name_and_can_be_bound():
     vocabulary = world_vocabulary()
-    ids = chosen((), servable(vocabulary, ros=False), vocabulary)
+    ids = choose_actions((), find_servable(vocabulary, ros=False), vocabulary)
     assert len({action_name(node_id) for node_id in ids}) == len(ids) > 50
     assert action_name("MoveForward") == "move_forward"
     assert all(bind_leaf(node_id, vocabulary) is not None for node_id in ids)
@@ -284,16 +283,16 @@ def test_what_another_server_does_is_not_served(tmp_path: Path):
     words = tmp_path / "words.toml"
     words.write_text(TABLES, encoding="utf-8")
     vocabulary = world_vocabulary([str(words)])
-    assert "Say" in servable(vocabulary, ros=False)
-    assert "Announce" not in servable(vocabulary, ros=False)
-    assert "Say" not in servable(vocabulary, ros=True)
-    assert "Announce" in servable(vocabulary, ros=True)
+    assert "Say" in find_servable(vocabulary, ros=False)
+    assert "Announce" not in find_servable(vocabulary, ros=False)
+    assert "Say" not in find_servable(vocabulary, ros=True)
+    assert "Announce" in find_servable(vocabulary, ros=True)
 
 
 def test_some_of_them():
     vocabulary = world_vocabulary()
-    ids = servable(vocabulary, ros=False)
-    assert chosen(["speech", "move_forward", "TurnLeft"], ids, vocabulary) == [
+    ids = find_servable(vocabulary, ros=False)
+    assert choose_actions(["speech", "move_forward", "TurnLeft"], ids, vocabulary) == [
         "Say",
         "ReportBack",
         "SpeakLanguage",
@@ -303,4 +302,4 @@ def test_some_of_them():
         "TurnLeft",
     ]
     with pytest.raises(ValueError, match=r"there is no action 'move_forwad'; similar: move_forward"):
-        chosen(["move_forwad"], ids, vocabulary)
+        choose_actions(["move_forwad"], ids, vocabulary)

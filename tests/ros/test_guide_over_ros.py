@@ -11,10 +11,10 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.robots.body_file import load_body
+from btlang.robots.bodies.body_file import load_body
+from btlang.robots.bodies.speech_tables import engine_of
+from btlang.robots.preflight import said_gesture
 from btlang.robots.registry import Connector
-from btlang.robots.said_gestures import said_gesture
-from btlang.robots.voice_file import engine_of
 from btlang.run.events import Event, Said, StrokePlanned
 from btlang.session import Session
 from btlang.speech.marks import read_marks

@@ -10,20 +10,20 @@ from pathlib import Path
 import pytest
 
 from btlang.ros import interfaces
-from btlang.ros.interfaces import InterfaceError, compile_interfaces, main, missing_tools
+from btlang.ros.interfaces import InterfaceError, compile_interfaces, find_missing_tools, main
 from tests.ros.processes import REPOSITORY
 
 
 def test_an_empty_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    if missing_tools() is not None:
-        pytest.skip(str(missing_tools()))
+    if find_missing_tools() is not None:
+        pytest.skip(str(find_missing_tools()))
     assert main([str(tmp_path)]) == 2
     assert "there are no interfaces in" in capsys.readouterr().err
 
 
 def test_a_file_that_cannot_be_read(tmp_path: Path):
-    if missing_tools() is not None:
-        pytest.skip(str(missing_tools()))
+    if find_missing_tools() is not None:
+        pytest.skip(str(find_missing_tools()))
     message = tmp_path / "odd_msgs" / "msg" / "Odd.msg"
     message.parent.mkdir(parents=True)
     message.write_text("this is = no message\n", encoding="utf-8")
@@ -38,8 +38,8 @@ def test_a_file_that_cannot_be_read(tmp_path: Path):
 
 @pytest.mark.parametrize("tool", ["gcc", "g++"])
 def test_a_missing_compiler(tool: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    if missing_tools() is not None:
-        pytest.skip(str(missing_tools()))
+    if find_missing_tools() is not None:
+        pytest.skip(str(find_missing_tools()))
     which = shutil.which
     monkeypatch.setattr(interfaces.shutil, "which", lambda name: None if name == tool else which(name))
     with pytest.raises(InterfaceError, match=f"^{tool.replace('+', '.')} is missing: apt install"):

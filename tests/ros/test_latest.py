@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.ros.awake import AwakeClock
-from btlang.ros.latest import Latest, NodeClock
+from btlang.ros.clocks import AwakeClock
+from btlang.ros.subscriptions import Latest, NodeClock
 
 
 class Node:
@@ -25,7 +25,7 @@ class Node:
 @pytest.fixture(autouse=True)
 def awake(monkeypatch: pytest.MonkeyPatch) -> None:
     """In a process that never was asleep, as one may have been that other tests held up."""
-    monkeypatch.setattr("btlang.ros.latest.AWAKE", AwakeClock())
+    monkeypatch.setattr("btlang.ros.subscriptions.AWAKE", AwakeClock())
 
 
 def test_a_message_grows_old() -> None:

@@ -8,15 +8,13 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from btlang.robots.geometry import Pose
-from btlang.ros.executor_thread import ExecutorThread
-from btlang.ros.node import SpunNode
+from btlang.ros.node import ExecutorThread, SpunNode
 from tests.ros.declared import Peer
 from tests.ros.processes import wait_until
 
 pytest.importorskip("nav2_msgs", reason="nav2_msgs is not installed")
 
-from btlang.ros.navigation_goal import RosNavigation
-from btlang.ros.server_goal import ServerGoal
+from btlang.ros.robot.navigation import RosNavigation, ServerGoal
 
 
 class Trip:
@@ -99,7 +97,7 @@ def test_a_server_that_gives_no_word_while_the_robot_stands(trip: Callable[[str]
 
 
 def test_a_server_that_accepts_what_was_given_up(trip: Callable[[str], Trip], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.ros.server_goal._ANSWER", 0.05)
+    monkeypatch.setattr("btlang.ros.robot.navigation._ANSWER", 0.05)
     way = trip("slow")
     journey = way.begin(is_answered=False)
     assert journey.failure == "the navigation server on /navigate_to_pose does not answer"
@@ -109,7 +107,7 @@ def test_a_server_that_accepts_what_was_given_up(trip: Callable[[str], Trip], mo
 
 
 def test_a_server_whose_answer_gets_lost(trip: Callable[[str], Trip], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.ros.server_goal._ANSWER", 1.0)
+    monkeypatch.setattr("btlang.ros.robot.navigation._ANSWER", 1.0)
     way = trip("lost")
     journey = way.begin(is_answered=False)
     wait_until(lambda: way.pass_by(0.0) is None and journey.done, "the end")

@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from btlang.robots.body_file import standard_body
+from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError
-from btlang.robots.world_file import load_world
-from btlang.ros.perception import _fault
-from btlang.ros.places import Places
+from btlang.robots.worlds.world_file import load_world
+from btlang.ros.robot.places import RosPlaces
+from btlang.ros.robot.sensors import _fault
 from btlang.text.source import Source
 
 WORLD = """
@@ -38,11 +38,11 @@ def met() -> list[str]:
 
 
 @pytest.fixture
-def places(met: list[str]) -> Places:
-    return Places(load_world(Source(WORLD, "hall.toml")), standard_body(), met.append)
+def places(met: list[str]) -> RosPlaces:
+    return RosPlaces(load_world(Source(WORLD, "hall.toml")), standard_body(), met.append)
 
 
-def test_before_anything_is_seen(places: Places) -> None:
+def test_before_anything_is_seen(places: RosPlaces) -> None:
     places.notice({}, 0.1, HERE)
     assert places.locate("cup", HERE) == (3.0, 1.0)
     assert places.locate("Bob", HERE) == (3.0, 3.0)
@@ -53,7 +53,7 @@ def test_before_anything_is_seen(places: Places) -> None:
     assert places.nearby_people(10.0, HERE) == ["Ann"]
 
 
-def test_what_is_seen_is_known(places: Places, met: list[str]) -> None:
+def test_what_is_seen_is_known(places: RosPlaces, met: list[str]) -> None:
     places.notice(
         {"key": ("object", (4.5, 1.0)), "BOB": ("person", (2.0, 1.0)), "cup": ("object", (3.5, 1.0))}, 1.0, HERE
     )
@@ -75,14 +75,14 @@ def test_what_is_seen_is_known(places: Places, met: list[str]) -> None:
         places.locate("Bob", HERE)
 
 
-def test_a_stranger_gets_a_name(places: Places) -> None:
+def test_a_stranger_gets_a_name(places: RosPlaces) -> None:
     places.notice({"visitor 1": ("person", (2.0, 1.0))}, 1.0, HERE)
     assert places.known("Visitor 1") == "visitor 1"
     assert places.goal("visitor 1", HERE).distance_to((2.0, 1.0)) < 1.5
     assert "visitor 1" in places.free("person")
 
 
-def test_what_is_fixed_cannot_be_picked_up(places: Places) -> None:
+def test_what_is_fixed_cannot_be_picked_up(places: RosPlaces) -> None:
     with pytest.raises(RobotError, match=r"^the lamp is fixed$"):
         places.check_movable("lamp")
     with pytest.raises(RobotError, match=r"^I haven't seen the key$"):

@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from btlang.robots.body_file import standard_body
-from btlang.robots.choices import Choices
+from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError
-from btlang.robots.world_file import load_world
-from btlang.ros.places import Places
+from btlang.robots.worlds.descriptions import Choices
+from btlang.robots.worlds.world_file import load_world
+from btlang.ros.robot.places import RosPlaces
 from btlang.text.source import Source
 
 WORLD = """
@@ -33,16 +33,16 @@ HERE = Pose(1.0, 1.0)
 
 
 @pytest.fixture
-def places() -> Places:
-    return Places(load_world(Source(WORLD)), standard_body())
+def places() -> RosPlaces:
+    return RosPlaces(load_world(Source(WORLD)), standard_body())
 
 
-def choose(places: Places, kind: str, how: str, parts: Mapping[str, str] = {}, told: list[Any] | None = None) -> str:
+def choose(places: RosPlaces, kind: str, how: str, parts: Mapping[str, str] = {}, told: list[Any] | None = None) -> str:
     tell = None if told is None else lambda event, data: told.append((event, data))
     return places.choose(kind, how, parts, lambda: HERE, lambda: HERE, Choices(), tell)
 
 
-def test_it_chooses_by_distance_and_size(places: Places) -> None:
+def test_it_chooses_by_distance_and_size(places: RosPlaces) -> None:
     told: list[Any] = []
     assert choose(places, "object", "nearest", told=told) == "mug"
     assert told == [("choose", {"type": "object", "how": "nearest", "name": "mug"})]
@@ -52,7 +52,7 @@ def test_it_chooses_by_distance_and_size(places: Places) -> None:
     assert choose(places, "place", "random") in ("lab", "hall")
 
 
-def test_it_chooses_by_what_things_are_like(places: Places) -> None:
+def test_it_chooses_by_what_things_are_like(places: RosPlaces) -> None:
     assert choose(places, "object", "nearest", {"color": "red"}) == "tea cup"
     assert choose(places, "object", "nearest", {"use": "drink"}) == "mug"
     assert choose(places, "person", "nearest", {"color": "red", "clothing": "coat"}) == "Ann"
@@ -61,7 +61,7 @@ def test_it_chooses_by_what_things_are_like(places: Places) -> None:
         choose(places, "object", "nearest", {"color": "green", "kind": "cup"})
 
 
-def test_it_chooses_among_what_it_has_seen(places: Places) -> None:
+def test_it_chooses_among_what_it_has_seen(places: RosPlaces) -> None:
     with pytest.raises(RobotError, match=r"^I haven't seen a box$"):
         choose(places, "object", "nearest", {"kind": "box"})
     with pytest.raises(RobotError, match=r"^I don't see anybody who is waving$"):
@@ -74,7 +74,7 @@ def test_it_chooses_among_what_it_has_seen(places: Places) -> None:
     assert choose(places, "object", "nearest") == "crate"
 
 
-def test_what_was_given_away_is_gone(places: Places) -> None:
+def test_what_was_given_away_is_gone(places: RosPlaces) -> None:
     places.give("mug", "Ann")
     with pytest.raises(RobotError, match=r"^Ann has the mug$"):
         places.goal("mug", HERE)

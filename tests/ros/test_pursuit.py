@@ -9,7 +9,7 @@ import pytest
 
 from btlang.robots.geometry import Point
 from btlang.robots.robot import RobotError
-from btlang.ros.pursuit import Pursuit
+from btlang.ros.robot.navigation import Pursuit
 
 
 class Goal:

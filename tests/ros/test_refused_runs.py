@@ -11,9 +11,9 @@ pytest.importorskip("nav2_msgs", reason="nav2_msgs is not installed")
 
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError
-from btlang.robots.world_file import load_world
+from btlang.robots.worlds.world_file import load_world
 from btlang.ros.node import SpunNode
-from btlang.ros.robot import RosRobot
+from btlang.ros.robot.robot import RosRobot
 
 
 def test_a_robot_that_was_stopped_sends_no_goal(domain: int, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -160,7 +160,7 @@ def test_what_goes_wrong_is_a_failure_with_its_reason(
     nav2: object,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("btlang.ros.server_goal._ANSWER", 2.0)
+    monkeypatch.setattr("btlang.ros.robot.navigation._ANSWER", 2.0)
     script = robot(*parts)
     code, _, err = run(mission)
     assert code == 1
@@ -284,7 +284,7 @@ def test_preflight(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     script = robot("base", "speech")
-    monkeypatch.setattr("btlang.ros.connection._DISCOVERY", 3.0)  # nodes of tests announce themselves every 0.1 s
+    monkeypatch.setattr("btlang.ros.robot.connection._DISCOVERY", 3.0)  # nodes of tests announce themselves every 0.1 s
     code, out, _ = run("move forward until there is a wall in front", "--preflight")
     assert code == 1
     assert re.search(r"^topic   /scan +sensor_msgs/msg/LaserScan +missing: nobody publishes /scan$", out, re.M)

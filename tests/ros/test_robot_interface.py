@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from btlang.mission_vocabulary import world_vocabulary
-from btlang.robots.body_file import standard_body
-from btlang.ros.robot_interface import interfaces
+from btlang.robots.bodies.body_file import standard_body
+from btlang.ros.robot.interface import interfaces
 from btlang.vocabulary.capabilities import CAPABILITIES, POSTURE
 
 FREE = ("TimeOfDay", "TimeNow", "TodayIs", "Counted", "CallStaff", "RaiseAlarm", "ClearMap", "Count")

@@ -43,8 +43,8 @@ def test_an_emergency_stop_from_another_thread(sim: Command) -> None:
 
 
 def test_a_robot_that_lacks_something(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.ros.connection._DISCOVERY", 1.0)
-    monkeypatch.setattr("btlang.ros.connection._AGAIN", 1.0)
+    monkeypatch.setattr("btlang.ros.robot.connection._DISCOVERY", 1.0)
+    monkeypatch.setattr("btlang.ros.robot.connection._AGAIN", 1.0)
     with pytest.raises(btlang.MissionError, match="BT101"):
         btlang.parse_tree("move forward").run(robot="ros")
 

@@ -8,7 +8,7 @@ import pytest
 
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
-from btlang.ros.pace import RosPace
+from btlang.ros.clocks import RosPace
 from btlang.run.bus import Bus
 from btlang.run.controls import Controls
 from btlang.run.runner import Runner

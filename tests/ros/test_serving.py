@@ -226,7 +226,7 @@ def test_a_server_is_missing_halted_and_killed(serve, tmp_path: Path, domain: in
 
 def test_a_server_that_freezes(serve, domain: int, monkeypatch: pytest.MonkeyPatch):
     """It is alive for DDS, and says nothing more."""
-    monkeypatch.setattr("btlang.ros.leaves.phrases.SILENCE", 3.0)
+    monkeypatch.setattr("btlang.ros.words.servers.SILENCE", 3.0)
     monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
     mover = serve("--only", "motion")
 

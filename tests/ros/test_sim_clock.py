@@ -77,7 +77,7 @@ def test_two_clocks_are_reported_before_a_run(
     domain: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
-    monkeypatch.setattr("btlang.ros.connection._DISCOVERY", 2.0)  # nodes of tests announce themselves every 0.1 s
+    monkeypatch.setattr("btlang.ros.robot.connection._DISCOVERY", 2.0)  # nodes of tests announce themselves every 0.1 s
     peers = [Peer("faulty_robot", domain=domain) for _ in range(2)]
     for peer in peers:
         peer.expect("ready")

@@ -18,8 +18,8 @@ from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool, Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world_file import load_world
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world_file import load_world
 from tests.ros.client import LATCHED, Client
 from tests.ros.processes import REPOSITORY, ROOM, wait_until
 

@@ -7,11 +7,11 @@ from collections.abc import Callable
 import pytest
 from geometry_msgs.msg import Twist
 
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world_file import load_world
-from btlang.ros.simulator import wheels as wheels_module
-from btlang.ros.simulator.call_queue import CallQueue
-from btlang.ros.simulator.wheels import Wheels
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world_file import load_world
+from btlang.ros.simulator import base as wheels_module
+from btlang.ros.simulator.base import BaseTopics
+from btlang.ros.simulator.shared import CallQueue
 from tests.ros.client import Client
 from tests.ros.processes import ROOM, wait_until
 
@@ -32,7 +32,7 @@ def test_velocities_that_were_sent_before_a_goal_leave_it_alone(
     now = 100.0
     monkeypatch.setattr(wheels_module, "monotonic", lambda: now)
     robot, calls = SimulatedRobot(load_world(ROOM)), Counting()
-    wheels = Wheels(client.node, robot, calls)
+    wheels = BaseTopics(client.node, robot, calls)
     publisher = client.publisher(Twist, "/cmd_vel")
 
     def drive(speed: float) -> None:

@@ -14,19 +14,18 @@ from trajectory_msgs.msg import JointTrajectory
 
 from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.robot import RobotError, SensorSilent
-from btlang.ros.commands import Reach, motion
-from btlang.ros.latest import LatestJoints
+from btlang.ros.messages import JointRange, duration, motion, seconds_of, stamp
+from btlang.ros.robot.smooth_joints import RosSmoothJoints
 from btlang.ros.simulator import joint_player
 from btlang.ros.simulator.joint_player import JointPlayer
-from btlang.ros.smooth_joints import RosSmoothJoints
-from btlang.ros.times import duration, seconds_of, stamp
+from btlang.ros.subscriptions import LatestJoints
 from tests.profiles import amount
 from tests.robots.motion.bodies import guide, random_gesture
 
 STEP = 0.01
 TICK = 5  # steps
 LAST_REST = 0.3  # seconds in which any joint can halt
-REACH = Reach(-1.0, 1.0, 2.0)
+REACH = JointRange(-1.0, 1.0, 2.0)
 
 
 class Wire:

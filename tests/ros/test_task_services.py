@@ -90,11 +90,11 @@ def test_a_wrong_command(sent: str, code: str, run_mission: Any, tmp_path: Path)
     """The service's own function, with real requests and answers."""
     from btlang_interfaces.srv import Command as CommandService
 
-    from btlang.ros.mission import services
+    from btlang.ros.mission import server
     from btlang.task.layer import TaskLayer
 
     with TaskLayer(folder=str(tmp_path), speed=50.0) as layer:
-        answer = services._any(layer.handle, CommandService.Request(command=sent), CommandService.Response())
+        answer = server._any(layer.handle, CommandService.Request(command=sent), CommandService.Response())
     assert (answer.ok, answer.code) == (False, code)
     assert answer.text
 

@@ -10,8 +10,7 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.ros.mission.progress import News, Progress
-from btlang.ros.mission.tree_topic import TreeTopic
+from btlang.ros.mission.topics import MissionProgress, RunUpdate, TreeTopic
 from btlang.run.bus import INLINE
 
 
@@ -19,9 +18,8 @@ from btlang.run.bus import INLINE
 def test_the_last_snapshot_has_the_last_statuses(pause: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also where a snapshot has just been taken when the run ends; `pause` are seconds between two looks."""
     looks = itertools.count()
-    for module in ("progress", "tree_topic"):
-        clock = SimpleNamespace(monotonic=lambda: next(looks) * pause)
-        monkeypatch.setattr(f"btlang.ros.mission.{module}.time", clock)
+    clock = SimpleNamespace(monotonic=lambda: next(looks) * pause)
+    monkeypatch.setattr("btlang.ros.mission.topics.time", clock)
     snapshots: list[str] = []
     changes: list[str] = []
     with btlang.Session() as session:
@@ -37,10 +35,10 @@ def test_the_last_snapshot_has_the_last_statuses(pause: float, monkeypatch: pyte
         run = session.prepare(mission, speed="max", sinks=[Sink()])
         tree = TreeTopic(mission, run, snapshots.append, changes.append)
 
-        def reached(news: News) -> None:
-            tree.reached(news, is_last=news.is_last)
+        def reached(news: RunUpdate) -> None:
+            tree.publish_snapshot(news, is_last=news.is_last)
 
-        topics.append(Progress(run.snapshot, tree.changed, reached))
+        topics.append(MissionProgress(run.snapshot, tree.publish_changes, reached))
         assert run.execute().succeeded
     known: dict[str, str] = {}
     for change in map(json.loads, changes):

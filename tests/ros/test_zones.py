@@ -11,10 +11,10 @@ from nav_msgs.msg import Path
 
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.robot import RobotError
-from btlang.robots.world import KEEP_OUT, SLOW, Zone
+from btlang.robots.worlds.world import KEEP_OUT, SLOW, Zone
 from btlang.robots.zones import Zones
-from btlang.ros.names import graph_names
-from btlang.ros.zones import PLAN, SPEED_LIMIT, RosZones, _fault, enters
+from btlang.ros.graph import graph_names
+from btlang.ros.robot.zones import PLAN, SPEED_LIMIT, RosZones, _fault, enters
 
 STAIRS = Zone("stairs", KEEP_OUT, ((2.0, 0.0), (3.0, 0.0), (3.0, 1.0), (2.0, 1.0)))
 CARPET = Zone("carpet", SLOW, ((5.0, 0.0), (6.0, 0.0), (6.0, 1.0), (5.0, 1.0)), 0.2)

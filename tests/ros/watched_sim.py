@@ -6,7 +6,7 @@ import json
 import sys
 
 from btlang.cli import main
-from btlang.robots.gesture import Gesture
+from btlang.robots.bodies.gesture import Gesture
 from btlang.ros.simulator.simulator import Simulator
 from tests.ros.processes import Command
 from tests.speech.strokes import Way

@@ -13,7 +13,7 @@ from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
-from btlang.ros.pace import RosPace
+from btlang.ros.clocks import RosPace
 from btlang.run import pace
 from btlang.run.bus import Bus
 from btlang.run.events import PeriodPassed

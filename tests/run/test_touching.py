@@ -6,10 +6,10 @@ import pytest
 
 import btlang
 from btlang.decorators import action
-from btlang.robots.body_file import standard_body
+from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.geometry import Pose
-from btlang.robots.simulation import Simulation
-from btlang.robots.world import World
+from btlang.robots.simulation.connection import Simulation
+from btlang.robots.worlds.world import World
 
 WALL = World(start=Pose(0.0, 0.0), walls=(((2.0, -2.0), (2.0, 2.0)),))
 

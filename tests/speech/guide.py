@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from btlang.robots.body import Body
-from btlang.robots.body_file import load_body
-from btlang.robots.gesture import Gesture, KeyFrame, Step
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import World
-from btlang.robots.world_file import load_world
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.body_file import load_body
+from btlang.robots.bodies.gesture import Gesture, KeyFrame, Step
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world import World
+from btlang.robots.worlds.world_file import load_world
 from btlang.speech.engine import Settings
 from btlang.text.source import Source
 

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 from btlang.actions.conversation import answers, meaning_of
 from btlang.record import Record
-from btlang.robots.body import Body, Ears
-from btlang.speech.attention import Attention
+from btlang.robots.bodies.body import Body, EarsSpec
 from btlang.speech.engine import Settings
+from btlang.speech.listener import Attention
 from btlang.speech.pocketsphinx import PocketSphinx
-from btlang.speech.recogniser import RATE, Expected, RecogniserSettings, Understood
+from btlang.speech.recogniser import RATE, Expected, RecognisedSpeech, RecogniserSettings
 from tests.speech.sounds import AFTER, guide, lines, recorded
 
 WAKE = "hello robot"
@@ -20,7 +20,7 @@ _PIECE = RATE // 10  # bytes: 50 ms, as a microphone gives them
 
 def yes_or_no() -> Expected:
     """All that means yes and no."""
-    return answers(("yes", "no"), Body("ears", 0.2, ears=Ears(3.0)))
+    return answers(("yes", "no"), Body("ears", 0.2, ears=EarsSpec(3.0)))
 
 
 class Count(Record):
@@ -73,10 +73,10 @@ def count(
     return total
 
 
-def heard(ears: PocketSphinx, sound: bytes, pushed: bool) -> tuple[Understood | None, float]:
+def heard(ears: PocketSphinx, sound: bytes, pushed: bool) -> tuple[RecognisedSpeech | None, float]:
     """The first sentence, and seconds from the end of the speech: by the sound, and what the computer took then."""
     ended = len(sound) / 2 / RATE - AFTER
-    found: Understood | None = None
+    found: RecognisedSpeech | None = None
     late = 0.0
     for at in range(0, len(sound), _PIECE):
         began = time.perf_counter()
@@ -91,7 +91,7 @@ def heard(ears: PocketSphinx, sound: bytes, pushed: bool) -> tuple[Understood | 
     return found, late
 
 
-def _counted(kind: str, text: str, found: Understood | None, late: float) -> Count:
+def _counted(kind: str, text: str, found: RecognisedSpeech | None, late: float) -> Count:
     if found is None:
         return Count(all=1)
     if not found.sure:

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 from btlang.actions.speech import say
 from btlang.record import Record
 from btlang.robots.robot import Operation
-from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.simulation.robot import SimulatedRobot
 
 FINE = 0.01  # seconds between two looks at the joints
 _NEAR = 3.0  # degrees from the stroke

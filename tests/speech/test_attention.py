@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from btlang.speech.attention import Attention
-from btlang.speech.grammar import Grammar
-from btlang.speech.recogniser import Expected, Understood
+from btlang.speech.listener import Attention
+from btlang.speech.recogniser import Expected, Grammar, RecognisedSpeech
 
 WANTED = Expected(("go to [the] {place}", "stop"), {"place": ("lobby",)})
 
@@ -12,7 +11,7 @@ WANTED = Expected(("go to [the] {place}", "stop"), {"place": ("lobby",)})
 def test_all_the_time() -> None:
     attention = Attention("", False)
     assert attention.expected(WANTED, False, 0.0) == WANTED
-    assert attention.meant(Understood("stop"), 0.0) == Understood("stop")
+    assert attention.meant(RecognisedSpeech("stop"), 0.0) == RecognisedSpeech("stop")
 
 
 def test_a_button() -> None:
@@ -29,15 +28,15 @@ def test_behind_the_wake_word() -> None:
         True,
         False,
     ]
-    assert attention.meant(Understood("Hello robot, stop."), 0.0) == Understood("stop.")
+    assert attention.meant(RecognisedSpeech("Hello robot, stop."), 0.0) == RecognisedSpeech("stop.")
     assert attention.expected(WANTED, False, 0.1).mode == "wake"
 
 
 def test_the_wake_word_alone_is_good_for_a_while() -> None:
     attention = Attention("hello robot", False)
-    assert attention.meant(Understood("hello robot", sure=False), 10.0) is None
+    assert attention.meant(RecognisedSpeech("hello robot", sure=False), 10.0) is None
     assert attention.expected(WANTED, False, 10.1).mode == "wake"
-    assert attention.meant(Understood("hello robot"), 10.0) is None
+    assert attention.meant(RecognisedSpeech("hello robot"), 10.0) is None
     assert attention.expected(WANTED, False, 17.0).mode == "addressed"
     assert attention.expected(WANTED, False, 19.0).mode == "wake"
 

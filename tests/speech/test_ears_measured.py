@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import pytest
 
 from btlang.actions.conversation import MEANINGS, answers, meaning_of
-from btlang.robots.body import Body, Ears
+from btlang.robots.bodies.body import Body, EarsSpec
 from btlang.speech.pocketsphinx import PocketSphinx
 from btlang.speech.recogniser import Expected, RecogniserSettings
 from tests.profiles import amount, only_long
@@ -114,7 +114,7 @@ def test_no_answer_is_taken_for_the_contrary(decibels: float) -> None:
     count = amount(3, 20)
     right, refused = signs(NO[:count], "no", decibels, yes_or_no())
     more, agreed = signs(YES[:count], "yes", decibels, yes_or_no())
-    alone = answers(("yes",), Body("ears", 0.2, ears=Ears(3.0)))
+    alone = answers(("yes",), Body("ears", 0.2, ears=EarsSpec(3.0)))
     _, taken = signs(NO[: count // 2], "no", decibels, alone)
     print(f"{decibels:g} dB: {right + more} of {10 * count}, no as yes: {[*refused, *taken]}, yes as no: {agreed}")
     assert [*refused, *taken] == []

@@ -8,13 +8,11 @@ from threading import Thread
 
 import pytest
 
-from btlang.robots.body import Body
-from btlang.robots.body_file import BodyError, load_body
-from btlang.robots.voice_file import engine_of
-from btlang.speech.engine import Settings, SpeechError, Utterance
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.body_file import BodyError, load_body
+from btlang.robots.bodies.speech_tables import engine_of
+from btlang.speech.engine import SHAPES, Estimate, Settings, SpeechError, Utterance, shape_at, shape_of
 from btlang.speech.espeak import Espeak
-from btlang.speech.estimate import Estimate
-from btlang.speech.visemes import SHAPES, shape_at, shape_of
 from btlang.text.source import Source
 
 TEXT = "Welcome to the museum. This is two thousand years old, and well-known!"

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from btlang.speech.grammar import Grammar, spoken
-from btlang.speech.pronunciation import accents, guessed
-from btlang.speech.recogniser import Expected
+from btlang.speech.pocketsphinx import guess_phones, vary_accents
+from btlang.speech.recogniser import Expected, Grammar, spoken
 from tests.speech.sounds import guide, lines
 
 PLACES = {"place": ("Lobby", "Room 12", "Café Zoë", "§")}
@@ -63,15 +62,15 @@ def test_the_grammar_of_the_guide_has_all_its_sentences() -> None:
     ],
 )
 def test_guesses_by_letters(word: str, phones: str) -> None:
-    assert guessed(word) == phones
+    assert guess_phones(word) == phones
 
 
 def test_every_letter_can_be_guessed() -> None:
     for letter in "abcdefghijklmnopqrstuvwxyz":
-        assert guessed(letter), letter
+        assert guess_phones(letter), letter
 
 
 def test_no_and_never_in_the_south_of_england() -> None:
-    assert accents("N OW") == ["N AH UW"]
-    assert accents("N EH V ER") == ["N EH V AH"]
-    assert accents("Y EH S") == []
+    assert vary_accents("N OW") == ["N AH UW"]
+    assert vary_accents("N EH V ER") == ["N EH V AH"]
+    assert vary_accents("Y EH S") == []

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from threading import Event
 
 from btlang.speech.listener import Listener
-from btlang.speech.recogniser import RATE, Expected, Understood
+from btlang.speech.recogniser import RATE, Expected, RecognisedSpeech
 
 LONGEST = 5 * RATE * 2  # bytes
 PIECES = 3_000
@@ -25,11 +25,11 @@ class Counting:
     def expect(self, expected: Expected) -> None:
         self.goes_on.wait(LIMIT)
 
-    def hear(self, samples: bytes) -> Sequence[Understood]:
+    def hear(self, samples: bytes) -> Sequence[RecognisedSpeech]:
         self.heard += len(samples)
         return ()
 
-    def end(self) -> Sequence[Understood]:
+    def end(self) -> Sequence[RecognisedSpeech]:
         return ()
 
     def forget(self) -> None:

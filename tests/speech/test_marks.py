@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.speech.marks import Mark, read_marks, sentence_start
+from btlang.speech.marks import GestureMark, read_marks, sentence_start
 
 SAMPLES = sorted((Path(__file__).parent / "samples").glob("*.txt"))
 
@@ -32,7 +32,7 @@ SAMPLES = sorted((Path(__file__).parent / "samples").glob("*.txt"))
     ],
 )
 def test_marks_are_taken_out(text: str, plain: str, marks: tuple[tuple[str, int], ...]) -> None:
-    assert read_marks(text) == (plain, tuple(Mark(*mark) for mark in marks))
+    assert read_marks(text) == (plain, tuple(GestureMark(*mark) for mark in marks))
 
 
 @given(st.text(alphabet="<>\\ a.9\n"))

@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from btlang.components import hearing
-from btlang.components.hearing import Hearing
+from btlang.components.parts import hearing
+from btlang.components.parts.hearing import Hearing
 from btlang.devices.kinds import Sound
-from btlang.robots.body import Body
-from btlang.robots.body import Ears as EarsOfBody
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.body import EarsSpec as EarsOfBody
 from btlang.robots.ears import Ears
 from btlang.speech.engine import Settings
 from btlang.speech.marks import without_marks
 from btlang.speech.pocketsphinx import PocketSphinx
-from btlang.speech.recogniser import RATE, RecogniserSettings, Understood
+from btlang.speech.recogniser import RATE, RecognisedSpeech, RecogniserSettings
 from tests.profiles import amount
 from tests.speech.measuring import everything
 from tests.speech.sounds import LIGHT, VOICES, Samples, lines, room, speech
@@ -41,13 +41,13 @@ class Direct:
     problem = ""
 
     def __init__(self, recogniser: PocketSphinx) -> None:
-        self._recogniser, self._found = recogniser, list[Understood]()
+        self._recogniser, self._found = recogniser, list[RecognisedSpeech]()
         self.expect, self.forget = recogniser.expect, recogniser.forget
 
     def hear(self, samples: bytes) -> None:
         self._found += self._recogniser.hear(samples)
 
-    def understood(self) -> Understood | None:
+    def understood(self) -> RecognisedSpeech | None:
         return self._found.pop(0) if self._found else None
 
 
@@ -72,7 +72,7 @@ class Room:
             follow=self.follow,
         )
         self._hearing = Hearing(body, self._robot, devices, lambda kind, data: None)
-        self._listens = self._robot.ears.awaiting(everything())
+        self._listens = self._robot.ears.expect(everything())
         self._listens.__enter__()
 
     def follow(self, name: str, take: Any) -> None:

@@ -199,7 +199,7 @@ def test_what_the_robot_cannot_do_is_refused(
 def test_what_is_said_is_written_as_sound(tmp_path: Path) -> None:
     import wave
 
-    from btlang.robots.voice_track import voice_track
+    from btlang.robots.voice import voice_track
 
     path = str(tmp_path / "said.wav")
     mission = 'wait 1 s\nsay "Hello."\n(say "This is a long sentence, which nobody hears to its end.") for 0.5 s'
@@ -225,7 +225,7 @@ def test_pauses_in_the_sound_are_silent(tmp_path: Path) -> None:
     """Where speech has ended, and where it was cut short."""
     import wave
 
-    from btlang.robots.voice_track import voice_track
+    from btlang.robots.voice import voice_track
 
     path, body = str(tmp_path / "said.wav"), guide()
     mission = 'say "Hello."\nwait 2 s\n(say "Nobody hears this to its end.") for 0.5 s\nwait 2 s\nsay "Hello."'

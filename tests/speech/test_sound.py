@@ -11,14 +11,14 @@ from typing import Any
 
 import pytest
 
-from btlang.components.parts import DeviceJoints, DeviceVoice
+from btlang.components.parts.parts import DeviceJoints, DeviceVoice
 from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import Command, Play, Shown
-from btlang.devices.media.sound import SoundCard
+from btlang.devices.media import SoundCard
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.body import Body, Device, Joint, Mouth
+from btlang.robots.bodies.body import Body, Device, Joint, Mouth
 from btlang.robots.registry import Connector
-from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.session import Session
 from btlang.task import messages
 from btlang.task.voice_handler import VoiceHandler

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from btlang.robots.body_file import read_body
+from btlang.robots.bodies.body_file import read_body
 from btlang.robots.robot import RobotError
 from btlang.task.body_now import BodyNow
 from tests.robots.motion.bodies import GUIDE

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.body_file import read_body
+from btlang.robots.bodies.body_file import read_body
 from btlang.robots.registry import connector
 from btlang.task.house import LABEL, furnished_layer, read_schedules
 from btlang.task.layer import TaskLayer

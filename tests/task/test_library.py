@@ -14,7 +14,7 @@ import pytest
 from btlang.api import parse_tree
 from btlang.robots.platforms import ROBOTS
 from btlang.robots.registry import Connector, body_of
-from btlang.robots.simulation import Simulation
+from btlang.robots.simulation.connection import Simulation
 from btlang.task.answers import outdated
 from btlang.task.layer import TaskLayer
 from btlang.task.library_handler import MOST_CHARACTERS, kept_text
@@ -127,8 +127,8 @@ def test_the_longest_text_is_read_in_bounded_time(layer: TaskLayer) -> None:
 
 READS = """
 import sys
-from btlang.robots.body_file import read_body
-from btlang.robots.world_problem import read_world
+from btlang.robots.bodies.body_file import read_body
+from btlang.robots.worlds.world_file import read_world
 from btlang.text.source import Source
 
 world, robot = (Source(text, "text", roots=()) for text in sys.argv[1:])

@@ -95,7 +95,7 @@ def _without_scanner(patch: pytest.MonkeyPatch) -> Iterator[None]:
         patch.setenv("ROS_DOMAIN_ID", str(domain))
         patch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
         patch.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", PROFILE)
-        patch.setattr("btlang.ros.connection._DISCOVERY", 2.0)  # with this profile all are found sooner
+        patch.setattr("btlang.ros.robot.connection._DISCOVERY", 2.0)  # with this profile all are found sooner
         peer = Peer("faulty_robot", "scan=absent", domain=domain)
         peer.expect("ready")
         try:

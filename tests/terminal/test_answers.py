@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.answers_file import read_answers
+from btlang.robots.ears import read_answers
 from btlang.run.world_input import WorldInput
 from btlang.text.source import Source
 

@@ -8,7 +8,7 @@ import pytest
 
 from btlang.cli import main
 from btlang.diagnostics.reading import read_source
-from btlang.robots.base import Base
+from btlang.robots.simulation.base import SimulatedBase
 from btlang.testing.runner import run_chaos
 from btlang.testing.test_file import read_tests
 from btlang.tree.node import Node, Tree
@@ -42,13 +42,13 @@ def test_shipped_missions_are_safe(example: str, monkeypatch: pytest.MonkeyPatch
 
 
 def test_a_robot_that_does_not_brake_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Base, "brake", lambda self: None)
+    monkeypatch.setattr(SimulatedBase, "brake", lambda self: None)
     problems = [run_chaos(mission_test("repeat forever: turn left"), seed).problem for seed in range(10)]
     assert any("after a stop" in problem or "after the mission was over" in problem for problem in problems)
 
 
 def test_a_robot_that_is_too_fast_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.robots.base.clipped_speed", lambda value, limit: value * 10)
+    monkeypatch.setattr("btlang.robots.simulation.base.clip_speed", lambda value, limit: value * 10)
     assert "faster than its body allows" in run_chaos(mission_test("move forward 2 m"), 0).problem
 
 

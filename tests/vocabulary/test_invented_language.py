@@ -18,7 +18,7 @@ from btlang.frontends.mission.reader import read_mission
 from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import compile_mission
 from btlang.printer.mission import english
-from btlang.robots.world_file import world_names
+from btlang.robots.worlds.world_file import world_names
 from btlang.text.source import Source
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.entry import Entry, Role, SlotSpec

@@ -10,8 +10,8 @@ import pytest
 import btlang
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import World
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world import World
 from btlang.vocabulary.shipped import shipped
 from tests.profiles import amount
 from tests.world.worlds import doorway, museum, rooms

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from btlang.robots.robot import RobotError
-from btlang.robots.visits import Visits
-from btlang.robots.world_file import WorldError, load_world
+from btlang.robots.worlds.world import Visits
+from btlang.robots.worlds.world_file import WorldError, load_world
 from btlang.text.source import Source
 from btlang.text.time_of_day import DAY
 from tests.profiles import only_long

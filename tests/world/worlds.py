@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from random import Random
 
-from btlang.robots.world import World
-from btlang.robots.world_file import load_world
+from btlang.robots.worlds.world import World
+from btlang.robots.worlds.world_file import load_world
 from btlang.text.source import Source
 from btlang.vocabulary.shipped import shipped
 

@@ -1,11 +1,14 @@
-"""Asks servos on a line and writes to them. It waits for answers with `select`, never longer than they can take."""
+"""A serial port with servos on it: asks them and writes to them, and waits for answers with `select`."""
 
 from __future__ import annotations
 
+import os
+import select
+import time
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 
 from btlang.devices.driver import DeviceError, DeviceSilent
-from btlang.devices.dynamixel.line import SerialLine
 from btlang.devices.dynamixel.protocol import (
     ALERT,
     ERRORS,
@@ -21,14 +24,101 @@ from btlang.devices.dynamixel.protocol import (
     write_packet,
 )
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from serial import Serial
+
 PATIENCE = 0.008
 """Seconds that an adapter and a busy computer may add to an answer."""
 LONGEST_DELAY = 0.000508
-"""Seconds that a servo can be set to wait before it answers, which they are when they are new."""
+"""The longest answer delay in seconds that a servo can be set to, which is also that of a new one."""
 _TRIES = 5
 
 
-class Client:
+class LineLost(DeviceError):
+    """The error that a port can't be opened, or can't be read or written any more."""
+
+
+class SerialLine:
+    """A port and its bits a second. All methods but `close` raise LineLost once it is lost."""
+
+    def __init__(self, port: str, baud: int) -> None:
+        self.port, self.baud = port, baud
+        self.sent_by = 0.0
+        """When everything that was sent is out (of time.monotonic()): a slow line needs time."""
+        self._serial: Serial | None = None
+
+    def open(self) -> None:
+        """Open it for this process alone. Raises LineLost if that can't be done."""
+        try:
+            import serial
+        except ImportError:
+            raise LineLost("serial ports need the package pyserial: pip install 'btlang[serial]'") from None
+        self.close()
+        try:
+            self._serial = serial.Serial(self.port, self.baud, timeout=0, exclusive=True)
+        except (OSError, ValueError) as problem:  # serial.SerialException is an OSError
+            raise LineLost(f"the port {self.port} can't be opened: {_reason(problem)}") from None
+        with suppress(OSError, ValueError):  # a USB adapter otherwise keeps what it got for 16 ms; others don't know it
+            self._serial.set_low_latency_mode(True)
+
+    def close(self) -> None:
+        """Close the port. May be called twice."""
+        if self._serial is not None:
+            with suppress(OSError):
+                self._serial.close()
+            self._serial = None
+
+    def seconds(self, count: int) -> float:
+        """Return how long as many bytes take on the line."""
+        return count * 10 / self.baud
+
+    def send(self, data: bytes) -> None:
+        """Send bytes, and forget what has come before: it answers something else."""
+        try:
+            file = self._file()
+            while select.select((file,), (), (), 0)[0]:
+                if not os.read(file, 4096):
+                    raise OSError("it was pulled out")
+            self.sent_by = max(self.sent_by, time.monotonic()) + self.seconds(len(data))
+            while data:
+                with suppress(BlockingIOError):
+                    data = data[os.write(file, data) :]
+                if data and not select.select((), (file,), (), 1.0)[1]:
+                    raise OSError("it takes nothing")
+        except (OSError, ValueError) as problem:
+            raise self._lost(problem) from None
+
+    def receive(self, until: float) -> bytes:
+        """Return the next bytes as soon as there are some; none if nothing comes until then (of time.monotonic())."""
+        try:
+            file = self._file()
+            wait = max(until - time.monotonic(), 0.0)
+            if not select.select((file,), (), (), wait)[0]:
+                return b""
+            data = os.read(file, 4096)
+        except (OSError, ValueError) as problem:
+            raise self._lost(problem) from None
+        if not data:
+            raise self._lost(OSError("it was pulled out"))
+        return data
+
+    def _file(self) -> int:
+        if self._serial is None:
+            raise OSError("it is not open")
+        file: int = self._serial.fileno()
+        return file
+
+    def _lost(self, problem: Exception) -> LineLost:
+        return LineLost(f"the port {self.port} is lost: {_reason(problem)}")
+
+
+def _reason(problem: Exception) -> str:
+    number = getattr(problem, "errno", None)
+    return os.strerror(number) if isinstance(number, int) else str(problem)
+
+
+class ServoClient:
     """The servos on a line. All methods raise LineLost when the line is lost.
 
     `delay` is how long each servo may wait before it answers, in seconds.
@@ -41,13 +131,13 @@ class Client:
         self._written: dict[int, tuple[Mapping[int, bytes], bytes]] = {}  # the latest to each address, and its packet
 
     def ping(self, id: int) -> tuple[int, int] | None:
-        """The model number and firmware of a servo, None if it doesn't answer."""
+        """Return the model number and firmware of a servo, None if it doesn't answer."""
         found = self._ask(Packet(id, PING), (id,), 3)
         data = found.get(id)
         return None if data is None else (int.from_bytes(data[1:3], "little"), data[3])
 
     def read(self, id: int, address: int, length: int) -> bytes:
-        """Bytes from an address on, with several tries. Raises DeviceSilent if the servo never answers."""
+        """Read bytes from an address on, with several tries. Raises DeviceSilent if the servo never answers."""
         for _ in range(_TRIES):
             found = self._ask(read_packet(id, address, length), (id,), length)
             if found:
@@ -55,7 +145,7 @@ class Client:
         raise DeviceSilent(f"servo {id} on {self.line.port} doesn't answer")
 
     def write(self, id: int, address: int, data: bytes) -> None:
-        """Writes bytes, in several tries. Raises DeviceSilent if the servo is silent, DeviceError if it refuses."""
+        """Write bytes, in several tries. Raises DeviceSilent if the servo is silent, DeviceError if it refuses."""
         for _ in range(_TRIES):
             found = self._ask(write_packet(id, address, data), (id,), 0)
             if not found:
@@ -68,7 +158,7 @@ class Client:
         raise DeviceSilent(f"servo {id} on {self.line.port} doesn't answer")
 
     def sync_write(self, address: int, values: Mapping[int, bytes]) -> None:
-        """Writes to several servos at once, with the next question or `flush`. Nothing says whether it arrived."""
+        """Write to several servos at once, with the next question or `flush`. Nothing reports whether it arrived."""
         if not values:
             return
         latest, data = self._written.get(address, ({}, b""))
@@ -78,21 +168,24 @@ class Client:
         self._pending += data
 
     def flush(self) -> None:
-        """Sends what waits for the next question."""
+        """Send what waits for the next question."""
         data, self._pending = self._pending, b""
         if data:
             self.line.send(data)
 
     def sync_read(self, address: int, length: int, ids: Sequence[int], fast: bool = False) -> dict[int, bytes]:
-        """The same bytes of several servos, by id. Who doesn't answer is left out, and so is an answer that comes twice
-        or out of order: somebody answers with another's id."""
+        """Return the same bytes of several servos, by id.
+
+        A servo that doesn't answer is left out, and so is an answer that comes twice or out of order: then somebody
+        answers with another's id.
+        """
         if not ids:
             return {}
         found = self._ask(sync_read_packet(address, length, ids, fast), ids, length, fast)
         return {id: parameters[1:] for id, parameters in found.items()}
 
     def _ask(self, packet: Packet, ids: Sequence[int], length: int, fast: bool = False) -> dict[int, bytes]:
-        """The parameters of the status packets of these servos, as far as they came in time."""
+        """Return the parameters of the status packets of these servos, as far as they came in time."""
         self._pending += packet.encode()
         self.flush()
         answer = self.line.seconds((length + (SEGMENT_OVERHEAD if fast else OVERHEAD)) * len(ids))

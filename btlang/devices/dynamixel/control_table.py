@@ -7,12 +7,12 @@ from struct import Struct
 from btlang.record import Record
 
 TICKS = 4096
-"""Of a turn. In the middle of it, at 2048, a joint is at 0 degrees."""
+"""Ticks of a turn. In the middle of it, at 2048, a joint is at 0 degrees."""
 CENTRE = 2048
 SPEED_UNIT = 0.229 * 6
-"""Degrees a second: velocities come in 0.229 turns a minute."""
+"""Degrees a second of a unit: velocities come in 0.229 turns a minute."""
 MOST_TICKS = 1_048_575
-"""How far a servo goes to either side that counts turns."""
+"""How far a servo that counts turns goes to either side."""
 
 OPERATING_MODE, TEMPERATURE_LIMIT, MAX_POSITION, MIN_POSITION = 11, 31, 48, 52
 TORQUE, STATUS_RETURN, HARDWARE_ERROR, WATCHDOG, PROFILE_VELOCITY, GOAL_POSITION = 64, 68, 70, 98, 112, 116
@@ -23,18 +23,18 @@ SETTINGS = Struct("<9xBBB19xB12xIii")
 """Bytes 0 to 55: return delay in 2 us, drive mode, operating mode, highest temperature, highest speed, limits of
 positions (the high one first)."""
 GOAL = Struct("<Ii")
-"""Profile velocity and goal position, which lie side by side."""
+"""Profile velocity and goal position, which are next to each other."""
 STATE = Struct("<BBBhiiB")
-"""What is read in each cycle: torque, hardware error, watchdog, load, velocity, position, temperature."""
+"""The state that is read in each cycle: torque, hardware error, watchdog, load, velocity, position, temperature."""
 STATE_ADDRESSES = (TORQUE, HARDWARE_ERROR, WATCHDOG, *range(LOAD, POSITION + 4), TEMPERATURE)
 """Where the bytes of STATE are; the servo's indirect addresses are set to show them side by side."""
 INDIRECT = b"".join(address.to_bytes(2, "little") for address in STATE_ADDRESSES)
 
 WATCHDOG_UNIT = 0.02
-"""Seconds."""
+"""Seconds of a unit of the watchdog."""
 WATCHDOG_TRIPPED = 0xFF
 FIRST_FIRMWARE = 38
-"""With a bus watchdog."""
+"""The first firmware with a bus watchdog."""
 POSITION_MODE, EXTENDED_MODE, CURRENT_POSITION_MODE = 3, 4, 5
 TIME_PROFILE, TORQUE_BY_GOAL = 0x04, 0x08
 """Bits of the drive mode."""
@@ -48,7 +48,7 @@ HARDWARE_ERRORS = {
 
 
 class Model(Record):
-    """A make of servo: where its indirect data begin, and the raw load that is 100 percent."""
+    """A model of servo: where its indirect data begin, and the raw load that is 100 percent."""
 
     name: str
     indirect_data: int
@@ -72,4 +72,4 @@ MODELS = {
     1230: Model("XC330-M181", 208, 910),
     1240: Model("XC330-M288", 208, 910),
 }
-"""By model number."""
+"""The models by model number."""

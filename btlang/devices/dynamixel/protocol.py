@@ -10,7 +10,7 @@ BROADCAST = 0xFE
 HIGHEST_ID = 252
 PING, READ, WRITE, REBOOT, STATUS, SYNC_READ, SYNC_WRITE, FAST_SYNC_READ = 1, 2, 3, 8, 0x55, 0x82, 0x83, 0x8A
 ALERT = 0x80
-"""The bit of an error byte that says: see the hardware error status."""
+"""The bit of an error byte that refers to the hardware error status."""
 ERRORS = {
     1: "it could not do what it was asked",
     2: "it does not know the instruction",
@@ -20,7 +20,7 @@ ERRORS = {
     6: "a value is beyond a limit",
     7: "the address can't be written or read now",
 }
-"""By the error byte of a status packet without the alert bit."""
+"""The errors by the error byte of a status packet without the alert bit."""
 OVERHEAD = 11  # bytes of a status packet beside its data
 SEGMENT_OVERHEAD = 4  # bytes of each servo in the answer to a fast sync read, beside its data
 _HEADER = b"\xff\xff\xfd\x00"
@@ -43,7 +43,7 @@ _TABLE = _crc_table()
 
 
 def crc16(data: Iterable[int], crc: int = 0) -> int:
-    """CRC-16 with the polynomial 0x8005, going on from `crc`."""
+    """Return the CRC-16 with the polynomial 0x8005, going on from `crc`."""
     table = _TABLE
     for byte in data:
         crc = (crc << 8 & 0xFF00) ^ table[crc >> 8 ^ byte]
@@ -58,29 +58,32 @@ class Packet(Record):
     parameters: bytes = b""
 
     def encode(self) -> bytes:
-        """Its bytes on the line."""
+        """Return its bytes on the line."""
         body = (bytes((self.instruction,)) + self.parameters).replace(_PLAIN, _STUFFED)
         packet = _HEADER + bytes((self.id,)) + (len(body) + 2).to_bytes(2, "little") + body
         return packet + crc16(packet).to_bytes(2, "little")
 
 
 def read_packet(id: int, address: int, length: int) -> Packet:
-    """Asks a servo for `length` bytes from an address on."""
+    """Return a packet that asks a servo for `length` bytes from an address on."""
     return Packet(id, READ, _words(address, length))
 
 
 def write_packet(id: int, address: int, data: bytes) -> Packet:
-    """Writes bytes from an address on."""
+    """Return a packet that writes bytes from an address on."""
     return Packet(id, WRITE, _words(address) + data)
 
 
 def sync_read_packet(address: int, length: int, ids: Iterable[int], fast: bool = False) -> Packet:
-    """Asks several servos for the same bytes. They answer in that order, each with a packet, or `fast` all in one."""
+    """Return a packet that asks several servos for the same bytes.
+
+    They answer in that order, each with a packet, or `fast` all in one.
+    """
     return Packet(BROADCAST, FAST_SYNC_READ if fast else SYNC_READ, _words(address, length) + bytes(ids))
 
 
 def sync_write_packet(address: int, values: Mapping[int, bytes]) -> Packet:
-    """Writes to several servos by id, to each as many bytes. None answers."""
+    """Return a packet that writes to several servos by id, the same number of bytes each. None answers."""
     length = len(next(iter(values.values())))
     return Packet(BROADCAST, SYNC_WRITE, _words(address, length) + b"".join(bytes((i,)) + d for i, d in values.items()))
 
@@ -90,10 +93,10 @@ def _words(*values: int) -> bytes:
 
 
 class PacketReader:
-    """Finds packets in a stream of bytes, whatever is between them; one with a wrong checksum is none.
+    """A reader of packets in a stream of bytes, whatever is between them, which drops those with a wrong checksum.
 
     After a fast sync read, `parts` is how many servos were asked for how many bytes, `segment`: the parts of their
-    common answer come out as a status packet of each servo, of a damaged one those before the damage.
+    common answer come out as a status packet of each servo; of a damaged answer, those before the damage.
     """
 
     def __init__(self, segment: int = 0, parts: int = 0) -> None:
@@ -102,7 +105,7 @@ class PacketReader:
         self._bytes = bytearray()
 
     def feed(self, data: bytes) -> list[Packet]:
-        """The packets that are complete with these bytes."""
+        """Return the packets that are complete with these bytes."""
         self._bytes += data
         found: list[Packet] = []
         while self._find_header() and self._take(found):
@@ -110,7 +113,7 @@ class PacketReader:
         return found
 
     def rest(self) -> list[Packet]:
-        """When nothing more comes: what is intact of a packet that never got complete, and the packets behind it."""
+        """Return, when nothing more comes, the intact parts of an incomplete packet, and the packets behind it."""
         found: list[Packet] = []
         while self._find_header():
             if self._is_common():
@@ -130,7 +133,7 @@ class PacketReader:
             del self._bytes[:count]
 
     def _take(self, found: list[Packet]) -> bool:
-        """Takes the packet at the start, or drops its header. False: more bytes are needed."""
+        """Take the packet at the start, or drop its header. Returns False if more bytes are needed."""
         got = self._bytes
         length = int.from_bytes(got[5:_HEAD], "little")
         end = _HEAD + length
@@ -160,7 +163,7 @@ class PacketReader:
         )
 
     def _take_parts(self, found: list[Packet], end: int, is_intact: bool = False) -> None:
-        """Of a common answer: each part has the checksum of all before it and itself."""
+        """Take the parts of a common answer: each has the checksum of all before it and itself."""
         got, size = bytes(self._bytes[:end]), self._size
         crc, begin = 0, 0
         for start in range(_HEAD + 1, end - size + 1, size):

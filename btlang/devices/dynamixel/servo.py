@@ -1,28 +1,95 @@
-"""One servo as a joint: how it is made ready, what it is sent in a cycle, and what its answer means."""
+"""One servo as a joint: its options, how it is made ready, what it is sent in a cycle, and what its answer means."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
 from btlang.devices.dynamixel import control_table as table
-from btlang.devices.dynamixel.client import Client
-from btlang.devices.dynamixel.options import ServoOptions
+from btlang.devices.dynamixel.client import ServoClient
+from btlang.devices.dynamixel.protocol import HIGHEST_ID
 from btlang.devices.kinds import JointState, JointTarget
 from btlang.record import Record
 
+_HIGHEST_BAUD = 4_500_000
 WATCHDOG_SET = round(0.2 / table.WATCHDOG_UNIT)
-"""What the watchdog of a servo is set to: 200 ms without an instruction on the line stop it."""
+"""The setting of a servo's watchdog: it stops after 200 ms without an instruction on the line."""
 _COOLED = 5.0  # degrees Celsius below its limit at which a hot servo may be used again
 _DEGREES = 360 / table.TICKS
 
 
-class Restarted(DeviceSilent):
-    """A servo has lost its settings: it was without power, or somebody else wrote to it."""
+class ServoOptions(Record):
+    """The options of a servo. `hottest` is in degrees Celsius, `low` and `high` are limits in true degrees.
+
+    None leaves them to the servo. `baud` is that of the port: all servos on it have the same.
+    """
+
+    id: int
+    reverse: bool = False
+    at_end: str = "hold"
+    hottest: float | None = None
+    low: float | None = None
+    high: float | None = None
+    baud: int = 1_000_000
 
 
-class Orders(Record):
-    """What a servo is sent in a cycle; None: nothing. `watchdog`: its watchdog stopped it and is set again."""
+def read_options(device: Device) -> ServoOptions:
+    """Read the options of one servo. Raises DeviceError for ones that can't be used."""
+    options = dict(device.options)
+    names = ServoOptions.fields
+    unknown = sorted(map(str, options.keys() - set(names)))
+    if unknown:
+        raise DeviceError(f"the {device.name}: a Dynamixel servo has no option '{unknown[0]}', but {', '.join(names)}")
+    if "id" not in options:
+        raise DeviceError(f"the {device.name}: the option 'id' is missing, the number of the servo on its port")
+    read = ServoOptions(**options)
+    for name, is_right, wanted in (
+        ("id", _is_whole(read.id, 0, HIGHEST_ID), f"a whole number from 0 to {HIGHEST_ID}"),
+        ("reverse", isinstance(read.reverse, bool), "true or false"),
+        ("at_end", read.at_end in ("hold", "loose"), "'hold' or 'loose'"),
+        ("hottest", _is_number(read.hottest), "degrees Celsius"),
+        ("low", _is_number(read.low), "degrees"),
+        ("high", _is_number(read.high), "degrees"),
+        ("baud", _is_whole(read.baud, 9_600, _HIGHEST_BAUD), f"a whole number from 9600 to {_HIGHEST_BAUD}"),
+    ):
+        if not is_right:
+            raise DeviceError(f"the {device.name}: {name} is {getattr(read, name)!r}; it has to be {wanted}")
+    if read.low is not None and read.high is not None and read.low >= read.high:
+        raise DeviceError(f"the {device.name}: low is {read.low:g}; it has to be less than high, {read.high:g}")
+    return read
+
+
+def read_all(devices: Sequence[Device]) -> list[ServoOptions]:
+    """Read the options of the servos on a port. Raises DeviceError if they contradict each other."""
+    read = [read_options(device) for device in devices]
+    users: dict[int, str] = {}
+    for device, options in zip(devices, read, strict=True):
+        other = users.setdefault(options.id, device.name)
+        if other != device.name:
+            raise DeviceError(f"the {other} and the {device.name} have the same id {options.id} on {device.port}")
+        if options.baud != read[0].baud:
+            bauds = f"{read[0].baud} for the {devices[0].name} and {options.baud} for the {device.name}"
+            raise DeviceError(f"the port {device.port} has one baud, but the options say {bauds}")
+    return read
+
+
+def _is_whole(value: object, low: int, high: int) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and low <= value <= high
+
+
+def _is_number(value: object) -> bool:
+    return value is None or (isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value))
+
+
+class ServoRestarted(DeviceSilent):
+    """The error that a servo has lost its settings: it was without power, or somebody else wrote to it."""
+
+
+class ServoCommands(Record):
+    """The values to send to a servo in a cycle; None for nothing. `watchdog`: its watchdog
+    stopped it and is set again.
+    """
 
     goal: bytes | None = None
     torque: bool | None = None
@@ -30,7 +97,7 @@ class Orders(Record):
 
 
 class Servo:
-    """A joint on a port. Until `make_ready` has succeeded, nothing else of it may be used."""
+    """A joint on a port. Only `make_ready` may be used until it has succeeded."""
 
     def __init__(self, device: Device, options: ServoOptions) -> None:
         self.name, self.id, self.options = device.name, options.id, options
@@ -46,16 +113,19 @@ class Servo:
         self._hold: int | None = None  # where it rests
         self._refused: DeviceError | None = None
         self._target: JointTarget | None = None
-        self._orders, self._is_steady = Orders(), False  # for the target, as long as nothing happens that changes them
+        self._orders, self._is_steady = (
+            ServoCommands(),
+            False,
+        )  # for the target, as long as nothing happens that changes them
         self._fault: DeviceError | None = None
 
     @property
     def state_address(self) -> int:
-        """Where its state is read."""
+        """The address of its state."""
         return self._model.indirect_data
 
-    def make_ready(self, client: Client) -> None:
-        """Finds the servo, checks its settings and sets its watchdog. If its torque is on, it stops where it is.
+    def make_ready(self, client: ServoClient) -> None:
+        """Find the servo, check its settings and set its watchdog. If its torque is on, it stops where it is.
 
         Raises DeviceSilent if it doesn't answer, DeviceError if it can't be used.
         """
@@ -85,8 +155,8 @@ class Servo:
         self._hold = self._refused = self._fault = None
         self._is_steady = False
 
-    def orders(self, target: JointTarget | None) -> Orders:
-        """What to send for a target; None: nothing is known of what it should do."""
+    def orders(self, target: JointTarget | None) -> ServoCommands:
+        """Return what to send for a target; None means that nobody knows what it should do."""
         if target is self._target and self._is_steady:
             return self._orders
         self._refused, self._target = None, target
@@ -94,31 +164,34 @@ class Servo:
         self._is_steady = self._has_torque and not self._is_tripped and self._fault is None
         return self._orders
 
-    def _make_orders(self, target: JointTarget | None) -> Orders:
+    def _make_orders(self, target: JointTarget | None) -> ServoCommands:
         if self._fault is not None or (target is not None and target.loose):
             self._hold = None
-            return Orders(torque=False if self._has_torque else None, watchdog=self._is_tripped)
+            return ServoCommands(torque=False if self._has_torque else None, watchdog=self._is_tripped)
         if target is None:
-            return Orders(watchdog=self._is_tripped)
+            return ServoCommands(watchdog=self._is_tripped)
         goal, fastest = self._goal(target)
         if goal is None:
             if not self._has_torque:
-                return Orders(watchdog=self._is_tripped)
+                return ServoCommands(watchdog=self._is_tripped)
             if self._hold is None:
                 self._hold = self._position
-            return Orders(table.GOAL.pack(fastest, self._hold), watchdog=self._is_tripped)
+            return ServoCommands(table.GOAL.pack(fastest, self._hold), watchdog=self._is_tripped)
         self._hold = None
         if not self._has_torque or self._is_tripped:
             goal = self._position  # else it would leap to a goal that it had before
-        return Orders(table.GOAL.pack(fastest, goal), None if self._has_torque else True, self._is_tripped)
+        return ServoCommands(table.GOAL.pack(fastest, goal), None if self._has_torque else True, self._is_tripped)
 
     def reading(self, state: bytes) -> JointState:
-        """What its state means. Raises Restarted if it has to be made ready again, DeviceError if it is at fault or its
-        commanded goal isn't finite."""
+        """Return the reading in its state.
+
+        Raises Restarted if it has to be made ready again, DeviceError if it is at fault or its commanded goal isn't
+        finite.
+        """
         torque, error, watchdog, load, velocity, position, temperature = table.STATE.unpack_from(state)
         if torque > 1 or watchdog not in (WATCHDOG_SET, table.WATCHDOG_TRIPPED):
             self._has_torque = self._is_steady = False  # as far as is known; the position is none either
-            raise Restarted(f"{self.where} was without power for a moment")
+            raise ServoRestarted(f"{self.where} was without power for a moment")
         self._position, self._has_torque, self._is_tripped = position, torque == 1, watchdog == table.WATCHDOG_TRIPPED
         if error or temperature > self._hottest or self._fault is not None:
             self._fault = self._find_fault(error, temperature)
@@ -146,7 +219,7 @@ class Servo:
         return None
 
     def _goal(self, target: JointTarget) -> tuple[int | None, int]:
-        """In ticks, within the limits, and the highest speed in units of the servo."""
+        """Return the goal in ticks, within the limits, and the highest speed in units of the servo."""
         position, speed = target.position, target.speed
         if not math.isfinite(position or 0.0) or not math.isfinite(speed or 0.0):
             self._refused = DeviceError(f"the {self.name} can't go to {position} at a speed of {speed}")
@@ -176,7 +249,7 @@ class Servo:
         self._hottest = hottest if self.options.hottest is None else min(self.options.hottest, hottest)
 
     def _asked_range(self, low: int, high: int) -> list[int]:
-        """The limits of the robot file in ticks, those of the servo where it gives none."""
+        """Return the limits of the robot file in ticks, by default those of the servo."""
         true_low, true_high = self._true_range(low, high)
         given = (
             true_low if self.options.low is None else self.options.low,

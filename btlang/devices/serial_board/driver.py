@@ -1,30 +1,34 @@
-"""The driver of boards: asks one for its readings at each cycle, with the commands for it, and believes only what can
-be true."""
+"""The driver of boards: asks one for its readings at each cycle, and believes only what can be true."""
 
 from __future__ import annotations
 
 import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
 from btlang.devices.kinds import KINDS, Command, Reading
 from btlang.devices.loop import SILENCE
-from btlang.devices.serial_board.frames import FRAMING, MOST_MESSAGE
-from btlang.devices.serial_board.line import Line, begin_session, find_board
+from btlang.devices.serial_board.line import FRAMING, MOST_MESSAGE, BoardLine, begin_session, find_board
 from btlang.devices.serial_board.messages import (
-    Answer,
-    Channel,
-    Commands,
+    COMMANDS,
+    KIND_NUMBERS,
+    READINGS,
+    BoardAnswer,
+    BoardChannel,
+    BoardCommands,
+    UnwrappedCounter,
     answer_size,
     command_message,
     command_size,
     read_answer,
 )
-from btlang.devices.serial_board.options import BoardOptions, ChannelOptions, read_options
-from btlang.devices.serial_board.values import COMMANDS, KIND_NUMBERS, READINGS, Tally
 from btlang.record import Record
 
+_SEARCHED = "board "
+_BOARD = {"baud": 115_200, "rate": 50.0, "board": ""}
+_CHANNEL = ("channel", "frozen")
 _SHARE = 0.8  # of what a line carries that is used
 _SLOWEST = 12.5  # cycles a second, so that a board that moves hears a few before it stops alone
 _PATIENCE = 1 / _SLOWEST  # seconds that one cycle waits at most
@@ -32,6 +36,77 @@ _OLD = 0.1  # seconds after which an answer isn't used any more
 _LOST = 0.5  # seconds without an answer after which the port is opened again
 _FROZEN_SAMPLES, _FROZEN = 3, 0.15  # intervals, and seconds at least, without a new sample
 _BITS = 10  # of each byte on the line
+
+
+class BoardOptions(Record):
+    """The board: its name ("" for any), and either a path or that all ports are searched for it."""
+
+    name: str
+    path: str
+    baud: int
+    rate: float
+
+    @property
+    def searched(self) -> bool:
+        """Whether its port has to be found."""
+        return not self.path
+
+
+class ChannelOptions(Record):
+    """A device: its number on the board, and seconds after which a value that is exactly the same isn't believed."""
+
+    channel: int
+    frozen: float | None
+
+
+def read_options(port: str, devices: Sequence[Device]) -> tuple[BoardOptions, Mapping[str, ChannelOptions]]:
+    """Return the options of a board, which any of its devices may have, and of its devices by name.
+
+    Raises DeviceError.
+    """
+    board: dict[str, Any] = {}
+    channels: dict[str, ChannelOptions] = {}
+    for device in devices:
+        unknown = [option for option in device.options if option not in (*_BOARD, *_CHANNEL)]
+        if unknown:
+            known = ", ".join((*_CHANNEL, *_BOARD))
+            raise DeviceError(f"the {device.name} has an unknown option '{unknown[0]}'. Known: {known}")
+        channels[device.name] = _channel(device)
+        for option, value in device.options.items():
+            if option in _BOARD and board.setdefault(option, value) != value:
+                raise DeviceError(
+                    f"the {device.name} says {option} {value}, another device of its board {board[option]}"
+                )
+    numbers: dict[int, str] = {}
+    for name, options in channels.items():
+        if numbers.setdefault(options.channel, name) != name:
+            raise DeviceError(f"the {name} and the {numbers[options.channel]} have the same channel {options.channel}")
+    return _board(port, {**_BOARD, **board}), channels
+
+
+def _channel(device: Device) -> ChannelOptions:
+    channel, frozen = device.options.get("channel"), device.options.get("frozen")
+    if type(channel) is not int or not 0 <= channel <= 255:
+        raise DeviceError(f"the {device.name} needs its number on the board, 0 to 255. Write for example: channel = 1")
+    if frozen is not None and (type(frozen) not in (int, float) or not 0 < frozen < float("inf")):
+        raise DeviceError(f"the {device.name} has frozen = {frozen}; it takes seconds, for example 2.5")
+    return ChannelOptions(channel, frozen)
+
+
+def _board(port: str, options: Mapping[str, Any]) -> BoardOptions:
+    baud, rate, name = options["baud"], options["rate"], options["board"]
+    if type(baud) is not int or not 1200 <= baud <= 20_000_000:
+        raise DeviceError(f"baud = {baud} at {port}; it takes a whole number, for example 115200")
+    if type(rate) not in (int, float) or not 12.5 <= rate <= 500:
+        raise DeviceError(f"rate = {rate} at {port}; it takes cycles a second from 12.5 to 500, for example 50")
+    if not isinstance(name, str):
+        raise DeviceError(f"board = {name} at {port}; it takes the name of a board in quotes")
+    searched = port.removeprefix(_SEARCHED).strip() if port.startswith(_SEARCHED) else ""
+    if not port.strip() or port.strip() == _SEARCHED.strip():
+        raise DeviceError('a board needs its port: a path as "/dev/ttyUSB0", or "board" and its name as "board base"')
+    if name and searched and name != searched:
+        raise DeviceError(f"board = {name}, but the port says '{port}'")
+    return BoardOptions(searched or name, "" if searched else port, baud, float(rate))
 
 
 class _Sent(Record):
@@ -52,7 +127,7 @@ class _Known(Record):
 
 
 class SerialBoard:
-    """See btlang.devices.driver.Driver."""
+    """The driver `serial-board`."""
 
     kinds: Sequence[str] = tuple(KIND_NUMBERS)
     needs_port = True
@@ -63,16 +138,16 @@ class SerialBoard:
         self._board: BoardOptions
         self._board, self._options = read_options(port, devices)
         self.rate = self._board.rate
-        self._line: Line | None = None
-        self._tallies = {device.name: (Tally(), Tally()) for device in devices}
+        self._line: BoardLine | None = None
+        self._tallies = {device.name: (UnwrappedCounter(), UnwrappedCounter()) for device in devices}
         self._session = self._sequence = 0
         self._name = ""
         self._begin((), 0.0)
 
     def open(self) -> None:
-        """See Driver. The port is a path, or `board NAME`: then all serial ports are asked for it."""
+        """Implement Driver. The port is a path, or `board NAME`: then all serial ports are asked for it."""
         wanted = self._board
-        self._line = find_board(wanted.name, wanted.baud) if wanted.searched else Line(wanted.path, wanted.baud)
+        self._line = find_board(wanted.name, wanted.baud) if wanted.searched else BoardLine(wanted.path, wanted.baud)
         hello = begin_session(self._line)
         if wanted.name and hello.name != wanted.name:
             raise DeviceError(f"the board at {self._line.path} is '{hello.name}', not '{wanted.name}'")
@@ -97,7 +172,6 @@ class SerialBoard:
         self._patience = _PATIENCE
 
     def exchange(self, commands: Mapping[str, Command]) -> Mapping[str, Reading | DeviceError]:
-        """See Driver."""
         line = self._line
         if line is None:
             raise DeviceError("the port is not open")
@@ -117,14 +191,13 @@ class SerialBoard:
                 return readings | refused
 
     def close(self) -> None:
-        """See Driver."""
         line, self._line = self._line, None
         if line is not None:
             line.stop()
             line.close()
 
-    def _begin(self, channels: tuple[Channel, ...], now: float) -> None:
-        """All that belongs to one session."""
+    def _begin(self, channels: tuple[BoardChannel, ...], now: float) -> None:
+        """Reset everything that belongs to one session."""
         self._sent: dict[int, _Sent] = {}
         self._kept: dict[str, bytes] = {}
         self._known: dict[str, _Known] = {}
@@ -143,8 +216,11 @@ class SerialBoard:
         users.sort(key=lambda name: not KINDS[self._devices[name].kind].moves)  # these always have room in a message
         self._users = {self._options[name].channel: name for name in users}
 
-    def _send(self, line: Line, commands: Mapping[str, Command]) -> dict[str, DeviceError]:
-        """Returns the devices that can't be used now. What moves rests unless an answer is sure to have come lately."""
+    def _send(self, line: BoardLine, commands: Mapping[str, Command]) -> dict[str, DeviceError]:
+        """Send the commands; return the devices that can't be used now.
+
+        What moves rests unless an answer is sure to have come lately.
+        """
         now = time.monotonic()
         blind = now + self._patience - self._answered > SILENCE
         kinds: list[str] = []
@@ -168,11 +244,11 @@ class SerialBoard:
         self._sequence = (self._sequence + 1) % 2**16
         self._sent = {number: sent for number, sent in self._sent.items() if now - sent.time <= _OLD}
         self._sent[self._sequence] = _Sent(now, kept)
-        line.send(command_message(Commands(self._session, self._sequence, tuple(packed))))
+        line.send(command_message(BoardCommands(self._session, self._sequence, tuple(packed))))
         return refused
 
     def _take(self, message: bytes) -> dict[str, Reading | DeviceError]:
-        """The readings in an answer; none if the answer can't be used."""
+        """Return the readings in an answer; none if the answer can't be used."""
         answer, now = read_answer(message), time.monotonic()
         if answer is None:
             return {}
@@ -190,7 +266,7 @@ class SerialBoard:
         self._answered = now
         return self._read(answer, now)
 
-    def _read(self, answer: Answer, now: float) -> dict[str, Reading | DeviceError]:
+    def _read(self, answer: BoardAnswer, now: float) -> dict[str, Reading | DeviceError]:
         kinds = {name: KINDS[self._devices[name].kind] for name in self._users.values()}
         readings: dict[str, Reading | DeviceError] = {
             name: Reading() for name, kind in kinds.items() if kind.reading is None
@@ -226,7 +302,7 @@ class SerialBoard:
         self._known[name] = known
         return known
 
-    def _check_age(self, name: str, channel: Channel, known: _Known, now: float) -> None:
+    def _check_age(self, name: str, channel: BoardChannel, known: _Known, now: float) -> None:
         place = f"its channel {channel.number} of the board '{self._name}'"
         if now - known.counted > max(_FROZEN, _FROZEN_SAMPLES * channel.interval):
             raise DeviceSilent(f"{place} measures nothing new")

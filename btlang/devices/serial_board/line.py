@@ -1,9 +1,10 @@
-"""A serial port with frames on it, and the ports of this computer at which a board says who it is."""
+"""A serial port with frames on it (COBS and CRC-16), and the ports of this computer at which a board answers."""
 
 from __future__ import annotations
 
 import os
 import time
+from binascii import crc_hqx
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from errno import EAGAIN
@@ -11,12 +12,18 @@ from random import randrange
 from typing import TYPE_CHECKING
 
 from btlang.devices.driver import DeviceError
-from btlang.devices.serial_board.frames import FrameReader, encode_frame
 from btlang.devices.serial_board.messages import STOP, VERSION, Hello, ask_hello, read_hello
 
 if TYPE_CHECKING:
     import serial
 
+
+MOST = 250
+"""The most bytes of a message with its CRC, so that no block of COBS is full, and all end at a zero."""
+
+MOST_MESSAGE = MOST - 2
+FRAMING = 4
+"""Bytes of a frame in addition to its message: the CRC, one of COBS, the zero."""
 HELLO_WAIT = 3.0
 """Seconds for a board to say hello; some restart when their port is opened, which takes two."""
 _ASKED_EVERY = 0.1
@@ -28,8 +35,56 @@ _MISSING = (
 )
 
 
-class Line:
-    """An open serial port. Raises DeviceError where it can't be opened or is lost."""
+def crc16(data: bytes) -> int:
+    """Return the CRC-16/CCITT-FALSE: polynomial 0x1021, begins with 0xFFFF, nothing reflected."""
+    return crc_hqx(data, 0xFFFF)
+
+
+def encode_frame(message: bytes) -> bytes:
+    """Return the frame of a message. Raises ValueError if it is too long."""
+    checked = message + crc16(message).to_bytes(2, "little")
+    if len(checked) > MOST:
+        raise ValueError(f"a message of {len(message)} bytes; at most {MOST_MESSAGE} fit in a frame")
+    return b"".join(bytes([len(block) + 1]) + block for block in checked.split(b"\0")) + b"\0"
+
+
+def decode_frame(frame: bytes) -> bytes | None:
+    """Return the message of a frame, given without the zero at its end; None if it isn't one, or was damaged."""
+    if len(frame) > MOST + 1:
+        return None
+    blocks, at = [], 0
+    while at < len(frame):
+        size = frame[at]
+        blocks.append(frame[at + 1 : at + size])
+        if len(blocks[-1]) != size - 1:
+            return None
+        at += size
+    checked = b"\0".join(blocks)
+    if len(checked) < 3 or crc16(checked[:-2]) != int.from_bytes(checked[-2:], "little"):
+        return None
+    return checked[:-2]
+
+
+class FrameReader:
+    """A reader of messages from the bytes of a line, in pieces of any size. It keeps at most one frame."""
+
+    def __init__(self) -> None:
+        self._rest = b""
+        self.damaged = 0
+        """Frames that couldn't be read so far."""
+
+    def feed(self, data: bytes) -> list[bytes]:
+        """Return the messages that end in these bytes."""
+        *frames, rest = (self._rest + data).split(b"\0")
+        self._rest = rest[: MOST + 2]  # what is too long by now is still so at its end
+        messages = [decode_frame(frame) for frame in frames if frame]
+        found = [message for message in messages if message is not None]
+        self.damaged += len(messages) - len(found)
+        return found
+
+
+class BoardLine:
+    """An open serial port. Raises DeviceError if it can't be opened or is lost."""
 
     def __init__(self, path: str, baud: int) -> None:
         try:
@@ -42,13 +97,13 @@ class Line:
             self._port: serial.Serial = Serial(path, baud, timeout=_LOOK, write_timeout=_ASKED_EVERY, exclusive=True)
 
     def send(self, message: bytes) -> None:
-        """Sends a message as a frame."""
+        """Send a message as a frame."""
         self._sent, self._received = message, 0
         with self._named():
             self._port.write(encode_frame(message))
 
     def receive(self, until: float) -> list[bytes]:
-        """Waits for messages until a time of the monotonic clock. Raises DeviceError where bytes flood in."""
+        """Wait for messages until a time of the monotonic clock. Raises DeviceError if bytes flood in."""
         while True:
             with self._named():
                 data = self._port.read(self._port.in_waiting or 1)
@@ -61,7 +116,7 @@ class Line:
                 return messages
 
     def silence(self) -> str:
-        """What came in place of a hello."""
+        """Return what came in place of a hello."""
         if self._echoes:
             return "only an echo of what is sent comes back"
         if self._reader.damaged or self._received:
@@ -69,13 +124,13 @@ class Line:
         return "nothing answers"
 
     def stop(self) -> None:
-        """Commands a board to bring everything to rest, as far as it can be reached."""
+        """Command a board to bring everything to rest, as far as it can be reached."""
         with suppress(DeviceError):
             for _ in range(3):  # one may be damaged on its way
                 self.send(bytes([STOP]))
 
     def close(self) -> None:
-        """Lets go of the port."""
+        """Close the port."""
         with suppress(OSError):
             self._port.close()
 
@@ -94,7 +149,7 @@ class Line:
 
 
 def serial_ports() -> list[str]:
-    """The paths of all serial ports of this computer."""
+    """Return the paths of all serial ports of this computer."""
     try:
         from serial.tools.list_ports import comports
     except ImportError:
@@ -102,8 +157,8 @@ def serial_ports() -> list[str]:
     return [port.device for port in comports()]
 
 
-def begin_session(line: Line) -> Hello:
-    """Begins a session with the board of a line. Raises DeviceError where there's none, or of another version."""
+def begin_session(line: BoardLine) -> Hello:
+    """Begin a session with the board of a line. Raises DeviceError if there's none, or for another version."""
     session = randrange(1, 2**16)
     hello = _ask([line], session).get(line)
     if hello is None:
@@ -117,15 +172,15 @@ def begin_session(line: Line) -> Hello:
     return hello
 
 
-def find_board(name: str, baud: int) -> Line:
-    """The line of the board of that name. Raises DeviceError where there's none, or more than one."""
+def find_board(name: str, baud: int) -> BoardLine:
+    """Return the line of the board of that name. Raises DeviceError if there's none, or more than one."""
     lines, locked = [], []
     for path in serial_ports():
         try:
-            lines.append(Line(path, baud))
+            lines.append(BoardLine(path, baud))
         except DeviceError as problem:
             locked.append(str(problem))
-    found: list[Line] = []
+    found: list[BoardLine] = []
     others: set[str] = set()
     try:
         for line, hello in _ask(lines, 0).items():
@@ -145,9 +200,11 @@ def find_board(name: str, baud: int) -> Line:
                 line.close()
 
 
-def _ask(lines: Sequence[Line], session: int) -> dict[Line, Hello]:
-    """Who answers at these lines. It waits for all of them: a second board of one name may need longer."""
-    found: dict[Line, Hello] = {}
+def _ask(lines: Sequence[BoardLine], session: int) -> dict[BoardLine, Hello]:
+    """Return the boards that answer at these lines. Waits for all of them: a second board of
+    one name may need longer.
+    """
+    found: dict[BoardLine, Hello] = {}
     pending = list(lines)
     due = time.monotonic()
     until = due + HELLO_WAIT

@@ -11,7 +11,7 @@ from typing import BinaryIO
 
 from btlang.diagnostics.errors import MissionError
 from btlang.ros.available import require_ros
-from btlang.ros.waiting import wait_until
+from btlang.ros.clocks import wait_until
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ _ENDING = 2.0  # seconds for goals to be cancelled
 
 
 def main() -> int:
-    """Until standard input or SIGTERM ends it; returns the exit code."""
+    """Run the bridge until standard input or SIGTERM ends it; return the exit code."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # which a terminal sends to the server, too
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     output = os.fdopen(os.dup(1), "wb")
@@ -36,11 +36,10 @@ def main() -> int:
 
 
 def _run(lines: BinaryIO, output: BinaryIO) -> None:
-    """Raises MissionError (BT100) without ROS 2."""
+    """Serve clients until standard input ends. Raises MissionError (BT100) without ROS 2."""
     require_ros()
     from btlang.ros.bridge.bridge import Bridge
-    from btlang.ros.executor_thread import ExecutorThread
-    from btlang.ros.node import SpunNode
+    from btlang.ros.node import ExecutorThread, SpunNode
 
     with SpunNode(f"btlang_bridge_{os.getpid()}") as spun:
         thread = ExecutorThread(spun.node)

@@ -9,7 +9,7 @@ from functools import partial
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
-from btlang.ros.bridge.calls import Call, Goal, Servers
+from btlang.ros.bridge.calls import BridgeCall, BridgeGoal, Servers
 from btlang.ros.bridge.replies import MOST_CHARACTERS, BridgeError, failures, reason_of
 from btlang.ros.bridge.topics import Publisher, Subscription
 
@@ -22,46 +22,46 @@ if TYPE_CHECKING:
 
 _LOOK = 0.25  # seconds between two looks at who publishes
 _MOST = {"subscriptions": 100, "publishers": 100, "calls": 50, "goals": 20}
-"""Of one client."""
+"""Limits for one client."""
 _FEEDBACK = 10  # messages that wait for a client
 
 
 class Bridge:
-    """Does what clients ask for. Used by the thread that spins `node`.
+    """The clients of a server, for the thread that spins `node`.
 
-    `write` gets the `client` that a text is for, its `topic` ("" for an answer), how many texts of that count (`most`,
-    the newest), and the text.
+    `write` gets the `client` that a text is for, its `topic` ("" for an answer), how many texts of that topic to keep
+    (`most`, the newest), and the text.
     """
 
     def __init__(self, node: Node, write: Write) -> None:
         self.servers = Servers(node)
         self._node, self._write = node, write
-        self._clients: dict[int, _Client] = {}
-        self._leaving: list[Goal] = []
+        self._clients: dict[int, _BridgeClient] = {}
+        self._leaving: list[BridgeGoal] = []
         node.create_timer(_LOOK, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def take(self, line: bytes) -> None:
-        """Does what a line asks for."""
+        """Do what a line of a client asks for."""
         asked: Asked = json.loads(line)
         number = asked.pop("client")
         if asked["op"] == "leave":
             self._leave(number)
             return
         if number not in self._clients:
-            self._clients[number] = _Client(self._node, self.servers, partial(self._send, number))
+            self._clients[number] = _BridgeClient(self._node, self.servers, partial(self._send, number))
         client = self._clients[number]
         try:
             client.do[asked["op"]](asked)
         except Exception as error:  # of ROS, too: whoever asks must not end what others use
             client.fail(asked, reason_of(error))
 
-    def left(self) -> list[Goal]:
-        """The goals that were cancelled and haven't ended."""
+    def left(self) -> list[BridgeGoal]:
+        """Return the goals that were cancelled and haven't ended."""
         self._leaving = [goal for goal in self._leaving if not goal.ended]
         return self._leaving
 
     def close(self) -> None:
-        """All clients are gone."""
+        """Disconnect all clients."""
         for number in tuple(self._clients):
             self._leave(number)
 
@@ -79,13 +79,13 @@ class Bridge:
             self._write({"client": number, "topic": topic, "most": most}, text)
 
 
-class _Client:
+class _BridgeClient:
     def __init__(self, node: Node, servers: Servers, send: Callable[..., object]) -> None:
         self._node, self._servers, self._send = node, servers, send
         self._subscriptions: dict[str, tuple[Subscription, Asked]] = {}
         self._publishers: dict[str, Publisher] = {}
-        self._calls: list[Call] = []
-        self._goals: dict[object, Goal] = {}
+        self._calls: list[BridgeCall] = []
+        self._goals: dict[object, BridgeGoal] = {}
         self.do: dict[str, Callable[[Asked], object]] = {
             "subscribe": self._subscribe, "unsubscribe": self._unsubscribe, "advertise": self._advertise,
             "unadvertise": self._unadvertise, "publish": self._publish, "call_service": self._call,
@@ -93,17 +93,17 @@ class _Client:
         }  # fmt: skip
 
     def fail(self, asked: Asked, text: str) -> None:
-        """Sends the client the reason why something isn't done."""
+        """Send the client the reason why something isn't done."""
         for message in failures(asked, text):
             self._send(json.dumps(message))
 
     def look(self) -> None:
-        """Goes on with subscriptions as the graph changes."""
+        """Update the subscriptions as the graph changes."""
         for topic in tuple(self._subscriptions):
             self._look_at(topic)
 
-    def leave(self) -> list[Goal]:
-        """Ends all; the goals that are to be cancelled, and may take a moment for that."""
+    def leave(self) -> list[BridgeGoal]:
+        """End everything of this client; return the goals to cancel, which may take a moment to end."""
         for goal in self._goals.values():
             goal.cancel()
         for call in self._calls:
@@ -121,7 +121,7 @@ class _Client:
             _check("subscriptions", len(self._subscriptions))
             deliver = lambda topic, text, most: self._send(text, topic, most)  # noqa: E731
             subscription = Subscription(self._node, topic, deliver, partial(self.fail, asked))
-        subscription.want(asked)
+        subscription.add_request(asked)
         self._subscriptions[topic] = subscription, asked
         self._look_at(topic)
 
@@ -137,7 +137,7 @@ class _Client:
         topic = asked["topic"]
         if topic not in self._subscriptions:
             raise BridgeError(f"You haven't subscribed to {topic}.")
-        if self._subscriptions[topic][0].unwant(asked.get("id")):
+        if self._subscriptions[topic][0].remove_request(asked.get("id")):
             self._subscriptions.pop(topic)[0].end()
 
     def _advertise(self, asked: Asked) -> None:
@@ -161,7 +161,7 @@ class _Client:
     def _call(self, asked: Asked) -> None:
         self._calls = [call for call in self._calls if not call.ended]
         _check("calls", len(self._calls))
-        self._calls.append(Call(self._servers, asked, partial(self._answer, asked), partial(self.fail, asked)))
+        self._calls.append(BridgeCall(self._servers, asked, partial(self._answer, asked), partial(self.fail, asked)))
 
     def _send_goal(self, asked: Asked) -> None:
         self._goals = {id: goal for id, goal in self._goals.items() if not goal.ended}
@@ -170,7 +170,7 @@ class _Client:
         if id in self._goals:
             raise BridgeError("A goal with this id is running.")
         reply, fail = partial(self._answer, asked), partial(self.fail, asked)
-        self._goals[id] = Goal(self._servers, asked, reply, fail, partial(self._feedback, id))
+        self._goals[id] = BridgeGoal(self._servers, asked, reply, fail, partial(self._feedback, id))
 
     def _cancel_goal(self, asked: Asked) -> None:
         goal = self._goals.get(asked.get("id"))

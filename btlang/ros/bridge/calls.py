@@ -1,4 +1,4 @@
-"""Calls of services and goals of actions, for clients."""
+"""Calls of services and goals of actions for clients, and waits for what the ROS graph doesn't report."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from functools import partial
 
 from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
+from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
-from btlang.ros.bridge.conversion import as_data, filled
-from btlang.ros.bridge.replies import BridgeError, answer
+from btlang.record import Record
+from btlang.ros.bridge.conversion import as_data, fill_message, type_of
+from btlang.ros.bridge.replies import BridgeError, answer, reason_of
 from btlang.ros.bridge.topics import full
-from btlang.ros.bridge.types import type_of
-from btlang.ros.bridge.waits import Waits
 from btlang.ros.graph import absent, is_ready, types_of
 from btlang.ros.lease import Lease
 
@@ -27,13 +27,62 @@ if TYPE_CHECKING:
     Reply: TypeAlias = Callable[[dict[str, Any]], object]
     Fail: TypeAlias = Callable[[str], object]
 
+_LOOK = 0.02  # seconds between two looks
 _FOUND = 5.0  # seconds in which a server is found
 _ANSWERED, _LONGEST = 10.0, 600.0  # seconds for an answer: by default, and at most
 _SETTLE = 0.3  # seconds: a server that hasn't found its new client yet drops the answer, and nothing reports when
 
 
+class _Wait(Record):
+    ready: Callable[[], object]
+    then: Callable[[], object]
+    late: Callable[[str], object]
+    reason: Callable[[], str]
+    until: float
+
+
+class Waits:
+    """The waits of one node, which another thread spins."""
+
+    def __init__(self, node: Node) -> None:
+        self._waits: list[_Wait] = []
+        self._timer = node.create_timer(_LOOK, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._timer.cancel()
+
+    def when(
+        self,
+        ready: Callable[[], object],
+        then: Callable[[], object],
+        late: Callable[[str], object],
+        reason: Callable[[], str],
+        seconds: float,
+    ) -> None:
+        """Call `then` once `ready` holds, or `late` with a reason: the given one, or the error of one of the two."""
+        self._waits.append(_Wait(ready, then, late, reason, time.monotonic() + seconds))
+        self._timer.reset()
+
+    def _look(self) -> None:
+        waits, self._waits = self._waits, []
+        self._waits += [wait for wait in waits if not self._is_over(wait)]
+        if not self._waits:
+            self._timer.cancel()
+
+    def _is_over(self, wait: _Wait) -> bool:
+        try:
+            if wait.ready():
+                wait.then()
+                return True
+        except Exception as error:  # also of ROS: the others go on
+            wait.late(reason_of(error))
+            return True
+        if time.monotonic() < wait.until:
+            return False
+        wait.late(wait.reason())
+        return True
+
+
 class Servers:
-    """Clients on a node of the servers that are asked, one for each name and type. Used by the thread that spins."""
+    """Clients of servers on a node, one for each name and type, for the thread that spins the node."""
 
     def __init__(self, node: Node) -> None:
         self.node, self.waits = node, Waits(node)
@@ -42,9 +91,9 @@ class Servers:
         self._clients: dict[tuple[str, Any], tuple[Any, float]] = {}
 
     def find(self, kind: str, name: str, cls: Any, then: Callable[[Any, Any], object], fail: Fail) -> None:
-        """Calls `then` with the class and a client that can be used now, or `fail`.
+        """Call `then` with the class and a client that can be used now, or `fail`.
 
-        `kind` is "service" or "action"; a class of None is that which the graph has.
+        `kind` is "service" or "action". If the class is None, it is the one in the graph.
         """
         found = cls
         name = full(name)
@@ -75,7 +124,7 @@ class Servers:
         self.waits.when(ready, lambda: then(found, client()), fail, reason, _FOUND)
 
 
-class Call:
+class BridgeCall:
     """A service that a client calls. Raises BridgeError."""
 
     def __init__(self, servers: Servers, asked: Asked, reply: Reply, fail: Fail) -> None:
@@ -88,14 +137,14 @@ class Call:
         servers.find("service", asked["service"], None, self._send, self._late)
 
     def end(self) -> None:
-        """Nobody waits for the answer any more."""
+        """Stop waiting for the answer."""
         self.ended = True
 
     def _send(self, cls: Any, client: Any) -> None:
         if self.ended:
             return
-        future = client.call_async(filled(cls.Request, self._asked.get("args") or {}, self._servers.now))
-        future.add_done_callback(self._answered)
+        future = client.call_async(fill_message(cls.Request, self._asked.get("args") or {}, self._servers.now))
+        future.add_done_callback(self._on_answer)
 
         def late(reason: str) -> None:
             client.remove_pending_request(future)
@@ -104,7 +153,7 @@ class Call:
         reason = f"{self._asked['service']} hasn't answered within {self._seconds:g} s."
         self._servers.waits.when(future.done, int, late, lambda: reason, self._seconds)
 
-    def _answered(self, future: Any) -> None:
+    def _on_answer(self, future: Any) -> None:
         if not self.ended:
             self.ended = True
             self._reply(answer(self._asked, as_data(future.result()), success=True))
@@ -115,7 +164,7 @@ class Call:
             self._fail(reason)
 
 
-class Goal:
+class BridgeGoal:
     """A goal that a client sends; `feedback` is called with each message on the way. Raises BridgeError."""
 
     def __init__(self, servers: Servers, asked: Asked, reply: Reply, fail: Fail, feedback: Reply) -> None:
@@ -125,11 +174,11 @@ class Goal:
         self._client: Any = None
         self._handle: Any = None
         cls = type_of(str(asked.get("action_type", "")), "action")
-        self._goal = filled(cls.Goal, asked.get("args") or {}, servers.now)
+        self._goal = fill_message(cls.Goal, asked.get("args") or {}, servers.now)
         servers.find("action", asked["action"], cls, self._send, self._end_badly)
 
     def cancel(self) -> None:
-        """The robot is to do no more for it. One that isn't sent yet never is."""
+        """Cancel the goal. One that isn't sent yet never is."""
         if self._is_cancelled:
             return
         self._is_cancelled = True
@@ -143,15 +192,15 @@ class Goal:
             return
         self._is_sent, self._client = True, client
         future = client.send_goal_async(self._goal, self._hear, self._servers.lease.goal_id())
-        future.add_done_callback(self._accepted)
+        future.add_done_callback(self._on_accept)
         self._watch()
 
     def _watch(self) -> None:
-        """A server that dies says nothing."""
+        """End the goal if its server has died: a dead server reports nothing."""
         gone = partial(self._end_badly, f"The action server {self._asked['action']} has gone.")
         self._servers.waits.when(lambda: self.ended or not is_ready(self._client), gone, self._end_badly, str, math.inf)
 
-    def _accepted(self, future: Any) -> None:
+    def _on_accept(self, future: Any) -> None:
         self._handle = future.result()
         if not self._handle.accepted:
             self._end_badly("The goal was rejected.")

@@ -1,19 +1,22 @@
-"""Messages as JSON, as rosbridge writes them: bytes as base64, NaN and infinity as null."""
+"""Messages as JSON, as rosbridge writes them (bytes as base64, NaN as null), and the types that clients name."""
 
 from __future__ import annotations
 
 import binascii
 import math
+import re
 from base64 import b64decode, b64encode
 from collections.abc import Callable, Mapping
 from functools import cache
+from importlib import import_module
+from importlib.machinery import PathFinder
+from pathlib import Path
 
 import numpy as np
 
 from btlang.ros.bridge.replies import BridgeError
-from btlang.ros.bridge.types import type_of
-from btlang.ros.fields import INTEGERS, array_of, field_types
-from btlang.ros.word import type_name
+from btlang.ros.messages import type_name
+from btlang.ros.words.fields import INTEGERS, array_of, field_types
 from btlang.text.escaping import one_line
 
 TYPE_CHECKING = False
@@ -23,12 +26,40 @@ if TYPE_CHECKING:
     Write: TypeAlias = Callable[[Any], Any]
     Now: TypeAlias = Callable[[], Any]
 
+_TYPE = re.compile(r"([a-z][a-z0-9_]{0,99})/(?:(msg|srv|action)/)?([A-Z][A-Za-z0-9_]{0,99})")
+_FORMS = {"msg": "a type of messages", "srv": "a type of services", "action": "a type of actions"}
 _FLOATS, _BYTES = ("float", "double"), ("octet", "uint8")
 _HEADER = "std_msgs/Header"
 
 
+@cache
+def type_of(name: str, kind: str) -> Any:
+    """Return the class of a type, with or without its kind: std_msgs/msg/String,
+    std_msgs/String. Raises BridgeError.
+    """
+    found = _TYPE.fullmatch(name)
+    shown = one_line(name[:100])
+    if found is None:
+        raise BridgeError(f"'{shown}' isn't a type. Write for example: std_msgs/msg/String.")
+    if found[2] not in (None, kind):
+        raise BridgeError(f"'{shown}' isn't {_FORMS[kind]}.")
+    if not _is_interfaces(found[1]):
+        raise BridgeError(f"There's no package of interfaces called '{found[1]}' on this computer.")
+    try:
+        return getattr(import_module(f"{found[1]}.{kind}"), found[3])
+    except (ImportError, AttributeError):
+        raise BridgeError(f"There's no type '{found[1]}/{kind}/{found[3]}' on this computer.") from None
+
+
+def _is_interfaces(package: str) -> bool:
+    """Return whether rosidl generated a package. Importing any other package would run its code."""
+    spec = PathFinder.find_spec(package)
+    folders = (spec.submodule_search_locations or ()) if spec is not None else ()
+    return any(any(Path(folder).glob("*__rosidl_typesupport_c*")) for folder in folders)
+
+
 def as_data(message: Any) -> dict[str, Any]:
-    """The fields of a message, for JSON."""
+    """Return the fields of a message, for JSON."""
     cls: Any = type(message)
     return {name: write(getattr(message, name)) for name, write in _writers(cls)}
 
@@ -67,8 +98,8 @@ def _all_finite(values: Any) -> list[float | None]:
     return [_finite(number) for number in numbers.tolist()]
 
 
-def filled(cls: Any, data: object, now: Now) -> Any:
-    """A message of a class with these fields; the others stay as they are by default.
+def fill_message(cls: Any, data: object, now: Now) -> Any:
+    """Return a message of a class with these fields; other fields keep their defaults.
 
     A header without a stamp gets that of `now`. Raises BridgeError.
     """

@@ -7,27 +7,27 @@ if TYPE_CHECKING:
     from typing import Any
 
 MOST_CHARACTERS = 256 * 1024
-"""Of a message as JSON, either way."""
+"""The longest message as JSON, in either direction."""
 _ANSWERS = {"call_service": ("service_response", "service"), "send_action_goal": ("action_result", "action")}
 
 
 class BridgeError(Exception):
-    """Why something can't be done, in words for who asked."""
+    """The reason why something can't be done, for the client that asked."""
 
 
 def reason_of(error: Exception) -> str:
-    """What went wrong, in words."""
+    """Return the reason of an error in words."""
     return str(error) if isinstance(error, BridgeError) else f"ROS 2 refuses it: {str(error).partition(', at ')[0]}"
 
 
 def status(text: str, id: object = None, level: str = "error") -> dict[str, Any]:
-    """A status message; `id` is that of what it is about."""
+    """Return a status message; `id` is that of what it is about."""
     about = {} if id is None else {"id": id}
     return {"op": "status", **about, "level": level, "msg": text}
 
 
 def answer(asked: dict[str, Any], values: object, *, success: bool, goal: int = 0) -> dict[str, Any]:
-    """What a service call or a goal comes to; `goal` is the status of a goal in ROS 2, 0 for none."""
+    """Return the answer to a service call or a goal; `goal` is the status of a goal in ROS 2, 0 for none."""
     op, name = _ANSWERS[asked["op"]]
     about = {} if asked.get("id") is None else {"id": asked["id"]}
     ended = {"status": goal} if name == "action" else {}
@@ -35,7 +35,7 @@ def answer(asked: dict[str, Any], values: object, *, success: bool, goal: int = 
 
 
 def failures(asked: dict[str, Any], text: str) -> list[dict[str, Any]]:
-    """That an operation failed: a status and, if somebody waits for an answer, that one."""
+    """Return the replies to an operation that failed: a status and, if somebody waits for an answer, the answer."""
     messages = [status(text, asked.get("id"))]
     if asked.get("op") in _ANSWERS and isinstance(asked.get(_ANSWERS[asked["op"]][1]), str):
         messages.append(answer(asked, text, success=False))

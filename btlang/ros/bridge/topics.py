@@ -1,4 +1,4 @@
-"""What one client hears of topics, and what he publishes."""
+"""What one client hears of topics, and what it publishes."""
 
 from __future__ import annotations
 
@@ -12,11 +12,10 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 
-from btlang.ros.bridge.conversion import as_data, filled
+from btlang.ros.bridge.conversion import as_data, fill_message, type_of
 from btlang.ros.bridge.replies import MOST_CHARACTERS, BridgeError
-from btlang.ros.bridge.types import type_of
 from btlang.ros.graph import types_of
-from btlang.ros.word import type_name
+from btlang.ros.messages import type_name
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -32,9 +31,10 @@ _HEARD = Duration(seconds=0.2)  # for listeners to confirm what was published
 
 
 class Subscription:
-    """One topic of one client. `look` has to be called now and then: it finds the type and fits to the publishers.
+    """One topic of one client. Call `look` now and then: it finds the type and adapts to the publishers.
 
-    `deliver` gets the topic as the client calls it, a message, and how many may wait; `refuse` why there is none.
+    `deliver` gets the topic as the client calls it, a message, and how many may wait; `refuse` gets the reason why
+    there is none.
     """
 
     def __init__(self, node: Node, topic: str, deliver: Deliver, refuse: Callable[[str], object]) -> None:
@@ -50,8 +50,8 @@ class Subscription:
         self._newest: bytes | None = None
         self._has_refused = False
 
-    def want(self, asked: dict[str, Any]) -> None:
-        """Another subscription of the client to the topic, or the same with other wishes. Raises BridgeError."""
+    def add_request(self, asked: dict[str, Any]) -> None:
+        """Add a subscription of the client to the topic, or change one. Raises BridgeError."""
         rate, length = asked.get("throttle_rate") or 0, asked.get("queue_length") or 0
         for value, most, name in ((rate, _LONGEST, "throttle_rate"), (length, 1e9, "queue_length")):
             if not isinstance(value, int | float) or isinstance(value, bool) or not 0 <= value <= most:
@@ -66,8 +66,8 @@ class Subscription:
         self._wanted[asked.get("id")] = rate / 1000, min(int(length), _MOST_DEPTH) or _DEPTH
         self._fit()
 
-    def unwant(self, id: object) -> bool:
-        """Ends that subscription, or all for None; whether that was the last one. Raises BridgeError."""
+    def remove_request(self, id: object) -> bool:
+        """End one subscription, or all for None; return whether it was the last one. Raises BridgeError."""
         if id is not None and id not in self._wanted:
             raise BridgeError(f"There's no subscription to {self._topic} with this id.")
         if id is None:
@@ -78,7 +78,7 @@ class Subscription:
         return not self._wanted
 
     def look(self) -> None:
-        """Subscribes so that its publishers can be heard, if there are any yet. Raises BridgeError."""
+        """Subscribe with a quality of service that fits all publishers, if there are any yet. Raises BridgeError."""
         publishers = self._node.get_publishers_info_by_topic(self._name)
         types = {each.topic_type for each in publishers}
         if self._cls is None and types:
@@ -89,19 +89,19 @@ class Subscription:
             return
         if types and type_name(self._cls) not in types:
             raise BridgeError(f"{self._name} is of the type {min(types)}, not {type_name(self._cls)}.")
-        qos = _fitting(publishers) if publishers or self._qos is None else self._qos
+        qos = _compatible_qos(publishers) if publishers or self._qos is None else self._qos
         if qos != self._qos:
             self._unsubscribe()
             self._qos = qos
             self._subscription = self._node.create_subscription(self._cls, self._name, self._heard, qos, raw=True)
 
     def end(self) -> None:
-        """Nothing is heard any more."""
+        """Stop listening."""
         self._unsubscribe()
         self._stop_timer()
 
     def _fit(self) -> None:
-        """The lowest period and the longest queue count."""
+        """Use the shortest period and the longest queue of all subscriptions."""
         period = min(period for period, _ in self._wanted.values())
         self._depth = max(depth for _, depth in self._wanted.values())
         if period != self._period:
@@ -109,7 +109,7 @@ class Subscription:
             self._period = period
             if period:
                 clock = Clock(clock_type=ClockType.STEADY_TIME)
-                self._timer = self._node.create_timer(period, self._elapsed, clock=clock)
+                self._timer = self._node.create_timer(period, self._on_period, clock=clock)
                 self._timer.cancel()
 
     def _heard(self, message: bytes) -> None:
@@ -121,7 +121,7 @@ class Subscription:
         else:
             self._newest = message
 
-    def _elapsed(self) -> None:
+    def _on_period(self) -> None:
         newest, self._newest = self._newest, None
         if newest is None:
             self._timer.cancel()
@@ -149,7 +149,7 @@ class Subscription:
 
 
 class Publisher:
-    """One topic of one client. Raises BridgeError, also for a type that isn't the one of the topic."""
+    """One topic that one client publishes. Raises BridgeError, also for a type that isn't the topic's."""
 
     def __init__(self, node: Node, topic: str, asked: dict[str, Any]) -> None:
         self._node, self._topic = node, topic
@@ -165,22 +165,24 @@ class Publisher:
         self._publisher = node.create_publisher(self.cls, name, QoSProfile(depth=_DEPTH, durability=durability))
 
     def publish(self, fields: object) -> None:
-        """Raises BridgeError for fields that don't fit."""
-        self._publisher.publish(filled(self.cls, fields, self._node.get_clock().now().to_msg))
+        """Publish these fields. Raises BridgeError if they don't fit."""
+        self._publisher.publish(fill_message(self.cls, fields, self._node.get_clock().now().to_msg))
 
     def end(self) -> None:
-        """Nothing is published any more; the last message, which may be a stop, is heard first."""
+        """Stop publishing, once the last message, which may be a stop, has been heard."""
         self._publisher.wait_for_all_acked(_HEARD)
         self._node.destroy_publisher(self._publisher)
 
 
 def full(name: str) -> str:
-    """A name as the graph has it: clients may leave out the first slash."""
+    """Return a topic's name as the graph has it: clients may leave out the first slash."""
     return f"/{name.removeprefix('/')}"
 
 
-def _fitting(publishers: list[Any]) -> QoSProfile:
-    """What hears all of them, and what is kept for late listeners if each has that."""
+def _compatible_qos(publishers: list[Any]) -> QoSProfile:
+    """Return a quality of service that hears all publishers, and keeps messages for late
+    listeners if all of them do.
+    """
     latched = bool(publishers) and all(
         each.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for each in publishers
     )

@@ -9,20 +9,19 @@ from collections.abc import Mapping
 from contextlib import closing
 
 from btlang.arguments import robot_on
-from btlang.components.device_robot import simulated_devices
+from btlang.components.device_robot import simulate_devices
 from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import DeviceError
-from btlang.robots.body import Body
-from btlang.robots.body_file import unusable_robot
-from btlang.robots.options import add_simulate, add_world
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.body_file import unusable_robot
+from btlang.robots.platforms import add_simulate, add_world
 from btlang.robots.registry import runs_on
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import World
-from btlang.robots.world_problem import read_world
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world import World
+from btlang.robots.worlds.world_file import read_world
 from btlang.ros.available import require_ros
-from btlang.ros.command import add_namespace
+from btlang.ros.command import EndingSignals, add_namespace, keep_ending_signals
 from btlang.ros.devices.driver import PACKAGES
-from btlang.ros.ending import EndingSignals, ending_signals
 from btlang.run.controls import Controls
 from btlang.text.output import show
 
@@ -34,7 +33,7 @@ _RATE = 30.0  # looks a second at the devices
 
 
 def add_device_options(parser: argparse.ArgumentParser) -> None:
-    """The options of `btc ros-devices`."""
+    """Add the options of `btc ros-devices`."""
     add_world(parser)
     parser.add_argument(
         "--robot", type=robot_on(()), required=True, metavar="ROBOT", help="a robot file or the name of one that ships"
@@ -44,25 +43,25 @@ def add_device_options(parser: argparse.ArgumentParser) -> None:
 
 
 def serve(options: argparse.Namespace) -> int:
-    """Until a signal comes; returns the exit code, 128 and the number of the signal.
+    """Publish the devices until a signal comes; return the exit code, 128 plus the number of the signal.
 
     Raises MissionError (BT070, BT071, BT100).
     """
     body = runs_on(options.robot, "devices")[0]
     world = read_world(options.world, body)
     try:
-        body = body.replace(devices=simulated_devices(body, options.simulate))
+        body = body.replace(devices=simulate_devices(body, options.simulate))
     except DeviceError as problem:
         raise unusable_robot(problem) from None
     if not body.devices:
         options.refuse("the robot file has no [[device]]; --simulate shows simulated ones")
-    with ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
+    with keep_ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
         return _show_devices(options, body, world, came)
 
 
 def _show_devices(options: argparse.Namespace, body: Body, world: World, came: EndingSignals) -> int:
     require_ros(*PACKAGES)
-    from btlang.ros.devices.topics import DeviceTopics
+    from btlang.ros.devices.nodes import DeviceTopics
     from btlang.ros.node import SpunNode
 
     controls = Controls()
@@ -92,5 +91,5 @@ def _show_devices(options: argparse.Namespace, body: Body, world: World, came: E
 
 
 def _report(kind: str, data: Mapping[str, Any]) -> None:
-    """A device has fallen silent, or is back."""
+    """Print that a device has fallen silent, or is back."""
     show(str(data["text"]))

@@ -16,7 +16,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.ros.devices.client import DeviceClient
+    from btlang.ros.devices.nodes import DeviceClient
 
 PACKAGES = ("geometry_msgs", "nav_msgs", "sensor_msgs", "std_msgs", "trajectory_msgs")
 """The packages of messages that devices are in."""
@@ -25,10 +25,11 @@ _OF_KINDS = {"drive": ("wheel_gap",), "joint": ("joint", "slides"), "hand": ("jo
 
 
 class TopicDriver:
-    """See btlang.devices.driver.Driver. All devices share one node.
+    """The driver `topic`, whose devices all share one node.
 
-    Options of all kinds: `topic`, by default the name of the device, `command` (that with /command behind it) and
-    `silence` in seconds. Of a drive: `wheel_gap` in metres. Of a joint: `joint`, its name in messages, and `slides`.
+    Options of all kinds: `topic`, by default the name of the device, `command` (by default the topic with /command
+    appended) and `silence` in seconds. Of a drive: `wheel_gap` in metres. Of a joint: `joint`, its name in messages,
+    and `slides`.
     """
 
     kinds: Sequence[str] = tuple(KINDS)
@@ -40,10 +41,10 @@ class TopicDriver:
         self._client: DeviceClient | None = None
 
     def open(self) -> None:
-        """See Driver. Raises DeviceError."""
+        """Implement Driver. Raises DeviceError."""
         try:
             require_ros(*PACKAGES)
-            from btlang.ros.devices.client import DeviceClient
+            from btlang.ros.devices.nodes import DeviceClient
 
             self._client = DeviceClient(self._devices)
         except MissionError as problem:
@@ -51,19 +52,17 @@ class TopicDriver:
             raise DeviceError(f"ROS 2 can't be used: {arguments['reason']}. {arguments['advice']}".strip()) from None
 
     def exchange(self, commands: Mapping[str, Command]) -> Mapping[str, Reading | DeviceError]:
-        """See Driver."""
         assert self._client is not None
         return self._client.exchange(commands)
 
     def close(self) -> None:
-        """See Driver."""
         client, self._client = self._client, None
         if client is not None:
             client.close()
 
 
 def _topic_device(device: Device) -> TopicDevice:
-    """Raises DeviceError for options that can't be used."""
+    """Read the options of a device. Raises DeviceError for ones that can't be used."""
     kind, options = KINDS[device.kind], dict(device.options)
     topic = _text(device, options, "topic", f"/{topic_name(device.name)}")
     usual = f"{topic}/{COMMANDS}" if kind.reading is not None else topic
@@ -83,7 +82,7 @@ def _topic_device(device: Device) -> TopicDevice:
 
 
 def _usual_silence(kind: str) -> float:
-    """Seconds: what moves, and what the guard drives by, is silent sooner than the others."""
+    """Return the seconds after which a device is silent: fewer for one that moves or that the guard uses."""
     return SILENCE if KINDS[kind].moves else FRESH if kind in ("lidar", "range") else _SLOW
 
 

@@ -1,4 +1,4 @@
-"""What has to be known of a device so that messages of ROS 2 can be made of it. Imports no ROS."""
+"""What messages of ROS 2 need to know of a device. Imports no ROS."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ COMMANDS = "command"
 
 
 class Setting(Record):
-    """`joint` is the name of a joint or a hand in messages, and `slides` whether that is in metres; `wheel_gap` are the
-    metres between two wheels, `range` those that a sensor sees, `frame` is where it is.
+    """The properties of a device that its messages depend on.
+
+    `joint` is the name of a joint or a hand in messages, and `slides` whether its position is in metres; `wheel_gap` is
+    the metres between two wheels, `range` the metres that a sensor sees, `frame` the frame that it is in.
     """
 
     joint: str
@@ -39,6 +41,6 @@ class TopicDevice(Record):
 
 
 def topic_name(device: str) -> str:
-    """That of a device where nothing else is said, without a namespace: other signs than ROS 2 takes become `_`."""
+    """Return the default topic of a device, without a namespace: characters that ROS 2 doesn't take become `_`."""
     name = "".join(each if each.isascii() and each.isalnum() else "_" for each in device)
     return name if name[:1].isalpha() else f"device_{name}"

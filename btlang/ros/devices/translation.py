@@ -1,4 +1,4 @@
-"""What makes messages of the readings and commands of one device, and back."""
+"""The base of all translations between messages and the readings and commands of one device."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from math import isnan
 from btlang.devices.driver import DeviceError, DeviceSilent
 from btlang.devices.kinds import Command, Reading
 from btlang.ros.devices.setting import Setting
-from btlang.ros.gate import Gate
+from btlang.ros.subscriptions import MessageGate
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -17,7 +17,9 @@ _MEASURES_NOTHING, _TAKES_NOTHING = "it measures nothing", "it takes no commands
 
 
 class Translation:
-    """Of one device. `reads` and `takes` are the classes of messages for readings and commands; None: it has none, and
+    """Messages from readings and commands of one device, and back.
+
+    `reads` and `takes` are the classes of messages for readings and commands. If one is None, the device has none, and
     the methods that make them raise DeviceError.
     """
 
@@ -26,14 +28,14 @@ class Translation:
 
     def __init__(self, setting: Setting) -> None:
         self._setting = setting
-        self._gate = Gate(self.reads, all_stamps=True)
+        self._gate = MessageGate(self.reads, all_stamps=True)
 
     def concerns(self, message: Any) -> bool:
-        """Whether a message has anything to do with this device: others may share its topic."""
+        """Return whether a message is about this device: others may share its topic."""
         return True
 
     def reading(self, message: Any) -> Reading:
-        """What a message says. Raises DeviceSilent where that can't be true."""
+        """Return the reading in a message. Raises DeviceSilent if it can't be true."""
         reason = self._gate.refuses(message) if self.concerns(message) else ""
         if reason:
             raise DeviceSilent(f"it {reason}")
@@ -43,20 +45,20 @@ class Translation:
         raise DeviceError(_MEASURES_NOTHING)
 
     def shown(self, reading: Any) -> Any:
-        """The message for a reading."""
+        """Return the message for a reading."""
         raise DeviceError(_MEASURES_NOTHING)
 
     def sent(self, command: Any) -> Any:
-        """The message for a command. Raises RobotError where it is beyond all limits."""
+        """Return the message for a command. Raises RobotError if it is beyond the limits."""
         raise DeviceError(_TAKES_NOTHING)
 
     def command(self, message: Any) -> Command:
-        """The command that a message is. Raises DeviceError."""
+        """Return the command in a message. Raises DeviceError."""
         raise DeviceError(_TAKES_NOTHING)
 
 
 def number(value: float, what: str) -> float:
-    """A number that a message has. Raises DeviceSilent for one that isn't."""
+    """Return a number in a message. Raises DeviceSilent if it isn't a number."""
     if isnan(value):
         raise DeviceSilent(f"its {what} is not a number")
     return float(value)

@@ -11,8 +11,7 @@ from typing import Any
 
 from btlang.arguments import node_name
 from btlang.ros.available import require_interfaces, require_ros
-from btlang.ros.command import add_body_options, add_namespace, platform_of
-from btlang.ros.ending import EndingSignals, ending_signals
+from btlang.ros.command import EndingSignals, add_body_options, add_namespace, keep_ending_signals, platform_of
 from btlang.task.options import add_companion_options, add_layer_options
 from btlang.text.output import show
 
@@ -22,7 +21,7 @@ _ANSWERS = 1.0  # seconds that the last answers to clients get
 
 
 def add_node_options(parser: argparse.ArgumentParser) -> None:
-    """The options of `btc ros-node` that are about the node."""
+    """Add the options of `btc ros-node` that are about the node."""
     parser.add_argument("--mission", default="", metavar="FILE", help="mission to run when the node is activated")
     add_body_options(parser)
     parser.add_argument(
@@ -42,13 +41,13 @@ def add_node_options(parser: argparse.ArgumentParser) -> None:
 
 
 def serve(options: argparse.Namespace) -> int:
-    """Spins the node until a signal comes; returns the exit code, 128 and the number of the signal.
+    """Spin the node until a signal comes; return the exit code, 128 plus the number of the signal.
 
-    Raises MissionError where ROS 2 is not there (BT100, BT110), or where the node cannot be configured at its start.
+    Raises MissionError without ROS 2 (BT100, BT110), or if the node can't be configured at its start.
     """
     if platform_of(options) == "simulated" and options.sim_time:
         options.refuse("--sim-time is for --robot ros and --robot actions")
-    with ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
+    with keep_ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
         return _serve(options, came)
 
 
@@ -56,9 +55,7 @@ def _serve(options: argparse.Namespace, came: EndingSignals) -> int:
     require_ros()
     require_interfaces()
     require_ros(*PACKAGES)
-    from btlang.ros.mission.node import MissionNode
-    from btlang.ros.mission.setup import Setup, robot_name
-    from btlang.ros.mission.stop import StopNode
+    from btlang.ros.mission.node import MissionNode, Setup, StopNode, robot_name
     from btlang.ros.node import SpunNode
     from btlang.run.controls import Controls
     from btlang.run.emergency import emergency_signal

@@ -1,4 +1,4 @@
-"""The lifecycle node of a robot with its task layer: runs its own mission, and those that other programs send."""
+"""The lifecycle node of a robot with its task layer: its setup, its missions, and the node of its emergency stop."""
 
 from __future__ import annotations
 
@@ -7,30 +7,44 @@ from collections.abc import Callable, Generator, Sequence
 from contextlib import suppress
 
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.node import Node
+from std_srvs.srv import Trigger
 
 from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
-from btlang.ros.mission.progress import News, Progress
-from btlang.ros.mission.report import Report, report_of
-from btlang.ros.mission.server import LABEL, MissionServer
-from btlang.ros.mission.services import create_services
-from btlang.ros.mission.setup import Setup
-from btlang.ros.mission.topics import ERROR, OK, WARN, Topics
-from btlang.ros.mission.tree_topic import TreeTopic
+from btlang.diagnostics.reading import read_included
+from btlang.record import Record
+from btlang.robots.registry import connector
+from btlang.ros.mission.server import LABEL, MissionServer, create_services
+from btlang.ros.mission.topics import (
+    ERROR,
+    OK,
+    WARN,
+    MissionProgress,
+    MissionReport,
+    RunUpdate,
+    Topics,
+    TreeTopic,
+    report_of,
+)
 from btlang.run.lines import Lines
 from btlang.task import messages
 from btlang.task.emergency import shut_latch
 from btlang.task.follower import Follower
+from btlang.task.house import furnished_layer
+from btlang.task.layer import TaskLayer
 from btlang.task.messages import Answer, Command
+from btlang.task.missions import MissionReader
 from btlang.task.task import ACTIVE, FINAL, WAITING, Change, MissionText, State, Task
+from btlang.vocabulary.shipped import ENGLISH
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from typing import Any
 
     from btlang.run.events import Sink
     from btlang.session import Run
-    from btlang.task.layer import TaskLayer
 
 _SUCCESS, _FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
 _PERSON = "ROS 2"
@@ -39,12 +53,78 @@ _OWN = "node"
 """The label of the node's own mission."""
 
 
-class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as untyped
-    """configure reads the mission of the parameters `mission` or `mission_file` and reaches for the robot; activate
-    runs it, and then the tasks that are due; deactivate halts them; cleanup lets go of the robot.
+class Setup(Record):
+    """The options of a mission node. `robot` and `over` are as for Session.
 
-    All of its callbacks are called in one thread; missions run in another. `error` is why configuring failed, `down`
-    ends the process.
+    `file` is the mission that the node runs when activated, "" for none. Missions of other programs may include only
+    files below `include_root`, and use only the keyword files of `allowed_keywords`: names of packs, and folders.
+    `layer` has further arguments of the TaskLayer.
+    """
+
+    name: str = "btlang"
+    robot: str = "simulated"
+    over: str | None = None
+    sim_time: bool = False
+    namespace: str = ""
+    speed: float | str = "real"
+    file: str = ""
+    keywords: Sequence[str] = ()
+    world: str | None = None
+    parser: str = "shunting-yard"
+    include_root: str | None = None
+    allowed_keywords: Sequence[str] = ()
+    language: str = ENGLISH
+    layer: Mapping[str, Any] = {}
+
+    def reader(self) -> MissionReader:
+        """Return the reader of missions for this robot."""
+        return MissionReader(
+            self.keywords, self.world, parser=self.parser, language=self.language, include_root=self.include_root,
+            allowed_keywords=self.allowed_keywords,
+        )  # fmt: skip
+
+    def mission(self, text: str, file: str, reader: MissionReader) -> MissionText | None:
+        """Return the mission of the node's parameters; None if they name none. Raises MissionError (BT001, BT002)."""
+        if text:
+            return MissionText(text)
+        if file in ("", self.file):
+            return MissionText("", file=file) if file else None
+        return MissionText(read_included(file, reader.source("")).text, file)  # any program may set a parameter
+
+    def task_layer(self, reader: MissionReader, **options: Any) -> TaskLayer:
+        """Return the task layer of the robot, made with further arguments. Raises MissionError."""
+        named = {"sim_time": self.sim_time, "namespace": self.namespace, "name": f"{self.name}_robot"}
+        robot = connector(self.robot, self.over, **named)
+        return furnished_layer(robot, reader, speed=self.speed, **self.layer, **options)
+
+
+def robot_name(namespace: str, name: str) -> str:
+    """Return the name of a node's robot for `btc task --name`."""
+    return "-".join([*filter(None, namespace.split("/")), name])
+
+
+class StopNode(Node):  # type: ignore[misc]  # rclpy is seen as untyped
+    """A node with the emergency stop. `service` is the full name of its service; `stop` returns whether there was a
+    robot to stop.
+    """
+
+    def __init__(self, service: str, stop: Callable[[], bool], name: str, **options: Any) -> None:
+        super().__init__(name, start_parameter_services=False, enable_rosout=False, **options)
+        self._do = stop
+        self.create_service(Trigger, service, self._stop)
+
+    def _stop(self, request: Any, response: Any) -> Any:
+        response.success = self._do()
+        response.message = "" if response.success else "there is no robot, and its latch can't be written"
+        return response
+
+
+class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as untyped
+    """A lifecycle node for the missions of a robot. Its callbacks run in one thread, missions in another.
+
+    configure reads the mission of the parameters `mission` or `mission_file` and connects to the robot; activate runs
+    it, and then the tasks that are due; deactivate halts them; cleanup disconnects from the robot. `error` is the
+    reason why configuring failed; `down` ends the process.
     """
 
     def __init__(
@@ -55,7 +135,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         self._layer: TaskLayer | None = None
         self._follower: Follower | None = None
         self._mission: MissionText | None = None
-        self._latest: Report | None = None
+        self._latest: MissionReport | None = None
         self._seconds: dict[int, float] = {}
         self._running = ""
         self._active = False
@@ -67,7 +147,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         self._server = MissionServer(self, self._hindrance, self.answer, self._topics.complain)
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Fails where the mission cannot be read or the robot cannot be reached; the log says why."""
+        """Read the mission and connect to the robot. Fails if either isn't possible; the log has the reason."""
         text, file = (str(self.get_parameter(name).value) for name in ("mission", "mission_file"))
         try:
             reader = self._setup.reader()
@@ -82,12 +162,12 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             self._topics.complain(str(error))
             return _FAILURE
         self._end_tasks(WAITING, "its node ended before it did")
-        self._follower = Follower(self._layer.store, self._changed, self._topics.complain)
+        self._follower = Follower(self._layer.store, self._on_change, self._topics.complain)
         self._topics.tasks(self.answer(messages.List(limit=_MOST)))
         return _SUCCESS
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Runs the mission of the parameters where there is one; from now on takes missions of others."""
+        """Run the mission of the parameters, if there is one, and accept missions of others from now on."""
         assert self._layer is not None
         try:
             if self._mission is not None:
@@ -103,22 +183,24 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         return _SUCCESS
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Waits until the robot stands still. Fails where a command hangs; the robot is stopped all the same."""
+        """Wait until the robot stands still. Fails if a command hangs; the robot is stopped all the same."""
         return _SUCCESS if self.halt() else _FAILURE
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Lets go of the robot."""
+        """Disconnect from the robot."""
         self.release()
         return _SUCCESS
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """As deactivate and cleanup."""
+        """Deactivate and clean up."""
         self.halt()
         self.release()
         return _SUCCESS
 
     def _LifecycleNodeMixin__on_change_state(self, request: Any, response: Any) -> Any:
-        """rclpy's own one answers nothing where there is no such transition, and a lifecycle manager waits for ever."""
+        """Answer every request: rclpy doesn't if there's no such transition, and a lifecycle manager then waits
+        forever.
+        """
         try:
             return super()._LifecycleNodeMixin__on_change_state(request, response)
         except RuntimeError as error:
@@ -127,7 +209,9 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             return response
 
     def halt(self) -> bool:
-        """Cancels all goals and the node's own mission, and halts what else runs; whether it ended. From any thread."""
+        """Cancel all goals and the node's own mission, and halt what else runs; return whether it ended. For any
+        thread.
+        """
         layer, was_active = self._layer, self._active
         if layer is None:
             return True
@@ -138,7 +222,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         return ended
 
     def release(self) -> None:
-        """Lets go of the robot, at rest. May be called twice."""
+        """Disconnect from the robot, which is left at rest. May be called twice."""
         layer, self._layer = self._layer, None
         if layer is not None:
             if self._follower is not None:
@@ -146,8 +230,10 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             layer.close()
 
     def emergency_stop(self, person: str = _PERSON) -> bool:
-        """Stops the robot at once until it is released, from any thread, or keeps it stopped from when it is configured
-        on; False where even that can't be written down.
+        """Stop the robot at once until it is released, from any thread.
+
+        Before the node is configured, keep the robot stopped from then on. Returns False if even that can't be written
+        down.
         """
         layer = self._layer
         if layer is not None:
@@ -161,31 +247,31 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         return False
 
     def disable(self) -> None:
-        """Stops the robot where there is one, without a latch; from any thread."""
+        """Stop the robot, if there is one, without a latch; from any thread."""
         if self._layer is not None:
             self._layer.disable()
 
     def answer(self, command: Command | dict[str, Any], person: str = _PERSON) -> Answer:
-        """Does a command. From any thread."""
+        """Do a command of the task layer. For any thread."""
         layer = self._layer
         if layer is None:
             return Answer(False, "There is no robot: the node is not configured.")
         return layer.handle(command, person)
 
     def watch(self, *wanted: Any) -> Generator[dict[str, Any]]:
-        """What happens on the robot (see `btlang.task.feed.Feed.watch`); nothing if there is none."""
+        """Follow the events of the robot (see `btlang.task.feed.Feed.watch`); no events without a robot."""
         if self._layer is not None:
             yield from self._layer.feed.watch(*wanted)
 
     def _end_tasks(self, states: frozenset[State], reason: str) -> None:
-        """Those that don't outlive the node's work: of goals, and its own."""
+        """End the tasks that don't outlive the node's work: those of goals, and its own."""
         assert self._layer is not None
         for label in (LABEL, _OWN):
             for task in self._layer.store.tasks(states, label=label):
                 self.answer(messages.Cancel(task.id, reason))
 
     def _hindrance(self) -> str:
-        """Why no mission is taken now; "" where one is."""
+        """Return why the node accepts no mission now; "" if it does."""
         return "" if self._active else "the node is not active"
 
     def _sinks(self, task: Task | None, mission: Mission, run: Run) -> list[Sink]:
@@ -193,22 +279,22 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             return []
         tree = TreeTopic(mission, run, self._topics.tree, self._topics.tree_changes)
 
-        def changed(news: News) -> None:
+        def changed(news: RunUpdate) -> None:
             self._running, self._seconds[task.id] = news.running, news.time
-            tree.changed(news)
+            tree.publish_changes(news)
             self._server.news(task.id, news)
 
-        def reached(news: News) -> None:
-            tree.reached(news, is_last=news.is_last)
+        def reached(news: RunUpdate) -> None:
+            tree.publish_snapshot(news, is_last=news.is_last)
             self._topics.status(news)
 
         return [
             Lines(mission.label, mission.is_action, self._topics.log),
-            Progress(run.snapshot, changed, reached),
+            MissionProgress(run.snapshot, changed, reached),
         ]
 
-    def _changed(self, changes: Sequence[Change]) -> None:
-        """In the thread of the follower."""
+    def _on_change(self, changes: Sequence[Change]) -> None:
+        """Publish a change of tasks, in the thread of the follower."""
         layer = self._layer
         if layer is None:
             return

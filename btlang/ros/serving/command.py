@@ -12,12 +12,11 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.instance import EngineError
 from btlang.mission_vocabulary import world_vocabulary
-from btlang.robots.needs import lacking
+from btlang.robots.preflight import find_missing_parts
 from btlang.robots.registry import connector
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.command import add_body_options, add_namespace, platform_of
-from btlang.ros.serving.names import FOLDER
-from btlang.ros.serving.selection import chosen, servable
+from btlang.ros.serving.names import FOLDER, choose_actions, find_servable
 from btlang.run.limits import RATES
 from btlang.session import Session
 from btlang.text.output import show
@@ -34,7 +33,7 @@ _ANSWERS = 1.0  # seconds that the last answers to clients get
 
 
 def add_serving_options(parser: argparse.ArgumentParser) -> None:
-    """The options of `btc serve-actions` that are not those of all words and worlds."""
+    """Add the options of `btc serve-actions`, apart from those of words and worlds."""
     add_body_options(parser, ("simulated", "ros"))
     parser.add_argument("--sim-time", action="store_true", help="with --robot ros: use the time of the topic /clock")
     parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
@@ -57,9 +56,9 @@ def add_serving_options(parser: argparse.ArgumentParser) -> None:
 
 
 def serve(options: argparse.Namespace) -> int:
-    """Serves actions until a signal comes; returns the exit code, 128 and the number of the signal.
+    """Serve actions until a signal comes; return the exit code, 128 plus the number of the signal.
 
-    Raises MissionError where ROS 2 is not there (BT100, BT110), or where an action cannot run (BT080, BT104 to BT106).
+    Raises MissionError without ROS 2 (BT100, BT110), or if an action can't run (BT080, BT104 to BT106).
     """
     over = platform_of(options)
     if over == "actions":
@@ -68,7 +67,7 @@ def serve(options: argparse.Namespace) -> int:
         options.refuse("--sim-time is for --robot ros")
     vocabulary = world_vocabulary(options.keywords, options.world, options.language)
     try:
-        ids = chosen(options.only, servable(vocabulary, ros=over == "ros"), vocabulary)
+        ids = choose_actions(options.only, find_servable(vocabulary, ros=over == "ros"), vocabulary)
     except ValueError as problem:
         options.refuse(str(problem))
     require_ros("std_srvs")
@@ -80,7 +79,7 @@ def serve(options: argparse.Namespace) -> int:
 
 
 def _check(connection: Connection, ids: Sequence[str], vocabulary: Lexicon) -> None:
-    """Reports what the robot lacks. Raises MissionError where an action cannot be bound."""
+    """Report what the robot lacks. Raises MissionError if an action can't be bound."""
     everything = Tree(Node(SEQUENCE, tuple(Node(node_id) for node_id in ids)))
     survey = getattr(connection, "survey", None)  # of a ROS 2 robot
     for interface, (node, reason) in survey(everything, vocabulary).items() if survey is not None else ():
@@ -88,7 +87,7 @@ def _check(connection: Connection, ids: Sequence[str], vocabulary: Lexicon) -> N
             user = f", which {node.id} needs" if node is not None else ""
             show(f"btlang serve-actions: no {interface.name}{user}: {reason}", stream=sys.stderr)
     body = connection.robot.body
-    for part, node in lacking(body, everything, vocabulary).items():
+    for part, node in find_missing_parts(body, everything, vocabulary).items():
         show(f"btlang serve-actions: the robot '{body.name}' has no {part}, which {node.id} needs", stream=sys.stderr)
     for node_id in ids:
         try:
@@ -100,7 +99,7 @@ def _check(connection: Connection, ids: Sequence[str], vocabulary: Lexicon) -> N
 
 def _spin(connection: Connection, ids: Sequence[str], vocabulary: Lexicon, options: argparse.Namespace) -> int:
     from btlang.printer.phrase import phrase_of
-    from btlang.ros.ending import ending_signals
+    from btlang.ros.command import keep_ending_signals
     from btlang.ros.node import SpunNode
     from btlang.ros.serving.goal_executor import GoalExecutor
     from btlang.ros.serving.server import serve_actions
@@ -121,7 +120,7 @@ def _spin(connection: Connection, ids: Sequence[str], vocabulary: Lexicon, optio
         executor, bus=bus, robot=connection.robot, rate=options.rate,
         speed=1.0 if options.speed == "real" else options.speed, controls=controls, pace=connection.pace,
     )  # fmt: skip
-    with ending_signals() as came, emergency_signal(controls.emergency_stop, controls.disable):
+    with keep_ending_signals() as came, emergency_signal(controls.emergency_stop, controls.disable):
         came.on_arrival = controls.stop
         spun = SpunNode(options.name, namespace=options.namespace, use_sim_time=options.sim_time)
         try:

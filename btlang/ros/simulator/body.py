@@ -16,12 +16,11 @@ from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory
 
 from btlang.robots.robot import Hand, RobotError
-from btlang.robots.simulated import SimulatedRobot
-from btlang.ros.joint_states import on_wire
+from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.ros.node import LATCHED
-from btlang.ros.simulator.call_queue import CallQueue
-from btlang.ros.simulator.publishing import COMMANDS, Every, Latched, Moment
-from btlang.ros.speech import LANGUAGE
+from btlang.ros.robot.joints import on_wire
+from btlang.ros.robot.speech import LANGUAGE
+from btlang.ros.simulator.shared import COMMANDS, CallQueue, LatchedPublisher, Moment, PeriodicPublisher
 from btlang.text.output import show
 
 TYPE_CHECKING = False
@@ -34,8 +33,8 @@ _EXACT = 1e-6
 _JOINTS, _SMOOTH_JOINTS = 20, 50  # states of them a second
 
 
-class Body:
-    """Moves joints, hands and voice as topics and services say. A `player` moves joints along whole trajectories."""
+class BodyTopics:
+    """The joints, hands and voice. A `player` moves joints along whole trajectories."""
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue, player: JointPlayer | None) -> None:
         self._robot, self._player, self._logger = robot, player, node.get_logger()
@@ -45,9 +44,9 @@ class Body:
         self._si = {joint.name: joint.si for joint in robot.body.joints}
         hands = [hand for hand in _HANDS if robot.body.hand(hand) is not None]
         self._joints = node.create_publisher(JointState, "joint_states", COMMANDS)
-        self._joints_due = Every(_JOINTS if player is None else _SMOOTH_JOINTS)
-        self._speaking = Latched(node, Bool, "speaking", robot.speaking)
-        self._holding = {hand: Latched(node, String, f"{hand}_hand/holding", "") for hand in hands}
+        self._joints_due = PeriodicPublisher(_JOINTS if player is None else _SMOOTH_JOINTS)
+        self._speaking = LatchedPublisher(node, Bool, "speaking", robot.speaking)
+        self._holding = {hand: LatchedPublisher(node, String, f"{hand}_hand/holding", "") for hand in hands}
         for hand in hands:
             node.create_service(SetBool, f"{hand}_hand/close", partial(self._close, hand))
         for kind, topic, act in (
@@ -59,7 +58,7 @@ class Body:
         node.create_subscription(String, LANGUAGE, partial(self._hand_over, self._speak_in), LATCHED)
 
     def publish(self, now: Moment) -> None:
-        """Publishes the state of joints, hands and voice."""
+        """Publish the state of joints, hands and voice."""
         self._stepped = monotonic()
         self._speaking.set(self._speaks)
         for hand, topic in self._holding.items():
@@ -84,7 +83,7 @@ class Body:
         return response
 
     def _turn(self, hand: Hand, closes: bool) -> str | None:
-        """Closes or opens a hand; the name of what it took or put down. Raises RobotError."""
+        """Close or open a hand; return the name of what it took or put down. Raises RobotError."""
         if closes:
             self._robot.grasp(hand)
             return self._robot.holding(hand)
@@ -93,8 +92,8 @@ class Body:
         return held
 
     def _move(self, message: JointTrajectory) -> None:
-        """Points with velocities are played. Else the last point counts, and how fast is up to the joints. No point at
-        all: they stay where they are.
+        """Play points with velocities. Otherwise only the last point counts; without points, joints stay where they
+        are.
         """
         try:
             if self._player is not None and any(len(point.velocities) for point in message.points):

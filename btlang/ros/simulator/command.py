@@ -8,13 +8,12 @@ import sys
 from time import monotonic
 
 from btlang.arguments import between, real_speed
-from btlang.robots.body import Body
-from btlang.robots.options import add_world
+from btlang.robots.bodies.body import Body
+from btlang.robots.platforms import add_world
 from btlang.robots.registry import runs_on
-from btlang.robots.world import World
-from btlang.robots.world_problem import read_world
-from btlang.ros.command import add_body_options, add_namespace
-from btlang.ros.ending import EndingSignals, ending_signals
+from btlang.robots.worlds.world import World
+from btlang.robots.worlds.world_file import read_world
+from btlang.ros.command import EndingSignals, add_body_options, add_namespace, keep_ending_signals
 from btlang.run.emergency import emergency_signal
 from btlang.run.limits import RATES
 from btlang.text.output import show
@@ -33,7 +32,7 @@ _UNCOMPILED = (
 
 
 def add_simulator_options(parser: argparse.ArgumentParser) -> None:
-    """The options of `btc sim-ros`."""
+    """Add the options of `btc sim-ros`."""
     add_world(parser)
     add_body_options(parser, ("simulated",))
     parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
@@ -51,13 +50,13 @@ def add_simulator_options(parser: argparse.ArgumentParser) -> None:
 
 
 def serve(options: argparse.Namespace) -> int:
-    """Steps the simulation `rate` times a simulated second, `speed` simulated seconds a second, until a signal comes.
+    """Step the simulation `rate` times a simulated second, `speed` simulated seconds a second, until a signal comes.
 
-    Returns the exit code, 128 and the number of the signal. Raises MissionError (BT070, BT071, BT100).
+    Returns the exit code, 128 plus the number of the signal. Raises MissionError (BT070, BT071, BT100).
     """
     body = runs_on(options.robot, "simulated")[0]
     world = read_world(options.world, body)
-    with ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
+    with keep_ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
         return _simulate(options, body, world, came)
 
 

@@ -1,4 +1,4 @@
-"""The action servers /dock_robot and /undock_robot: drive into the dock and out of it, as the one of Nav2 does."""
+"""The action servers /dock_robot and /undock_robot: drive into the dock and out of it, as those of Nav2 do."""
 
 from __future__ import annotations
 
@@ -10,20 +10,16 @@ from rclpy.action import ActionServer, CancelResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 
-from btlang.actions.docking import APPROACH, CONNECTION, RETRY, STAGING, enter_dock
 from btlang.actions.motion import Steps
-from btlang.actions.power import undock
+from btlang.actions.power import APPROACH, CONNECTION, RETRY, STAGING, enter_dock, undock
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.station import Station
+from btlang.robots.robot import Station
+from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.ros.lease import Leases
-from btlang.ros.poses import pose_of
-from btlang.ros.simulator.accepted_goal import AcceptedGoal
-from btlang.ros.simulator.call_queue import CallQueue
+from btlang.ros.messages import duration, pose_of
+from btlang.ros.simulator.base import BaseTopics
 from btlang.ros.simulator.navigation import refusal
-from btlang.ros.simulator.publishing import Moment
-from btlang.ros.simulator.wheels import Wheels
-from btlang.ros.times import duration
+from btlang.ros.simulator.shared import AcceptedGoal, CallQueue, Moment
 
 _NEAR = 0.5  # metres from the dock at which a goal means it
 _STATES = {
@@ -40,8 +36,8 @@ _CODES = {
 }
 
 
-def _wanted(request: Any, stations: list[Station]) -> Station:
-    """The one that a request means: by its name, else the nearest to a pose."""
+def _find_dock(request: Any, stations: list[Station]) -> Station:
+    """Return the dock that a request means: by its name, or the nearest to a pose."""
     if request.use_dock_id:
         return next(station for station in stations if station.name == request.dock_id)
     pose = pose_of(request.dock_pose.pose)
@@ -49,7 +45,7 @@ def _wanted(request: Any, stations: list[Station]) -> Station:
 
 
 class DockingGoal(AcceptedGoal):
-    """A goal to dock or to leave the dock. `code` is that of Nav2 for its failure."""
+    """A goal to dock or to undock. `code` is Nav2's code of its failure."""
 
     def __init__(self, node: Node, handle: ServerGoalHandle, docks: bool) -> None:
         super().__init__(node, handle)
@@ -60,14 +56,14 @@ class DockingGoal(AcceptedGoal):
         self.retries = 0
 
     def fail(self, failure: str, code: int) -> None:
-        """It ends, where it hasn't ended before: the robot brakes."""
+        """End the goal, unless it has ended: the robot brakes."""
         if self.failure is None:
             self.failure, self.code = failure, code
         if self.steps is not None:
             self.steps.close()
 
     def result(self) -> Any:
-        """For its client."""
+        """Return the result for the client."""
         if not self.docks:
             return UndockRobot.Result(success=self.failure is None, error_code=self.code, error_msg=self.failure or "")
         return DockRobot.Result(
@@ -75,10 +71,10 @@ class DockingGoal(AcceptedGoal):
         )
 
 
-class Docking:
-    """One goal at a time; a new one takes the place of the one under way, which is aborted."""
+class DockingServer:
+    """One goal at a time; a new one replaces the current one, which is aborted."""
 
-    def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue, wheels: Wheels) -> None:
+    def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue, wheels: BaseTopics) -> None:
         self._node, self._robot, self._calls, self._wheels = node, robot, calls, wheels
         self._goal: DockingGoal | None = None
         self._leases = Leases(node)
@@ -86,7 +82,7 @@ class Docking:
             ActionServer(node, kind, name, self._execute(docks), cancel_callback=lambda goal: CancelResponse.ACCEPT)
 
     def publish(self, now: Moment) -> None:
-        """Goes on with the goal under way, and publishes the stages of docking."""
+        """Go on with the current goal, and publish the stages of docking."""
         goal = self._goal
         if goal is None or goal.steps is None:
             return
@@ -108,10 +104,10 @@ class Docking:
 
     def _execute(self, docks: bool) -> Callable[[ServerGoalHandle], Any]:
         async def execute(handle: ServerGoalHandle) -> Any:
-            """Runs in the thread of the executor."""
+            """Run a goal, in the thread of the executor."""
             goal = DockingGoal(self._node, handle, docks)
             self._calls.post(lambda: self._begin(goal))
-            await goal.finished(self._leases)
+            await goal.wait_for_end(self._leases)
             return goal.result()
 
         return execute
@@ -131,11 +127,11 @@ class Docking:
 
     def _dock(self, goal: DockingGoal) -> Steps:
         if not self._robot.docked:
-            station = _wanted(goal.handle.request, self._robot.stations)
+            station = _find_dock(goal.handle.request, self._robot.stations)
             yield from enter_dock(self._robot, station, lambda stage: self._publish_feedback(goal, stage))
 
     def _refusal(self, request: Any) -> tuple[str, int] | None:
-        """Why it can't dock as it is asked to, with a code."""
+        """Return why it can't dock as requested, with a code."""
         names = [dock.name for dock in self._robot.world.all_docks]
         if not names:
             return "there is no dock in this world", DockRobot.Result.DOCK_NOT_IN_DB
@@ -145,7 +141,7 @@ class Docking:
         pose = pose_of(request.dock_pose.pose)
         if not request.use_dock_id and (wrong := refusal(request.dock_pose.header.frame_id, pose)):
             return wrong, DockRobot.Result.DOCK_NOT_VALID
-        station, at = _wanted(request, self._robot.stations), self._robot.pose
+        station, at = _find_dock(request, self._robot.stations), self._robot.pose
         if not request.use_dock_id and pose.distance_to((station.spot.x, station.spot.y)) > _NEAR:
             return f"there is no dock at ({pose.x:.2f}, {pose.y:.2f})", DockRobot.Result.FAILED_TO_DETECT_DOCK
         if not request.navigate_to_staging_pose and station.staging.distance_to((at.x, at.y)) > _NEAR:

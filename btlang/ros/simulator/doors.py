@@ -9,20 +9,19 @@ from rclpy.node import Node
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool
 
-from btlang.robots.simulated import SimulatedRobot
-from btlang.ros.doors import door_services, state_topic, switch_services
+from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.ros.node import LATCHED
-from btlang.ros.simulator.call_queue import CallQueue
-from btlang.ros.simulator.publishing import Latched, Moment
-from btlang.ros.zones import zone_topics
+from btlang.ros.robot.places import door_services, state_topic, switch_services
+from btlang.ros.robot.zones import zone_topics
+from btlang.ros.simulator.shared import CallQueue, LatchedPublisher, Moment
 
 
-class Doors:
-    """Moves what is within reach; zones are closed and opened as the mission says."""
+class DoorTopics:
+    """Doors and switches within reach, and zones, which are closed and opened as the mission requests."""
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot
-        self._states: list[tuple[Latched, Callable[[], bool]]] = []
+        self._states: list[tuple[LatchedPublisher, Callable[[], bool]]] = []
         for name, service in door_services(robot.world).items():
             self._serve(node, calls, service, partial(robot.move_door, name), partial(robot.is_open, name))
         for name, service in switch_services(robot.world).items():
@@ -33,7 +32,7 @@ class Doors:
             )
 
     def publish(self, now: Moment) -> None:
-        """Publishes what has changed."""
+        """Publish the states that have changed."""
         for topic, state in self._states:
             topic.set(state())
 
@@ -45,7 +44,7 @@ class Doors:
             return response
 
         node.create_service(SetBool, service, answer)
-        self._states.append((Latched(node, Bool, state_topic(service), state()), state))
+        self._states.append((LatchedPublisher(node, Bool, state_topic(service), state()), state))
 
     def _set_zone(self, name: str, closed: bool) -> None:
         zones = self._robot.zones

@@ -1,4 +1,4 @@
-"""The action server /navigate_to_pose: drives to a pose, around obstacles, as fast as /speed_limit allows, on /plan."""
+"""The action server /navigate_to_pose: drives to a pose on /plan, around obstacles, no faster than /speed_limit."""
 
 from __future__ import annotations
 
@@ -13,47 +13,44 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 
 from btlang.robots.geometry import Point, Pose
-from btlang.robots.navigation import NavigationGoal
-from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.simulation.navigation import NavigationGoal
+from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.ros.lease import Leases
-from btlang.ros.poses import MAP, ODOM, pose_message, pose_of, stamped_pose
-from btlang.ros.simulator.accepted_goal import AcceptedGoal
-from btlang.ros.simulator.call_queue import CallQueue
-from btlang.ros.simulator.publishing import COMMANDS, Every, Moment
-from btlang.ros.simulator.wheels import Wheels
-from btlang.ros.times import duration
-from btlang.ros.zones import SPEED_LIMIT
+from btlang.ros.messages import MAP, ODOM, duration, pose_message, pose_of, stamped_pose
+from btlang.ros.robot.zones import SPEED_LIMIT
+from btlang.ros.simulator.base import BaseTopics
+from btlang.ros.simulator.shared import COMMANDS, AcceptedGoal, CallQueue, Moment, PeriodicPublisher
 
 FAILED = 9000
-"""The error code of all that can go wrong, as of Nav2 for what it has no own code for; `error_msg` says what it is."""
+"""Nav2's error code for all failures without a code of their own; `error_msg` has the reason."""
 
 
-class Ride(AcceptedGoal):
-    """A goal to go to a pose; one that no robot can have has failed from the beginning."""
+class AcceptedNavigation(AcceptedGoal):
+    """A goal to navigate to a pose; one that no robot can reach fails at once."""
 
     def __init__(self, node: Node, handle: ServerGoalHandle) -> None:
         super().__init__(node, handle)
         self.pose = pose_of(handle.request.pose.pose)
         self.failure = refusal(handle.request.pose.header.frame_id, self.pose)
         self.navigation: NavigationGoal | None = None
-        self.feedback = Every(5)
+        self.feedback = PeriodicPublisher(5)
 
     def end(self) -> None:
-        """It is over, as its navigation is."""
+        """End the goal with its navigation."""
         if self.navigation is not None:
             self.failure = self.navigation.failure
         super().end()
 
 
-class Navigation:
-    """One goal at a time; a new one takes the place of the one under way, which is aborted."""
+class NavigationServer:
+    """One goal at a time; a new one replaces the current one, which is aborted."""
 
-    def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue, wheels: Wheels) -> None:
+    def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue, wheels: BaseTopics) -> None:
         self._node = node
         self._robot = robot
         self._calls = calls
         self._wheels = wheels
-        self._ride: Ride | None = None
+        self._ride: AcceptedNavigation | None = None
         self._plan = node.create_publisher(Path, "plan", COMMANDS)
         self._way: Sequence[Point] = ()
         self._leases = Leases(node)
@@ -69,7 +66,7 @@ class Navigation:
         )
 
     def publish(self, now: Moment) -> None:
-        """Publishes the way, how far the goal has come, or that it is over."""
+        """Publish the plan, the progress of the goal, or its end."""
         self._publish_plan(now)
         ride = self._ride
         if ride is None or ride.navigation is None:
@@ -83,7 +80,7 @@ class Navigation:
             self._publish_feedback(ride, ride.navigation, now)
 
     def _publish_plan(self, now: Moment) -> None:
-        """Each way once."""
+        """Publish each plan once."""
         way = self._robot.way
         if not way or way is self._way:
             return
@@ -94,20 +91,20 @@ class Navigation:
         self._plan.publish(plan)
 
     async def _execute(self, handle: ServerGoalHandle) -> NavigateToPose.Result:
-        """Runs in the thread of the executor."""
-        ride = Ride(self._node, handle)
+        """Run a goal, in the thread of the executor."""
+        ride = AcceptedNavigation(self._node, handle)
         self._calls.post(lambda: self._begin(ride))
-        await ride.finished(self._leases)
+        await ride.wait_for_end(self._leases)
         if ride.failure is None:
             return NavigateToPose.Result()
         return NavigateToPose.Result(error_code=FAILED, error_msg=ride.failure)
 
     def _limit(self, limit: SpeedLimit) -> None:
-        """As in Nav2: a percentage, or metres a second; 0 for no limit."""
+        """Set the speed limit as in Nav2: a percentage, or metres a second; 0 for no limit."""
         share = limit.speed_limit / (100.0 if limit.percentage else self._robot.normal_speed)
         self._robot.pace = min(1.0, share) if share > 0.0 else 1.0
 
-    def _begin(self, ride: Ride) -> None:
+    def _begin(self, ride: AcceptedNavigation) -> None:
         if ride.failure is not None:
             ride.end()
             return
@@ -117,7 +114,7 @@ class Navigation:
             self._ride.end()  # the new goal has ended its own
         self._ride = ride
 
-    def _publish_feedback(self, ride: Ride, goal: NavigationGoal, now: Moment) -> None:
+    def _publish_feedback(self, ride: AcceptedNavigation, goal: NavigationGoal, now: Moment) -> None:
         left = goal.left
         feedback = NavigateToPose.Feedback(distance_remaining=left)
         feedback.current_pose.header.stamp, feedback.current_pose.header.frame_id = now.stamp, MAP
@@ -128,7 +125,7 @@ class Navigation:
 
 
 def refusal(frame: str, pose: Pose) -> str | None:
-    """Why a pose in a frame can't be that of a goal; None where it can."""
+    """Return why a pose in a frame can't be a goal; None if it can."""
     if frame not in (MAP, ODOM, ""):
         return f"the goal is in the frame {frame}, and the robot knows only {MAP} and {ODOM}"
     if not all(map(isfinite, (pose.x, pose.y, pose.heading))):

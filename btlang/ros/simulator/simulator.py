@@ -12,43 +12,40 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
-from btlang.robots import body as bodies
+from btlang.robots.bodies import body as bodies
 from btlang.robots.parts import JointsPart, Parts
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.simulated_parts import simulated_parts
-from btlang.robots.world import World
+from btlang.robots.simulation.parts import make_simulated_parts
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world import World
 from btlang.ros.available import optional_interface
+from btlang.ros.messages import stamp
 from btlang.ros.node import SpunNode
-from btlang.ros.perception import SIGHTINGS_TYPE
-from btlang.ros.simulator.body import Body
-from btlang.ros.simulator.call_queue import CallQueue
-from btlang.ros.simulator.doors import Doors
-from btlang.ros.simulator.publishing import COMMANDS, Moment
-from btlang.ros.simulator.sensors import Sensors
-from btlang.ros.simulator.wheels import Wheels
-from btlang.ros.times import stamp
+from btlang.ros.robot.sensors import SIGHTINGS_TYPE
+from btlang.ros.simulator.base import BaseTopics, SensorTopics
+from btlang.ros.simulator.body import BodyTopics
+from btlang.ros.simulator.doors import DoorTopics
+from btlang.ros.simulator.shared import COMMANDS, CallQueue, Moment
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.motion.smooth_joints import SmoothJoints
-    from btlang.ros.simulator.hearing import Hearing
+    from btlang.ros.simulator.people import HearingTopics
 
 
-class Part(Protocol):
+class SimulatorPart(Protocol):
     """Some topics, services and actions of the robot."""
 
     def publish(self, now: Moment) -> None:
-        """Publishes their state after the step."""
+        """Publish the state after the step."""
 
 
 class Simulator:
-    """A node, `node`, with the simulated robot of a world. To be used with `with`.
+    """A node, `node`, with the simulated robot of a world. Use it with `with`.
 
-    `work` and `step` are for one thread, in turn.
-    With `gives_clock` the simulated time is published on /clock and stamps are of that time, else of the system's.
-    `show` gets what the robot says and prints, a line at a time. Without nav2_msgs nothing is offered that navigates,
-    without btlang's interfaces nothing that hears or sees. What people do by chance follows from `seed`, by default
-    that of the world.
+    `work` and `step` are for one thread, in turn. With `gives_clock` the simulated time is published on /clock and
+    stamps are of that time, otherwise of the system's. `show` gets what the robot says and prints, a line at a time.
+    Without nav2_msgs there is no navigation, without btlang's interfaces no hearing or sight. What people do by chance
+    follows from `seed`, by default that of the world.
     """
 
     def __init__(
@@ -64,7 +61,7 @@ class Simulator:
         joints: list[JointsPart] = []
 
         def make_parts(*of: Any) -> Parts:
-            made = simulated_parts(*of)
+            made = make_simulated_parts(*of)
             joints.append(made.joints)
             return made
 
@@ -76,50 +73,49 @@ class Simulator:
         self._calls = CallQueue()
         self._spun = SpunNode("btlang_sim", namespace=namespace)
         self.node = node = self._spun.node
-        self._wheels = Wheels(node, self.robot, self._calls)
+        self._wheels = BaseTopics(node, self.robot, self._calls)
         self._player = None
         if self.robot.body.is_smooth:
             from btlang.ros.simulator.joint_player import JointPlayer  # brings ruckig
 
             self._player = JointPlayer(self.robot.body, cast("SmoothJoints", joints[0]), self._clocks)
-        self._parts: list[Part] = [
+        self._parts: list[SimulatorPart] = [
             self._wheels,
-            Sensors(node, self.robot, self._calls),
-            Body(node, self.robot, self._calls, self._player),
-            Doors(node, self.robot, self._calls),
+            SensorTopics(node, self.robot, self._calls),
+            BodyTopics(node, self.robot, self._calls, self._player),
+            DoorTopics(node, self.robot, self._calls),
         ]
-        self._hearing: Hearing | None = None
+        self._hearing: HearingTopics | None = None
         if can_meet_people():
-            from btlang.ros.simulator.hearing import Hearing
-            from btlang.ros.simulator.seeing import Seeing
+            from btlang.ros.simulator.people import HearingTopics, SightTopics
 
-            self._hearing = Hearing(node, self.robot, self._calls)
-            self._parts += [self._hearing, Seeing(node, self.robot, self._calls)]
+            self._hearing = HearingTopics(node, self.robot, self._calls)
+            self._parts += [self._hearing, SightTopics(node, self.robot, self._calls)]
         if can_navigate() and self.robot.body.has("navigation"):
-            from btlang.ros.simulator.navigation import Navigation
+            from btlang.ros.simulator.navigation import NavigationServer
 
-            self._parts.append(Navigation(node, self.robot, self._calls, self._wheels))
+            self._parts.append(NavigationServer(node, self.robot, self._calls, self._wheels))
             if self.robot.body.has("docking"):
                 with suppress(ImportError):  # Nav2 has had docking since Jazzy
-                    from btlang.ros.simulator.docking import Docking
+                    from btlang.ros.simulator.docking import DockingServer
 
-                    self._parts.append(Docking(node, self.robot, self._calls, self._wheels))
+                    self._parts.append(DockingServer(node, self.robot, self._calls, self._wheels))
         self._stepped = self._system_time()
         self._clock = node.create_publisher(Clock, "/clock", QoSProfile(depth=1)) if gives_clock else None
         node.create_service(Trigger, "stop", self._stop)
-        node.create_subscription(String, "call", self._called, COMMANDS)
+        node.create_subscription(String, "call", self._on_call, COMMANDS)
         self.robot.on_event = self._take_event
 
     def work(self, seconds: float) -> None:
-        """Does what the topics, services and actions ask for, within so many seconds of real time or until `wake`."""
+        """Do what topics, services and actions ask for, for so many seconds of real time or until `wake`."""
         self._calls.work(seconds)
 
     def wake(self) -> None:
-        """Ends `work`, from any thread and from handlers of signals."""
+        """End `work`, from any thread and from handlers of signals."""
         self._calls.wake()
 
     def step(self, seconds: float) -> None:
-        """Lets simulated time pass and publishes what has become of the robot."""
+        """Let simulated time pass and publish the state of the robot."""
         self._wheels.watch()
         if self._player is not None:
             self._player.watch()
@@ -149,11 +145,11 @@ class Simulator:
         return float(self.node.get_clock().now().nanoseconds) * 1e-9
 
     def _clocks(self) -> list[float]:
-        """Seconds of what nodes may go by, at the latest step."""
+        """Return the seconds of all clocks that nodes may use, at the latest step."""
         return [self._stepped, *([self.robot.time] if self._clock is not None else [])]
 
     def _stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """In the thread of the executor, at once: it waits for no step. What is asked for from now on counts again."""
+        """Stop at once, in the thread of the executor, without waiting for a step. Later requests count again."""
         self.robot.stop()
         self._calls.post(self.robot.enable)
         response.success = True
@@ -167,15 +163,15 @@ class Simulator:
         elif kind == "hear" and self._hearing is not None:
             self._hearing.heard(data["text"], data["who"])
 
-    def _called(self, message: String) -> None:
+    def _on_call(self, message: String) -> None:
         self._calls.post(lambda: self._show(f'calls "{message.data}"'))
 
 
 def can_navigate() -> bool:
-    """Whether the interfaces of Nav2 are installed."""
+    """Return whether the interfaces of Nav2 are installed."""
     return find_spec("nav2_msgs") is not None
 
 
 def can_meet_people() -> bool:
-    """Whether btlang's interfaces are compiled."""
+    """Return whether btlang's interfaces are compiled."""
     return optional_interface(SIGHTINGS_TYPE) is not None

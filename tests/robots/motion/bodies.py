@@ -7,12 +7,12 @@ from pathlib import Path
 
 from numpy.random import Generator
 
-from btlang.robots.body import Body
-from btlang.robots.body_file import load_body
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.body_file import load_body
+from btlang.robots.bodies.gesture import Gesture, KeyFrame
 from btlang.robots.geometry import Pose
-from btlang.robots.gesture import Gesture, KeyFrame
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import World
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world import World
 
 GUIDE = Path(__file__).parents[3] / "examples/guide/robot.toml"
 _BACK = {"right shoulder lift": 0, "right shoulder spread": 0, "right arm turn": 0, "right elbow": 0}

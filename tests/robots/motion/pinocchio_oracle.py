@@ -7,9 +7,9 @@ from math import radians
 import numpy as np
 import pinocchio as pin
 
-from btlang.robots.body import Body
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.urdf import ROOT_LINK, urdf
 from btlang.robots.motion.kinematics import Array
-from btlang.robots.motion.urdf import BASE, urdf
 
 
 class Pinocchio:
@@ -29,7 +29,7 @@ class Pinocchio:
         for index, shape in enumerate(self._geometry.geometryObjects):
             shapes.setdefault(self._model.frames[shape.parentFrame].name, []).append(index)
         for pair in body.forbidden:
-            first, second = (shapes[link.replace(" ", "_") or BASE] for link in pair)
+            first, second = (shapes[link.replace(" ", "_") or ROOT_LINK] for link in pair)
             for one in first:
                 for other in second:
                     self._geometry.addCollisionPair(pin.CollisionPair(one, other))
@@ -39,7 +39,7 @@ class Pinocchio:
     def origin(self, link: str, configuration: Array) -> tuple[Array, Array]:
         """How a link is turned, and where it is."""
         pin.framesForwardKinematics(self._model, self._data, self._turned(configuration))
-        found = self._data.oMf[self._model.getFrameId(link.replace(" ", "_") or BASE)]
+        found = self._data.oMf[self._model.getFrameId(link.replace(" ", "_") or ROOT_LINK)]
         return found.rotation, found.translation
 
     def distances(self, configuration: Array) -> dict[tuple[str, str], float]:

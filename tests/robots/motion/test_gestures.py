@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from btlang.robots.gesture import Gesture, KeyFrame
+from btlang.robots.bodies.gesture import Gesture, KeyFrame
 from btlang.robots.robot import RobotError
-from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.simulation.robot import SimulatedRobot
 from tests.robots.motion.bodies import guide, robot
 
 
@@ -148,7 +148,7 @@ STEPPED = Gesture("salute", (KeyFrame(1.0, {"right arm lift": 60}, 0.5), KeyFram
 
 
 def test_bodies_without_acceleration_have_gestures_too() -> None:
-    from btlang.robots.body_file import standard_body
+    from btlang.robots.bodies.body_file import standard_body
 
     moved = robot(body=standard_body().replace(gestures={"salute": STEPPED}))
     salute = moved.gesture("salute", stroke_at=1.5)

@@ -8,14 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from btlang.robots.body_file import standard_body
+from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.geometry import Pose
 from btlang.robots.motion.guard.guard import Cause, Guard, Verdict
-from btlang.robots.motion.guard.joints import JointProgress
-from btlang.robots.motion.guard.readings import ContactReading, OdometryReading, RangeReading, ScanReading
-from btlang.robots.motion.guard.stamps import StampCheck
+from btlang.robots.motion.guard.readings import ContactReading, OdometryReading, RangeReading, ScanReading, StampCheck
+from btlang.robots.motion.guard.tracking import JointProgress
 from btlang.robots.robot import RobotError
-from btlang.robots.world import Zone
+from btlang.robots.worlds.world import Zone
 from btlang.robots.zones import Zones
 
 BODY = standard_body()

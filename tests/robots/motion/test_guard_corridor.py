@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 
 from btlang.robots.geometry import Pose
 from btlang.robots.motion.guard.corridor import free_way, is_covered
-from btlang.robots.obstacles import Obstacles
-from btlang.robots.scan import Scanner
-from btlang.robots.world import Box, Person, World
+from btlang.robots.worlds.obstacles import Obstacles
+from btlang.robots.worlds.scan import Scanner
+from btlang.robots.worlds.world import FurnitureBox, Person, World
 
 ROOM = World(
     start=Pose(2.0, 2.0, 0.0),
     walls=(((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0), (0.0, 0.0)),),
-    boxes=(Box(3.2, 3.2, 0.6, 0.4),),
+    boxes=(FurnitureBox(3.2, 3.2, 0.6, 0.4),),
     people=(Person("Alice", 0.8, 3.0, 0.25),),
 )
 RADIUS = 0.2

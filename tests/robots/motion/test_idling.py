@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from btlang.components.device_robot import connect_devices
-from btlang.robots.body import Body, Breathing, Idle
+from btlang.robots.bodies.body import Body, Breathing, Idle
 from btlang.robots.geometry import Pose
-from btlang.robots.motion.course import PERIOD, Limits
+from btlang.robots.motion.course import PERIOD, JointLimits
 from btlang.robots.platforms import ALL
 from btlang.robots.robot import RobotError
-from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import Person, World
+from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.world import Person, World
 from tests.profiles import amount
 from tests.robots.motion.bodies import guide, random_gesture, robot
 from tests.robots.motion.test_storms import check_limits
@@ -204,6 +204,6 @@ def test_storms_over_idle_joints(seed: int) -> None:
             positions.append([moved.joint(joint.name) for joint in body.joints])
             if halted:
                 moved.enable()
-    check_limits(np.array(positions), Limits.of(body.joints), seed)
+    check_limits(np.array(positions), JointLimits.of(body.joints), seed)
     for position in positions[::2]:
         assert not oracle.collides(np.array(position)), (seed, position)

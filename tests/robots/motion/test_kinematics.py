@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from btlang.robots.body import Capsule
-from btlang.robots.motion.braking import brake
-from btlang.robots.motion.collisions import Collisions
-from btlang.robots.motion.course import Limits, State
-from btlang.robots.motion.kinematics import Kinematics
+from btlang.robots.bodies.body import Capsule
+from btlang.robots.motion.course import JointLimits, MotionState, brake
+from btlang.robots.motion.kinematics import Collisions, Kinematics
 from tests.profiles import amount
 from tests.robots.motion.bodies import guide
 
@@ -21,7 +19,7 @@ from tests.robots.motion.pinocchio_oracle import Pinocchio
 @pytest.mark.long
 def test_links_are_where_pinocchio_has_them() -> None:
     body, count = guide(), amount(1000, 20_000)
-    limits, oracle = Limits.of(body.joints), Pinocchio(body)
+    limits, oracle = JointLimits.of(body.joints), Pinocchio(body)
     configurations = np.random.default_rng(1).uniform(limits.low, limits.high, (count, len(body.joints)))
     frames = Kinematics(body).frames(configurations)
     for index in range(count):
@@ -34,7 +32,7 @@ def test_links_are_where_pinocchio_has_them() -> None:
 @pytest.mark.long
 def test_links_are_as_far_apart_as_coal_has_them() -> None:
     body, count = guide(), amount(1000, 20_000)
-    limits, oracle = Limits.of(body.joints), Pinocchio(body)
+    limits, oracle = JointLimits.of(body.joints), Pinocchio(body)
     configurations = np.random.default_rng(2).uniform(limits.low, limits.high, (count, len(body.joints)))
     collisions = Collisions(body, Kinematics(body))
     ours, touching = collisions.distances(configurations), 0
@@ -49,7 +47,7 @@ def test_links_are_as_far_apart_as_coal_has_them() -> None:
 
 def test_what_is_far_is_left_out_and_what_is_near_is_exact() -> None:
     body = guide()
-    limits = Limits.of(body.joints)
+    limits = JointLimits.of(body.joints)
     configurations = np.random.default_rng(3).uniform(limits.low, limits.high, (500, len(body.joints)))
     collisions = Collisions(body, Kinematics(body))
     exact, near = collisions.distances(configurations), collisions.distances(configurations, 0.01)
@@ -77,11 +75,11 @@ def test_the_way_to_rest_is_that_of_ruckig() -> None:
     import ruckig
 
     random, count = np.random.default_rng(4), 500
-    limits = Limits.of(guide().joints[-1:])
+    limits = JointLimits.of(guide().joints[-1:])
     most, jerk, speed = (float(values[0]) for values in (limits.acceleration, limits.jerk, limits.speed))
     acceleration = random.uniform(-most, most, count)
     velocity = random.uniform(-1.0, 1.0, count) * (speed - acceleration**2 / (2 * jerk))
-    ours = brake(State(np.zeros((count, 1)), velocity[:, None], acceleration[:, None]), limits)
+    ours = brake(MotionState(np.zeros((count, 1)), velocity[:, None], acceleration[:, None]), limits)
     for index in range(count):
         wanted, found = ruckig.InputParameter(1), ruckig.Trajectory(1)
         wanted.control_interface = ruckig.ControlInterface.Velocity

@@ -6,10 +6,10 @@ from functools import cache
 
 import pytest
 
-from btlang.robots.body import Body
-from btlang.robots.body_file import load_body
-from btlang.robots.rehearsal import rehearse
-from btlang.robots.said_gestures import said_gesture
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.body_file import load_body
+from btlang.robots.preflight import said_gesture
+from btlang.robots.simulation.rehearsal import rehearse
 from btlang.speech.marks import read_marks
 from tests.robots.motion.bodies import GUIDE
 

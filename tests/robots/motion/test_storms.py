@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.random import Generator
 
-from btlang.robots.body import Body
-from btlang.robots.motion.course import PERIOD, Limits
+from btlang.robots.bodies.body import Body
+from btlang.robots.motion.course import PERIOD, JointLimits
 from btlang.robots.motion.kinematics import Array
 from btlang.robots.motion.smooth_joints import SmoothJoints
 from btlang.robots.robot import RobotError
@@ -38,7 +38,7 @@ def test_no_limit_is_passed_and_nothing_touched(seed: int) -> None:
         joints.step(PERIOD)
         positions.append(joints.timeline.state.position)
     assert not joints.moving, seed
-    check_limits(np.array(positions), Limits.of(body.joints), seed)
+    check_limits(np.array(positions), JointLimits.of(body.joints), seed)
     for position in positions[::_LOOKS]:
         assert not oracle.collides(position), (seed, position)
     assert refused < _EVENTS / 2
@@ -70,7 +70,7 @@ def _something(joints: SmoothJoints, body: Body, random: Generator) -> None:
         joints.freeze()
 
 
-def check_limits(positions: Array, limits: Limits, seed: int) -> None:
+def check_limits(positions: Array, limits: JointLimits, seed: int) -> None:
     """By differences, which are means over a moment, and so within the limits too."""
     assert (positions >= limits.low - 1e-3).all(), seed
     assert (positions <= limits.high + 1e-3).all(), seed

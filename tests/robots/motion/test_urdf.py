@@ -8,9 +8,8 @@ from pathlib import Path
 import pytest
 
 from btlang.cli import main
-from btlang.robots.body_file import BodyError, load_body
-from btlang.robots.motion.urdf import urdf
-from btlang.robots.motion.urdf_reader import read_urdf
+from btlang.robots.bodies.body_file import BodyError, load_body
+from btlang.robots.bodies.urdf import read_urdf, urdf
 from btlang.text.source import Source
 from tests.robots.motion.bodies import GUIDE, guide
 

@@ -33,7 +33,7 @@ from sensor_msgs.msg import BatteryState, JointState, LaserScan
 from std_msgs.msg import Bool, String
 from trajectory_msgs.msg import JointTrajectory
 
-from btlang.ros.times import stamp
+from btlang.ros.messages import stamp
 from tests.ros.peers.peer import serve, tell
 
 PERIOD = 0.02

@@ -19,7 +19,7 @@ from sensor_msgs.msg import JointState, LaserScan
 from std_msgs.msg import String
 from trajectory_msgs.msg import JointTrajectory
 
-from btlang.ros.times import stamp
+from btlang.ros.messages import stamp
 from tests.lies.lies import BY_NAME
 from tests.lies.scene import Scene
 from tests.ros.peers.peer import serve, tell

@@ -17,11 +17,10 @@ _GAP = 6  # degrees in a row that no beam covers; less hides nothing that matter
 
 
 def free_way(ranges: Array, direction: float, radius: float, view: float = 360.0) -> float:
-    """Metres that a robot of this radius can drive in a direction before it touches something; NaN where beams don't
-    cover that direction, inf where nothing is in range.
+    """Return the metres that a robot of this radius can drive in a direction until it touches something.
 
-    `ranges` are those of btlang.robots.motion.guard.readings.ScanReading, the direction is in degrees left of ahead.
-    The scanner looks `view` degrees wide around it.
+    NaN if beams don't cover that direction, inf if nothing is in range. `ranges` are those of ScanReading, the
+    direction is in degrees left of ahead. The scanner looks `view` degrees wide around it.
     """
     beams = ranges[_beams(round(direction) % 360)]
     seen = np.isfinite(beams)
@@ -36,7 +35,7 @@ def free_way(ranges: Array, direction: float, radius: float, view: float = 360.0
 
 
 def is_covered(ranges: Array, direction: float, view: float = 360.0) -> bool:
-    """Whether valid beams look in a direction, in degrees left of ahead, so that it can be clear."""
+    """Return whether valid beams look in a direction, in degrees left of ahead, so that it can be clear."""
     return _are_covered(ranges[_beams(round(direction) % 360)], view)
 
 

@@ -1,4 +1,4 @@
-"""Judges each velocity of a base before it is sent: what may be sent, and the one reason why it is less."""
+"""The guard of a base: it judges each velocity before it is sent, and gives one reason why it allows less."""
 
 from __future__ import annotations
 
@@ -7,10 +7,8 @@ from enum import Enum
 from math import copysign, cos, degrees, inf, isfinite, isnan, radians, sqrt
 
 from btlang.record import Record
-from btlang.robots.body import Body
+from btlang.robots.bodies.body import Body
 from btlang.robots.geometry import Pose, wrap
-from btlang.robots.motion.guard.odometry import STANDS, OdometryCheck
-from btlang.robots.motion.guard.people import WalkingPeople, safe_among
 from btlang.robots.motion.guard.readings import (
     ContactReading,
     ObstacleReading,
@@ -20,14 +18,15 @@ from btlang.robots.motion.guard.readings import (
     SensorReading,
     Sensors,
 )
-from btlang.robots.motion.guard.regions import Regions
+from btlang.robots.motion.guard.regions import Regions, WalkingPeople, safe_among
+from btlang.robots.motion.guard.tracking import STANDS, OdometryCheck
 from btlang.robots.robot import RobotError
 from btlang.robots.zones import Zones
 
 FASTEST, FASTEST_TURN = 20.0, degrees(30.0)
 """Metres and degrees a second that no robot exceeds."""
 FRESH = 0.6
-"""Seconds after which a reading says nothing about the way any more."""
+"""Seconds after which a reading doesn't count for driving any more."""
 _BLIND, _OFTEN = (
     0.3,
     0.25,
@@ -44,19 +43,19 @@ _STEP = 0.3  # metres between two looks at a sensor, after which nothing is know
 
 
 class Cause(Enum):
-    """What made the guard allow less."""
+    """The cause of a limit that the guard sets."""
 
     NONE, OBSTACLE, ZONE, SENSOR, ODOMETRY, PERSON = range(6)
 
 
 _PATIENCE = {Cause.NONE: inf, Cause.OBSTACLE: 1.0, Cause.ZONE: 1.0, Cause.SENSOR: 2.0, Cause.ODOMETRY: 0.0}
-"""Seconds after which a drive that stands for it has failed; for people it has the patience of the body."""
+"""Seconds after which a drive that the guard holds has failed; for people it is the patience of the body."""
 
 
 class Verdict(Record):
-    """What may be sent, in metres and degrees a second, and why that is less than what was wanted.
+    """The velocity that may be sent, in metres and degrees a second, and why it is less than the wanted one.
 
-    `who` is the name of the person or the zone that is in the way.
+    `who` is the name of the person or the zone in the way.
     """
 
     linear: float
@@ -67,11 +66,13 @@ class Verdict(Record):
 
 
 class Guard:
-    """The guard of one base. `sensors` gives the readings of what looks out for obstacles, `odometry` the latest one of
-    where the robot is; None if it isn't known. `pose` is where it is on the map of zones and people; None likewise.
+    """The guard of one base. `judge` is for one thread.
 
-    Not seen is not clear: a sensor that looks in the direction of travel and says nothing, or nothing that can be true,
-    stops the robot. `judge` is for one thread.
+    `sensors` returns the readings of the sensors for obstacles, `odometry` the latest odometry, None if it isn't known.
+    `pose` is where the robot is on the map of zones and people; None likewise.
+
+    Not seen is not clear: a sensor that looks in the direction of travel and reports nothing, or nothing that can be
+    true, stops the robot.
     """
 
     def __init__(
@@ -97,7 +98,7 @@ class Guard:
         self._stands_since: float | None = None
         self._touches_until, self._touches = -inf, False
         self.verdict = Verdict(0.0, 0.0)
-        """The latest one."""
+        """The latest verdict."""
 
     @property
     def held(self) -> str:
@@ -113,29 +114,29 @@ class Guard:
         return self._disagrees == STANDS
 
     def touch(self) -> None:
-        """The robot may touch what is ahead, at the contact speed of its body. To be repeated, as velocities are."""
+        """Allow the robot to touch what is ahead, at the contact speed of its body. Repeat this, as velocities are."""
         self._touches_until = self._now() + _TOUCHING
 
     def rest(self) -> None:
-        """A drive has ended; the next one is judged for itself."""
+        """End a drive; the next one is judged independently."""
         self._check.rest()
         self._disagrees, self._stands_since = "", None
 
     def forget(self) -> None:
-        """Somebody else moved the robot, or will."""
+        """Forget the motion so far: somebody else moved the robot, or will."""
         self.rest()
         self._check.forget()
 
     def judge(self, linear: float, angular: float, may_touch: bool = True) -> Verdict:
-        """What may be sent in place of a velocity that is wanted, in metres and degrees a second. Not on every way may
-        it touch what is ahead, even if something else wants it to.
+        """Return the velocity that may be sent in place of a wanted one, in metres and degrees a second.
 
-        Raises RobotError for one that isn't finite, or faster than any robot.
+        On a journey, the robot may not touch what is ahead, even if something else allows it. Raises RobotError for a
+        velocity that isn't finite, or is faster than any robot.
         """
         check_velocity(linear, angular)
         now = self._now()
         self._touches = may_touch and now < self._touches_until
-        verdict = self._judged(linear, angular, now)
+        verdict = self._find_verdict(linear, angular, now)
         self._check.sent(now, verdict.linear, verdict.angular)
         self.verdict = verdict
         stands = abs(verdict.linear) < min(_STANDS, abs(linear)) or (verdict.angular == 0.0 != angular)
@@ -145,7 +146,7 @@ class Guard:
             self._stands_since = now
         return verdict
 
-    def _judged(self, linear: float, angular: float, now: float) -> Verdict:
+    def _find_verdict(self, linear: float, angular: float, now: float) -> Verdict:
         reading = self._odometry()
         if reading is not None and not reading.fault and reading.stamp != self._checked:
             self._checked = reading.stamp
@@ -171,7 +172,7 @@ class Guard:
         return Verdict(copysign(most, linear) if most else 0.0, angular, reason, cause, who)
 
     def _safe(self, backward: bool, wanted: float, now: float) -> tuple[float, str, Cause, str]:
-        """Metres a second that are safe straight ahead, or backward, and what limits it most."""
+        """Return the metres a second that are safe straight ahead or backward, and what limits them most."""
         found = wanted, "", Cause.NONE, ""
         pose = self._pose()
         if pose is not None:
@@ -226,7 +227,7 @@ class Guard:
         return most, f"{reading.source}: {max(0.0, free):.2f} m {side}", Cause.OBSTACLE
 
     def _free_way(self, reading: ScanReading, direction: float) -> float:
-        """As `free_way` of btlang.robots.motion.guard.corridor."""
+        """Return the metres that are free, as `free_way` of the corridor does."""
         if reading.free_way is not None:
             return reading.free_way(direction)
         assert reading.ranges is not None
@@ -236,7 +237,7 @@ class Guard:
         return free_way(reading.ranges(), direction, self._body.radius - _BESIDE, view)
 
     def _since_changed(self, sensor: str, said: float) -> float:
-        """Metres that the robot has gone since a sensor said something else: a sensor may be frozen."""
+        """Return the metres that the robot has gone since a sensor's reading changed: the sensor may be frozen."""
         rolled, commanded = self._check.rolled, self._check.commanded
         before, since, commanded_since, asked = self._seen.get(sensor, (inf, 0.0, 0.0, 0.0))
         if before != said or not isfinite(said) or rolled - asked > _STEP:
@@ -246,7 +247,7 @@ class Guard:
         return gone + _LATE if gone > _LATE else gone  # it may have been old when it came first
 
     def _before_contact(self, gap: float) -> float:
-        """The speed at which it still stands before something so far away, if it brakes a moment later."""
+        """Return the speed at which the robot still stops before something so far away, if it brakes a moment later."""
         if gap <= 0.0:
             return 0.0
         lost = self._body.driving.brake * _DELAY
@@ -254,27 +255,24 @@ class Guard:
 
 
 class Guarded:
-    """A robot whose base a guard judges; see btlang.robots.capabilities.Base."""
+    """A robot whose base a guard judges; see the protocol Base."""
 
     _guard: Guard
 
     @property
     def held_back(self) -> str:
-        """See btlang.robots.capabilities.Base."""
         return self._guard.held
 
     @property
     def limited_by(self) -> str:
-        """See btlang.robots.capabilities.Base."""
         return self._guard.verdict.reason
 
     def touch(self) -> None:
-        """See btlang.robots.capabilities.Base."""
         self._guard.touch()
 
 
 def check_velocity(linear: float, angular: float) -> None:
-    """Raises RobotError for metres and degrees a second that aren't finite, or faster than any robot."""
+    """Raise RobotError for metres and degrees a second that aren't finite, or are faster than any robot."""
     if not isfinite(linear) or not isfinite(angular):
         raise RobotError(f"a velocity of {linear:g} m/s and {radians(angular):g} rad/s is not finite")
     if abs(linear) > FASTEST or abs(angular) > FASTEST_TURN * _ROUNDING:
@@ -284,7 +282,7 @@ def check_velocity(linear: float, angular: float) -> None:
 
 
 def _looks(reading: ObstacleReading, backward: bool) -> bool:
-    """Whether a sensor is there to look in the direction of travel."""
+    """Return whether a sensor looks in the direction of travel."""
     away = abs(wrap(reading.angle - 180.0 * backward))
     if isinstance(reading, ScanReading):
         return away <= reading.view / 2
@@ -292,12 +290,12 @@ def _looks(reading: ObstacleReading, backward: bool) -> bool:
 
 
 def _blind_speed(reading: SensorReading, now: float) -> float:
-    """The speed at which a robot doesn't go too far until it hears from a sensor again, or stops."""
+    """Return the speed at which a robot doesn't go too far until a sensor reports again, or it stops."""
     age = now - reading.stamp
     return _BLIND / age if age > _OFTEN else inf
 
 
 def _fault(reading: SensorReading, now: float) -> str:
-    """Why a reading isn't to be believed now, "" if it is."""
+    """Return why a reading isn't believed now, "" if it is."""
     age = now - reading.stamp
     return reading.fault or (f"{reading.source} is silent for {age:.1f} s" if age > FRESH else "")

@@ -1,22 +1,61 @@
-"""Zones in the way: how fast it is safe to drive before those to keep out of, in those to stay in, and in slow ones."""
+"""How fast it is safe to drive near zones and near people who walk."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import cos, inf, radians, sin, sqrt
+from collections.abc import Mapping, Sequence
+from math import cos, hypot, inf, radians, sin, sqrt
+from typing import Protocol
 
 from btlang.robots.geometry import Point, Pose, Segment, edges, segment_distance
-from btlang.robots.world import Zone
+from btlang.robots.worlds.world import Zone
 from btlang.robots.zones import Zones
 
+_MARGIN = 0.08  # metres that stay free
+_APPROACH = 0.6  # metres a second at which people may come nearer while it brakes; they look where they go
+_DELAY = 0.05  # seconds until it brakes
+_AHEAD = cos(radians(75.0))
 _LOOK = 2.0  # metres
 _EDGE = 0.02  # metres that stay free before a border
 _PROBE = 0.05  # metres ahead
 _RIM = tuple((cos(radians(side)), sin(radians(side))) for side in range(-90, 91, 30))  # the front half of the rim
 
 
+class WalkingPeople(Protocol):
+    """The people who walk, as far as the robot knows."""
+
+    @property
+    def walking(self) -> Mapping[str, tuple[float, float, float]]:
+        """The x, y and radius of people by their names, on the map."""
+
+    def wall_between(self, a: Point, b: Point) -> bool:
+        """Return whether a wall crosses the straight line from a to b."""
+
+
+def safe_among(people: WalkingPeople, pose: Pose, backward: bool, radius: float, brake: float) -> tuple[float, str]:
+    """Return the metres a second that are safe near people, and who limits them; inf and "" if nobody does.
+
+    They are for a robot with this radius and braking.
+    """
+    heading = radians(pose.heading + 180.0 * backward)
+    ahead = cos(heading), cos(heading - radians(90.0))
+    most, who = inf, ""
+    lost = _APPROACH + _DELAY * brake
+    for name, (x, y, wide) in people.walking.items():
+        dx, dy = x - pose.x, y - pose.y
+        if abs(dx) > _LOOK or abs(dy) > _LOOK:
+            continue
+        distance = hypot(dx, dy)
+        if dx * ahead[0] + dy * ahead[1] < _AHEAD * distance:
+            continue
+        gap = distance - wide - radius - _MARGIN
+        safe = sqrt(lost * lost + 2 * brake * gap) - lost if gap > 0.0 else 0.0
+        if safe < most and not people.wall_between((pose.x, pose.y), (x, y)):
+            most, who = safe, name
+    return most, who
+
+
 class Regions:
-    """The zones as they are now, for a robot of a radius that can brake so."""
+    """The zones as they are now, for a robot with this radius and braking."""
 
     def __init__(self, zones: Zones, radius: float, brake: float) -> None:
         self._zones, self._radius, self._brake = zones, radius, brake
@@ -25,7 +64,9 @@ class Regions:
         self._version = -1
 
     def safe(self, pose: Pose, backward: bool) -> tuple[float, str]:
-        """Metres a second that are safe straight ahead, or backward, and what zone stops it; inf where none does."""
+        """Return the metres a second that are safe straight ahead or backward, and which zone stops the robot; inf
+        without one.
+        """
         if self._version != self._zones.version:
             self._measure()
         most = min(
@@ -43,7 +84,7 @@ class Regions:
         return most, found
 
     def _measure(self) -> None:
-        """Notes in which boxes the zones matter: most of the time the robot is in none."""
+        """Note in which boxes the zones matter: most of the time the robot is in none."""
         self._version = self._zones.version
         self._slow = [(zone, _box(zone, self._radius)) for zone in self._zones.slow]
         self._closed = [(zone, _box(zone, self._radius + _EDGE + _LOOK)) for zone in self._zones.closed]
@@ -53,7 +94,7 @@ class Regions:
         return zone.contains(point) or edge_distance(zone, point) < self._radius
 
     def _before(self, zone: Zone, pose: Pose, direction: Point) -> float:
-        """The speed at which it can brake before the zone; inf where it drives away from it, or out of it."""
+        """Return the speed at which it can brake before the zone; inf if it drives away from it, or out of it."""
         point = pose.x, pose.y
         gap = edge_distance(zone, point) - self._radius - _EDGE
         if gap > _LOOK or zone.contains(point):
@@ -65,7 +106,7 @@ class Regions:
         return sqrt(2 * self._brake * max(0.0, gap) * _PROBE / max(nearer, 1e-9)) if gap > 0.0 else 0.0
 
     def _inside(self, zones: Sequence[Zone], pose: Pose, direction: Point) -> float:
-        """The speed at which it can brake before its rim leaves these zones; inf where it drives into them."""
+        """Return the speed at which it can brake before its rim leaves these zones; inf if it drives into them."""
         point = pose.x, pose.y
         inside = [zone for zone in zones if zone.contains(point)]
         if not inside:  # somebody put it there
@@ -80,7 +121,7 @@ class Regions:
         return inf
 
     def _holds(self, zones: Sequence[Zone], centre: Point, direction: Point) -> bool:
-        """Whether the front half of the rim is in the zones."""
+        """Return whether the front half of the rim is in the zones."""
         reach, (dx, dy) = self._radius + _EDGE, direction
         rim = ((centre[0] + reach * (dx * c - dy * s), centre[1] + reach * (dx * s + dy * c)) for c, s in _RIM)
         return all(any(zone.contains(point) for zone in zones) for point in rim)
@@ -95,7 +136,7 @@ def _gap(zones: Sequence[Zone], point: Point) -> float:
 
 
 def _box(zone: Zone, margin: float) -> Segment:
-    """The least and the greatest x and y of a zone with so many metres around it."""
+    """Return the smallest and largest x and y of a zone with so many metres around it."""
     xs, ys = [x for x, _ in zone.points], [y for _, y in zone.points]
     return min(xs) - margin, min(ys) - margin, max(xs) + margin, max(ys) + margin
 
@@ -105,5 +146,5 @@ def _within(box: Segment, pose: Pose) -> bool:
 
 
 def edge_distance(zone: Zone, point: Point) -> float:
-    """Metres from a point to the border of a zone."""
+    """Return the metres from a point to the border of a zone."""
     return min(segment_distance(point, (*a, *b)) for a, b in edges(zone.points))

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from btlang.robots.body import Body
-from btlang.robots.joint_tables import BASE
-from btlang.robots.motion.braking import brake
-from btlang.robots.motion.collisions import Collisions
-from btlang.robots.motion.course import PERIOD, Limits, State
-from btlang.robots.motion.kinematics import Array, Kinematics
+from btlang.robots.bodies.body import Body
+from btlang.robots.bodies.joint_tables import BASE
+from btlang.robots.motion.course import PERIOD, JointLimits, MotionState, brake
+from btlang.robots.motion.kinematics import Array, Collisions, Kinematics
 
 _MARGIN = 0.01  # metres that are kept between links: more than they can get nearer between two looks
 _EACH = 2  # samples between two looks at the way
@@ -20,18 +18,21 @@ _JERK = 1.02  # of the limit, for differences of sampled accelerations
 
 
 class TrajectoryCheck:
-    """Checks the planned movements of one body."""
+    """A check of the planned movements of one body."""
 
     def __init__(self, body: Body, kinematics: Kinematics) -> None:
         self._body = body
-        self._limits = Limits.of(body.joints)
+        self._limits = JointLimits.of(body.joints)
         self._collisions = Collisions(body, kinematics)
 
-    def problem(self, way: State, joints: list[int]) -> str:
-        """Why the body may not go a way, "" if it may. The way samples all joints; it is new for `joints`."""
+    def problem(self, way: MotionState, joints: list[int]) -> str:
+        """Return why the body may not do a movement, "" if it may.
+
+        The movement samples all joints; it is new for `joints`.
+        """
         return self._beyond(way.of(joints), joints) or self._touching(way)
 
-    def _beyond(self, way: State, joints: list[int]) -> str:
+    def _beyond(self, way: MotionState, joints: list[int]) -> str:
         limits = self._limits.some(joints)
         coming = way.velocity + way.acceleration * np.abs(way.acceleration) / (2 * limits.jerk)
         jerk = np.abs(np.diff(way.acceleration, axis=0)) / PERIOD
@@ -52,7 +53,7 @@ class TrajectoryCheck:
                 return f"the {self._body.joints[joints[int(np.argmax(found))]].name} {says}"
         return ""
 
-    def _touching(self, way: State) -> str:
+    def _touching(self, way: MotionState) -> str:
         if not self._collisions.pairs:
             return ""
         looks = sorted({*range(0, len(way.position), _EACH), len(way.position) - 1})
@@ -69,8 +70,8 @@ class TrajectoryCheck:
                 return f"the {first or BASE} would touch the {second or BASE}"
         return ""
 
-    def _braking(self, way: State, rows: slice | Array) -> Array:
-        """Where the body is on its way to rest from these samples."""
+    def _braking(self, way: MotionState, rows: slice | Array) -> Array:
+        """Return the body's positions on its way to rest from these samples."""
         halt = brake(way.rows(rows), self._limits)
         times = np.append(np.arange(_BRAKING, halt.seconds, _BRAKING), halt.seconds)
         return np.concatenate([halt.at(float(time)).position for time in times])

@@ -1,1 +1,0 @@
-"""Cameras, microphones and speakers of this computer, and files in their place."""

@@ -1,0 +1,89 @@
+"""What objects and people are like, and how a robot says that it sees nothing like that."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import chain
+
+Parts = tuple[tuple[str, str], ...]
+SPEAKER = "me"
+"""The owner of things that belong to whoever gives the robot its missions."""
+
+
+def of_thing(
+    kind: str,
+    color: str,
+    size: str,
+    states: tuple[str, ...],
+    owner: str,
+    uses: tuple[str, ...] = (),
+    content: str = "",
+    having: tuple[str, ...] = (),
+) -> Parts:
+    """Return the parts by which an object or a place can be described, in lower case except for its owner."""
+    several = (*(("state", state) for state in states), *(("use", use) for use in uses))
+    pieces = (("part", text) for text in chain.from_iterable(map(_with_shorter, having)))
+    named = [("color", _spelt(color)), ("kind", kind), ("size", size), ("content", content), *several, *pieces]
+    return (*((name, text.lower()) for name, text in named if text), *([("owner", owner)] if owner else []))
+
+
+def head_of(name: str) -> str:
+    """Return the kind in a name of several words: `parcel` of "big parcel", `room` of "room 1"; else ""."""
+    words = name.split()
+    if len(words) < 2:
+        return ""
+    head = words[-1] if words[-1].isalpha() else words[-2]  # before a number
+    return head if head.isalpha() else ""
+
+
+def of_person(wears: tuple[str, ...], gesture: str) -> Parts:
+    """Return the parts by which a person can be described: a red coat is a coat too."""
+    clothes = (("clothing", text) for text in chain.from_iterable(map(_with_shorter, wears)))
+    return tuple((name, text.lower()) for name, text in (*clothes, ("gesture", gesture)) if text)
+
+
+def wears(worn: tuple[str, ...], parts: Mapping[str, str]) -> bool:
+    """Return whether one of the clothes has the wanted colour and name."""
+    wanted = {*_spelt(parts.get("color", "")).split(), *parts.get("clothing", "").split()}
+    return not wanted or any(wanted <= {*_spelt(one.lower()).split()} for one in worn)
+
+
+def unseen(kind: str, parts: Mapping[str, str], behind: str = "") -> str:
+    """Return the sentence that the robot knows nothing like that: `I haven't seen a red cup`; `behind` follows the
+    thing.
+    """
+    if kind == "person" and "named" not in parts:
+        return f"I don't see anybody{_person(parts)}{behind}"
+    words = [parts[name] for name in ("size", "state", "color", "kind", "named") if name in parts]
+    if "owner" in parts:
+        behind = f" that belongs to {'you' if parts['owner'] == SPEAKER else parts['owner']}{behind}"
+    use = f" to {parts['use']}" if "use" in parts else ""
+    behind = f"{f' of {content}' if (content := parts.get('content')) else ''}{behind}"
+    behind = f"{f' with {_article(part)}{part}' if (part := parts.get('part')) else ''}{behind}"
+    if "named" in parts:
+        return f"I know no {' '.join(words)}{use}{behind}"
+    if "kind" not in parts:
+        return f"I haven't seen {' '.join(('anything', *words))}{use}{behind}"
+    return f"I haven't seen {_article(words[0])}{' '.join(words)}{use}{behind}"
+
+
+def _person(parts: Mapping[str, str]) -> str:
+    worn = [parts[name] for name in ("color", "clothing") if name in parts]
+    waves = f" who is {parts['gesture']}" if "gesture" in parts else ""
+    article = "" if "clothing" not in parts or worn[-1].endswith("s") else _article(worn[0])
+    return (f" in {article}{' '.join(worn)}" if worn else "") + waves
+
+
+def _article(word: str) -> str:
+    return "an " if word[0] in "aeiou" else "a "
+
+
+def _with_shorter(text: str) -> Iterator[str]:
+    """Return the parts with shorter forms: a red lid is a lid, too."""
+    yield text
+    if " " in text:
+        yield text.split(" ", 1)[1]
+
+
+def _spelt(color: str) -> str:
+    return color.replace("grey", "gray")

@@ -1,0 +1,123 @@
+"""The laser scanner: exact distances along 360 beams from the robot's centre."""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+import numpy.typing as npt
+
+from btlang.robots.geometry import CENTRE, Pose
+from btlang.robots.worlds.obstacles import Obstacles
+
+Array = npt.NDArray[np.float64]
+
+_DEGREES = np.radians(np.arange(360.0))
+
+
+class Scanner:
+    """A scanner that computes a scan when it is first read from a pose, and keeps it until something moves."""
+
+    def __init__(self, obstacles: Obstacles, reach: float) -> None:
+        self._reach = reach
+        self._obstacles = obstacles
+        self._segments: Array = np.empty(0)
+        self._walls = -1
+        self._pose: Pose | None = None
+        self._version = -1
+        self._ranges: Array = np.empty(0)
+
+    def read(self, pose: Pose) -> Array:
+        if pose is not self._pose or self._version != self._obstacles.version:
+            obstacles = self._obstacles
+            if self._walls != obstacles.walls:
+                self._segments = np.array(obstacles.segments, dtype=np.float64).reshape(-1, 4)
+                self._walls = obstacles.walls
+            discs = np.array((*obstacles.discs, *obstacles.walking.values()), dtype=np.float64).reshape(-1, 3)
+            self._ranges = scan(self._segments, discs, pose, self._reach)
+            self._pose, self._version = pose, self._obstacles.version
+        return self._ranges
+
+
+def scan(segments: Array, discs: Array, pose: Pose, reach: float) -> Array:
+    """Return 360 distances in metres, index = degrees left of the heading; inf beyond `reach` metres.
+
+    A row of `segments` is x, y of one end and of the other, a row of `discs` is x, y and radius.
+    """
+    angles = _DEGREES + np.radians(pose.heading)
+    beams = np.array((np.cos(angles), np.sin(angles)))
+    ranges = np.full(360, np.inf)
+    if len(segments):
+        ranges = np.minimum(ranges, _to_segments(segments, pose, beams))
+    if len(discs):
+        ranges = np.minimum(ranges, _to_discs(discs, pose, beams))
+    ranges[ranges > reach] = np.inf
+    ranges.flags.writeable = False  # shared by all who read it between two steps
+    return ranges
+
+
+def around(ranges: Array, angles: Array, at: Pose, step: float = 1.0) -> Array:
+    """Return 360 distances from a robot's centre, index = degrees left of its heading; NaN if no valid beam looked.
+
+    `ranges` are metres that a scanner measured, inf if nothing was in range, NaN for a beam without a measurement, at
+    `angles` in radians left of its own front; two neighbours are `step` degrees apart. `at` is its pose as seen from
+    the centre.
+    """
+    found = np.full(360, np.nan)
+    valid = ~np.isnan(ranges)
+    found[_covered_degrees(angles[valid] + np.radians(at.heading), step)] = np.inf
+    seen = np.isfinite(ranges)
+    ranges, angles = ranges[seen], angles[seen] + np.radians(at.heading)
+    if at.x or at.y:
+        x, y = at.x + ranges * np.cos(angles), at.y + ranges * np.sin(angles)
+        ranges, angles = np.hypot(x, y), np.arctan2(y, x)
+    np.fmin.at(found, np.rint(np.degrees(angles)).astype(int) % 360, ranges)
+    return found
+
+
+def _covered_degrees(angles: Array, step: float) -> npt.NDArray[np.int64]:
+    """Return the degrees that are covered by beams so many degrees apart."""
+    half = min(180, max(0, round(step / 2)))
+    middles = np.rint(np.degrees(angles)).astype(int)
+    covered: npt.NDArray[np.int64] = (middles[:, None] + np.arange(-half, half + 1)).ravel() % 360
+    return covered
+
+
+def summary(ranges: Array, radius: float) -> tuple[float, float]:
+    """Return the metres that are free around a robot's rim, -inf if a beam is missing, and a number that changes with
+    the ranges.
+    """
+    room = -inf if np.isnan(ranges).any() else float(ranges.min()) - radius
+    return room, float(ranges[np.isfinite(ranges)].sum())
+
+
+def as_measured(ranges: Array, at: Pose) -> Array:
+    """Return a scan around the robot's centre as a scanner at this pose of the robot measures it."""
+    if at == CENTRE:
+        return ranges
+    measured = around(ranges, _DEGREES, at.inverse)
+    measured[np.isnan(measured)] = np.inf  # what is nearer hides no degree from a beam that starts elsewhere
+    return measured
+
+
+def _to_segments(segments: Array, pose: Pose, beams: Array) -> Array:
+    """Solve centre + t * beam = start + u * span for every span (rows) and beam (columns), with few temporaries."""
+    fx, fy = segments[:, 0] - pose.x, segments[:, 1] - pose.y
+    dx, dy = segments[:, 2] - segments[:, 0], segments[:, 3] - segments[:, 1]
+    cross = np.array((dy, -dx)).T @ beams
+    u = np.array((-fy, fx)).T @ beams
+    with np.errstate(all="ignore"):
+        u /= cross
+        t = np.divide((fx * dy - fy * dx)[:, None], cross, out=cross)
+    t[~((t >= 0.0) & (u >= -1e-9) & (u <= 1.0 + 1e-9))] = np.inf
+    nearest: Array = t.min(axis=0)
+    return nearest
+
+
+def _to_discs(discs: Array, pose: Pose, beams: Array) -> Array:
+    fx, fy, radius = discs[:, 0] - pose.x, discs[:, 1] - pose.y, discs[:, 2:]
+    along = np.array((fx, fy)).T @ beams
+    half2 = radius**2 - (np.array((-fy, fx)).T @ beams) ** 2
+    t = along - np.sqrt(np.maximum(half2, 0.0))
+    nearest: Array = np.where((half2 >= 0.0) & (t >= 0.0), t, np.inf).min(axis=0)
+    return nearest

@@ -1,0 +1,127 @@
+"""Finds what lies outside the outer walls of a world, if these are closed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
+
+from btlang.robots.geometry import Point, contains, edges, segment_distance
+from btlang.robots.worlds.world import Person, World, Zone
+from btlang.text.toml_table import Problem
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeAlias
+
+    Path: TypeAlias = tuple[str | int, ...]
+    Rows: TypeAlias = Mapping[str, Sequence[Any]]
+
+_TOUCHING = 0.1  # metres; so near to the outer wall something is on it
+_STEPS = 20  # points looked at on each side of a zone
+_SINGLE = ("start", "dock")  # sections that are one table
+_STANDING = {
+    "start": "start", "places": "place", "dock": "place", "docks": "place", "objects": "object", "people": "person",
+    "crowds": "person",
+}  # fmt: skip
+
+Polyline = tuple[Point, ...]
+
+
+def outer_wall(world: World) -> Polyline | None:
+    """Return the closed wall around the largest area, its first point once; None if no wall is closed.
+
+    Walls and doors that meet end to end are one wall.
+    """
+    loops = [
+        wall for wall in _join_walls([*world.walls, *((door.start, door.end) for door in world.doors)]) if _area(wall)
+    ]
+    return max(loops, key=_area, default=())[:-1] or None
+
+
+def _area(wall: Polyline) -> float:
+    """Return the square metres inside a closed wall, 0 for any other."""
+    if wall[0] != wall[-1]:
+        return 0.0
+    return abs(sum(ax * by - bx * ay for (ax, ay), (bx, by) in pairwise(wall))) / 2
+
+
+def _join_walls(walls: list[Polyline]) -> list[Polyline]:
+    """Return the walls; two are joined if their ends meet and no other one ends there."""
+    ends: dict[Point, list[Polyline]] = {}
+    done = [wall for wall in walls if wall[0] == wall[-1]]
+    for wall in walls:
+        if wall[0] != wall[-1]:
+            for end in (wall[0], wall[-1]):
+                ends.setdefault(end, []).append(wall)
+    for point, meeting in list(ends.items()):
+        if len(meeting) != 2:
+            continue
+        one, other = meeting
+        if one is other:  # its two ends have met
+            continue
+        before = one if one[-1] == point else one[::-1]
+        after = other if other[0] == point else other[::-1]
+        whole = before + after[1:]
+        for old, end in ((one, before[0]), (other, after[-1])):
+            ends[end][next(at for at, wall in enumerate(ends[end]) if wall is old)] = whole
+        ends[point] = []
+        if whole[0] == whole[-1]:
+            done.append(whole)
+            ends[whole[0]] = []
+    return done
+
+
+def entries(rows: Rows, sections: Iterable[str]) -> Iterator[tuple[Path, tuple[Any, ...]]]:
+    """Return what the rows of these sections of a world file have made, and where each of them is in the file.
+
+    `rows` has a list for each section, None for a wrong row. The people of a crowd are made by one row.
+    """
+    for section in sections:
+        for index, row in enumerate(rows[section]):
+            if row is not None:
+                yield (section,) if section in _SINGLE else (section, index), row if isinstance(row, tuple) else (row,)
+
+
+def spots(rows: Rows, sections: Iterable[str] = _STANDING) -> Iterator[tuple[str, Path, Any]]:
+    """Return for each row of these sections its name in messages, its place in the file, and what has its x and y."""
+    for path, (first, *_) in entries(rows, sections):
+        kind = _STANDING[str(path[0])]
+        yield f"the {kind}" if kind == "start" else f'the {kind} "{first.name}"', path, first
+
+
+def outside(world: World, rows: Rows) -> Iterator[Problem]:
+    """Return a Problem for each place, object, person, stop of a route, zone and door outside the outer wall.
+
+    `rows` are as those of `entries`.
+    """
+    wall = outer_wall(world)
+    if wall is None:
+        return
+    for what, path, point in _points(world, rows):
+        if not contains(wall, point) and not _is_on(wall, point):
+            yield Problem(f"{what} at ({point[0]:g}, {point[1]:g}) is outside the outer walls", *path)
+    for path, (zone,) in entries(rows, ("zones",)):
+        if not _reaches_into(zone, wall):
+            yield Problem(f'the zone "{zone.name}" is outside the outer walls', *path, "points")
+    for path, (door,) in entries(rows, ("doors",)):
+        if not any(contains(wall, end) or _is_on(wall, end) for end in (door.start, door.end)):
+            yield Problem(f'the door "{door.name}" is outside the outer walls', *path, "from")
+
+
+def _points(world: World, rows: Rows) -> Iterator[tuple[str, Path, Point]]:
+    places = {(place.x, place.y) for place in world.places}
+    for what, path, row in spots(rows):
+        yield what, (*path, "x"), (row.x, row.y)
+        for at, stop in enumerate(row.walks if isinstance(row, Person) else ()):
+            if (stop.x, stop.y) not in places:  # of a place that is reported already
+                yield f'a stop of "{row.name}"', (*path, "walks", at), (stop.x, stop.y)
+
+
+def _is_on(wall: Polyline, point: Point) -> bool:
+    return any(segment_distance(point, (*a, *b)) <= _TOUCHING for a, b in edges(wall))
+
+
+def _reaches_into(zone: Zone, wall: Polyline) -> bool:
+    steps = [step / _STEPS for step in range(_STEPS)]
+    points = ((ax + (bx - ax) * t, ay + (by - ay) * t) for (ax, ay), (bx, by) in edges(zone.points) for t in steps)
+    return any(contains(wall, point) for point in points) or any(zone.contains(corner) for corner in wall)

@@ -1,0 +1,1 @@
+"""Components of a robot that are ROS 2 nodes."""

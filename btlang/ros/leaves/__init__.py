@@ -1,1 +1,0 @@
-"""Leaves that keyword files declare as clients of ROS 2 interfaces: one module for each kind."""

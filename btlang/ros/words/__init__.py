@@ -1,0 +1,1 @@
+"""Leaves that keyword files declare as clients of ROS 2 interfaces."""
