@@ -94,6 +94,8 @@ def _diagnosed(
         ids, fix = [*names, *ids], respelt_subtree(said, names, vocabulary)
     if said is not None and fix is None:
         fix = respelt_leaf(said, ids, vocabulary, lambda id: fits(node.replace(id=id)))
+    if said is not None and fix is None and said.is_sentence:
+        return diagnostic("BT010", span, kind="command", words=span.text, help=_near(nearest(node.id.lower(), ids)))
     advice = "" if fix else _entry(node, entries)
     return _helped(diagnostic("BT130", span, fix=fix, id=node.id), _near(nearest(node.id.lower(), ids)), advice)
 

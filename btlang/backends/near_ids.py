@@ -10,6 +10,7 @@ from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.text.words import split
 from btlang.tree.node import Node
+from btlang.vocabulary.correct_words import correct_words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.node_words import id_of_name, said_id
 
@@ -21,7 +22,8 @@ if TYPE_CHECKING:
 class SaidId(Record):
     """Where a mission says the id of a node, in quotes or in words, and whether more is said of the node.
 
-    It `may_be_subtree` behind a bare `do`.
+    It `may_be_subtree` behind a bare `do`, and is a `sentence` where these are words of the language alone: `do
+    anything`.
     """
 
     span: Span
@@ -29,6 +31,7 @@ class SaidId(Record):
     in_quotes: bool
     is_last: bool
     may_be_subtree: bool
+    is_sentence: bool = False
 
 
 def said_at(node: Node, node_id: str, vocabulary: Lexicon) -> SaidId | None:
@@ -44,8 +47,14 @@ def said_at(node: Node, node_id: str, vocabulary: Lexicon) -> SaidId | None:
             start = node.span.start
             span = Span(node.span.source, start + text.starts[at], start + text.ends[last - 1])
             may_be_subtree = " ".join(text.words[:at]) in vocabulary.roles["do"]
-            return SaidId(span, node_id, in_quotes, span.end == node.span.end, may_be_subtree)
+            is_last, words = span.end == node.span.end, text.words[at:last]
+            is_sentence = not in_quotes and is_last and span.text.islower() and _are_correct(words, vocabulary)
+            return SaidId(span, node_id, in_quotes, is_last, may_be_subtree, is_sentence)
     return None
+
+
+def _are_correct(words: Iterable[str], vocabulary: Lexicon) -> bool:
+    return correct_words(vocabulary.word_list).issuperset(words)
 
 
 def respelt_leaf(said: SaidId, ids: Iterable[str], vocabulary: Lexicon, fits: Callable[[str], bool]) -> Fix | None:

@@ -140,6 +140,12 @@ def _warning(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Itera
             advice = f"To stop what comes before, write: {fixed}"
             reading = Span(source, before.span.start, node.span.end), fixed
             yield diagnostic("BT068", node.span, words=node.span.text, advice=advice).replace(readings=(reading,))
+        elif before is not None and (type(node.body) is ast.Fail or _is_event(node.condition, vocabulary)):
+            each = f"{vocabulary.word('whenever')} {condition.text}, {node.body.span.text}"
+            advice = f"'{before.span.text}' is over by then. To do it meanwhile, write: {each}"
+            yield diagnostic("BT068", node.span, words=node.span.text, advice=advice).replace(
+                readings=((node.span, each),)
+            )
         return
     word = next(iter(source.text[node.span.start : condition.start].split(maxsplit=1)), "")  # none before a question
     if word.lower() in vocabulary.asked_once or _is_event(node.condition, vocabulary):

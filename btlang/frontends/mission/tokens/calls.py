@@ -180,9 +180,9 @@ class Calls:
         added = dict(self.arguments(entry, [value.replace(more=()) for value in further.values]))
         if any(added[name] != each.get(name) for each in before for name in added.keys() - names):
             return False if all(text[:1] not in _ODD for text in added.values()) else None
-        if len(places) != 1 or any(text[:1] in _ODD for each in (*before, added) for text in each.values()):
+        name = places[0].name if len(places) == 1 else ""
+        if not name or any(each[name][:1] in _ODD for each in (*before, added)):
             return None
-        name = places[0].name
         more = (tuple({**added, name: text}.items()) for text in places[0].texts)
         reference = self._reference(PLACE)
         search.value = Listed(entry, (*arguments_of(said), *more), "or")

@@ -21,6 +21,7 @@ from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, WORKS, ask
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PLACE
 from btlang.vocabulary.word_tree import find
@@ -119,10 +120,8 @@ class GoingOn(SentenceReader):
         BT168 for what goes on with a failure where something stands between: `A. If that fails, B. Otherwise C`.
         BT145 for silence behind what is no question: `ask "Tea?". If she says no, A. If she says nothing, B`.
         """
-        word = self._vocabulary.word
-        if role == _UNANSWERED and not self._asks():
-            example = f'ask "Tea?". {word(WORKS).capitalize()}, wave. {word("otherwise").capitalize()} nod'
-            self._calls.problems.append(diagnostic("BT145", words, words=words.text.rstrip(","), example=example))
+        if role == _UNANSWERED:
+            self._check_asked(words)
         if role not in ("otherwise", FAILS, WORKS):
             return role
         if role != "otherwise" and not set(self._vocabulary.asking["search"]).isdisjoint(_words(words.text)):
@@ -133,6 +132,16 @@ class GoingOn(SentenceReader):
         if WORKS in kinds if role == FAILS else FAILS in kinds and WORKS not in kinds:
             self._unclear(words)
         return role
+
+    def check_asked(self, match: Match, at: int) -> None:
+        """BT145 for `wave or, if he doesn't answer, nod`."""
+        self._check_asked(self._text.span(at, match.last))
+
+    def _check_asked(self, words: Span) -> None:
+        word = self._vocabulary.word
+        if not self._asks():
+            example = f'ask "Tea?". {word(WORKS).capitalize()}, wave. {word("otherwise").capitalize()} nod'
+            self._calls.problems.append(diagnostic("BT145", words, words=words.text.rstrip(","), example=example))
 
     def _unclear(self, words: Span) -> None:
         """BT168: about which command the words are."""
@@ -236,7 +245,8 @@ class GoingOn(SentenceReader):
         """BT151 for what may be a part of the rule before it: `whenever bumped, wave. Then dock`."""
         end = run_start(self._tokens, len(self._tokens), STATEMENT_ENDS)
         words, text = self._text.span(at, last), self._text
-        if not end or "\n" in text.source.text[self._tokens[end - 1].end : words.start]:
+        is_new_line = "\n" in text.source.text[self._tokens[end - 1].end : words.start] if end else True
+        if not end or (is_new_line and role == "then"):
             return
         first, kinds = self._statement(end)
         if any(token.role == ON_WAY or token.kind == "while_doing" for token in self._tokens[first:end]):

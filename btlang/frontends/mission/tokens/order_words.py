@@ -34,6 +34,9 @@ from btlang.vocabulary.word_tree import find
 class OrderWords(ClockWords, JourneyWords):
     """Those of one text."""
 
+    _lasting = -1
+    """Where `always` stands that was read last."""
+
     def read(self, match: Match, at: int) -> int:
         """Reads the words of one of these roles, where they say something."""
         role = match.meaning.role
@@ -148,6 +151,24 @@ class OrderWords(ClockWords, JourneyWords):
     def _watch(form: Token) -> None:
         """Makes `if` a standing rule."""
         form.kind = "whenever" if form.kind == "if" else form.kind
+
+    def lasts(self, at: int) -> None:
+        """`always stop when C`, `A, and always charge if C`: a rule of its own, from that word on."""
+        forms = {phrase.split()[0] for phrase in self._vocabulary.roles["if"]}
+        if not any(self._text.words[i] in forms for i in range(at, self._end_of_statement(at))):
+            return
+        tokens, start = self._tokens, self._text.starts[at]
+        joint = run_start(tokens, len(tokens), JOINTS)
+        if 0 < joint < len(tokens):
+            tokens[joint:] = [Token("semi", start, start)]
+        self._lasting = start
+
+    def rule_of(self, form: Token) -> None:
+        """Makes `if` a standing rule behind `always` in its statement."""
+        first = statement_start(self._tokens, len(self._tokens))
+        if form.kind == "if" and self._tokens[first].start >= self._lasting >= 0:
+            if first == 0 or self._tokens[first - 1].start <= self._lasting:
+                self._watch(form)
 
     def is_doing(self, at: int) -> bool:
         """Whether the form of a verb stands at a word: `keep going back and forth`."""

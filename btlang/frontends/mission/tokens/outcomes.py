@@ -48,6 +48,20 @@ _DONE = ("command", "name")
 class Outcomes(GoingOn):
     """Those of one text, behind the tokens that it has so far."""
 
+    def connect(self, match: Match, role: str, at: int) -> int:
+        """What the token of words about how it went is where it stands. Returns where to go on."""
+        token, said = self._tokens[-1], match.meaning.role
+        if role == "then" and len(self._tokens) > 1:
+            self.found(match, at)
+        if role in (FAILS, "if_unanswered", "otherwise"):
+            token.kind = "or" if role != "otherwise" else role
+            token.value = FAILS if said != "otherwise" else None
+        if said == "if_unanswered" and at not in self._text.going_on:
+            self.check_asked(match, at)
+        if role in (WORKS, "if_it_works", FAILS):
+            self.trailing(match.last)
+        return self.unanswered(match.last) if role == "if_unanswered" else match.last
+
     def settle(self, end: int) -> int:
         """What the condition asks that ends at a word is left out where the command before it has settled it.
 

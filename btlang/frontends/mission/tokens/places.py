@@ -75,6 +75,8 @@ class Places(SentenceReader):
             return 0
         if self._goes_there(journey, len(tokens) - 1):
             return journey.last
+        if self._repeats(journey, len(tokens)):
+            return 0
         said = tokens.pop()
         end = said.end = self._text.ends[journey.last - 1]
         tokens.append(Token("open", said.start, said.start))
@@ -111,7 +113,7 @@ class Places(SentenceReader):
             return 0
         if any(value.group or value.more for value in journey.values) and not self._are_commands(behind):
             return 0  # `in every room, look around, and if you see Alice, greet her`
-        if self._repeats(journey):
+        if self._repeats(journey, run_start(self._tokens, len(self._tokens), LINES)):
             return 0
         self._partial.append(journey, at)
         end = self._text.ends[journey.last - 1]
@@ -135,9 +137,9 @@ class Places(SentenceReader):
         tokens[last:end] = [Token("and", at, at)]
         return True
 
-    def _repeats(self, journey: Match) -> bool:
+    def _repeats(self, journey: Match, last: int) -> bool:
         """`go to A and B three times. In each room, wave`: whether the rooms are those of a loop, three times each."""
-        choice, last = choice_of(journey.values[0].group), run_start(self._tokens, len(self._tokens), LINES)
+        choice = choice_of(journey.values[0].group)
         first = statement_start(self._tokens, last)
         is_spoken_of = choice is not None and NAMES in dict(choice.parts)
         return is_spoken_of and any(token.kind not in _PLAIN for token in self._tokens[first:last])

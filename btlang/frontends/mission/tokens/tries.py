@@ -46,6 +46,8 @@ class Tries(SentenceReader):
         is_closed = any(token.kind in ("try", "retry", "repeat") for token in tokens[first:])
         if last < 0 or (tokens[last].kind not in _OPERANDS and not is_closed):
             return 0
+        if any(token.kind == "until" for token in tokens[first:]):
+            self._doubt_number(match, at)
         fails = True
         if not is_closed:
             whole = last < len(tokens) - 1
@@ -64,6 +66,24 @@ class Tries(SentenceReader):
         count.kind = "count"
         tokens.append(count)
         return match.last
+
+    def _doubt_number(self, match: Match, at: int) -> None:
+        """BT151 for `keep asking Bob "Ready?" until he says yes, at most 4 times`, which would ask on and on."""
+        word, number = self._vocabulary.word, match.values[0].text
+        words = self._text.span(at, match.last)
+        one, other = f"... {number} times", f"... {word('until')} ..."
+        self._calls.problems.append(diagnostic("BT151", words, words=words.text, one=one, other=other))
+
+    def paused(self) -> None:
+        """`try to open it up to 3 times with 5 s between attempts`: the pause that the last token says."""
+        tokens = self._tokens
+        if tokens[-2].kind != "count":
+            return
+        depth, first = 0, statement_start(tokens, len(tokens))
+        for token in reversed(tokens[first:]):  # those in brackets have their own number
+            depth += (token.kind == "close") - (token.kind == "open")
+            if depth == 0 and token.kind in ("try", "retry"):
+                tokens[-1].kind = "every"
 
     def again(self, match: Match, at: int) -> int:
         """`A. If that fails, wait 5 s and try again, at most 3 times`: A again, with pauses; without a number once.
@@ -188,8 +208,10 @@ class Tries(SentenceReader):
         """`..., try again, at most 3 times. Then B`: B in any case, or only if all tries fail (BT151)."""
         text = self._text
         at += text.words[at] == END_OF_STATEMENT
+        is_joined = text.words[at - 1] != END_OF_STATEMENT
+        at += text.words[at] == ","
         joint = longest(self._vocabulary.trie, text, at, self._context)
-        if joint is None or joint.meaning.role != "then":
+        if joint is None or joint.meaning.role not in (("then", "and") if is_joined else ("then",)):
             return
         end = next(i for i in range(joint.last, len(text.words)) if text.words[i] in _STATEMENT_ENDS)
         span, rest = text.span(at, end), text.span(joint.last, end).text

@@ -265,6 +265,8 @@ class WordReader:
         if role in ("then", "otherwise") and begins(tokens):
             if role == "otherwise" or not self._outcomes.goes_on_endlessly():
                 self._outcomes.doubt_rule(role, at, match.last)
+        if role == "politeness" and self._text.words[at] in self._vocabulary.asking["lasting"]:
+            self._order.lasts(at)
         if role == "politeness" or (role in ("following", "then") and self._order.says_nothing(match, at)):
             return after_politeness(tokens, self._text.words, match)
         if at in self._text.going_on:
@@ -342,17 +344,13 @@ class WordReader:
             self._is_apart = True
         if role in ("if", "unless"):
             self._requests.finding_out(match.last)
+            self._order.rule_of(tokens[-1])
         self._order.connect(role)
-        if role == "then" and len(tokens) > 1:
-            self._outcomes.found(match, at)
-        if role in ("if_fails", "if_unanswered", "otherwise"):
-            tokens[-1].kind = "or" if role != "otherwise" else role
-            tokens[-1].value = "if_fails" if match.meaning.role != "otherwise" else None
+        if role == "apart" and len(tokens) > 1:
+            self._tries.paused()
         if role in _ROLES:
             tokens[-1].kind = _ROLES[role][len(tokens) > 1 and tokens[-2].kind == "stop"]
-        if role in ("if_works", "if_it_works", "if_fails"):
-            self._outcomes.trailing(match.last)
-        return self._outcomes.unanswered(match.last) if role == "if_unanswered" else match.last
+        return self._outcomes.connect(match, role, at)
 
     def _statement(self, prefix: Prefix, at: int) -> int:
         """A statement about a value of the mission. Returns where to go on."""
