@@ -41,6 +41,7 @@ LONG: dict[str, str] = {
     "btlang/web/package-lock.json": "made by npm",
     "btlang/robots/capabilities.py": "what robots can do, one capability after the other",
     "btlang/builders.py": "made from the catalogue",
+    "btlang/cli/verbs.py": "the table of verbs",
     "docs/cli.md": "made from the help of the commands",
     "docs/api.md": "made from the docstrings",
     "btlang/session.py": "a session, and the runs that it makes",

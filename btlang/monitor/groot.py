@@ -7,23 +7,29 @@ import os
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import partial
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.status import IDLE, RUNNING
 from btlang.monitor import groot_protocol as protocol
 from btlang.monitor.breakpoints import Breakpoints
-from btlang.monitor.groot_tree import GrootTree
+from btlang.monitor.groot_tree import GrootTree, models_of
 from btlang.run.bus import INLINE
 from btlang.run.controls import Controls
-from btlang.run.events import Event, StatusesChanged
+from btlang.run.events import Event, Sampled, StatusesChanged
 from btlang.run.snapshot import HALTED, Follower
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+    from btlang.api import Mission
+    from btlang.run.snapshot import State, WatchedNodes
+    from btlang.session import Run
 
 
 _HEARTBEAT = 5.0  # seconds without a question after which breakpoints are off
@@ -232,3 +238,58 @@ def _hooks(content: bytes) -> Any:
         if depth > _MOST_DEEP:
             raise ValueError("too many brackets")
     return json.loads(content)
+
+
+class GrootMonitor:
+    """A monitor that shows a run to Groot2; see btlang.run.terminal.run_mission."""
+
+    def __init__(self, server: GrootServer) -> None:
+        self.server = server
+        self.hooks = server.breakpoints
+
+    def watch_run(self, run: Run, mission: Mission) -> None:
+        """Answer about this run from now on."""
+        nodes = run.nodes
+        self.server.watch(run.follower, partial(groot_tree, nodes, mission), nodes.values)
+        run.bus.add(self.server)
+
+
+@contextmanager
+def groot_monitor(port: int, controls: Controls) -> Iterator[GrootMonitor]:
+    """Show runs to Groot2 until the end of the block. Raises MissionError (BT085, BT086)."""
+    server = GrootServer(port, controls)
+    try:
+        yield GrootMonitor(server)
+    finally:
+        server.close()
+
+
+class ReplayMonitor:
+    """A sink that shows a recorded run to Groot2 while it is played."""
+
+    def __init__(self, server: GrootServer, nodes: WatchedNodes, mission: Mission) -> None:
+        self._server = server
+        self._values: dict[str, Any] = {}
+        self._follower = Follower(nodes)
+        server.watch(self._follower, partial(groot_tree, nodes, mission), self._values_of)
+
+    def __call__(self, event: Event) -> None:
+        """Take an event of the recording."""
+        if isinstance(event, Sampled):
+            self._values = {**self._values, **event.values}
+            return
+        self._follower(event)
+        self._server(event)
+
+    def jump(self, state: State) -> None:
+        """Go on from another place of the recording."""
+        self._follower.jump(state)
+
+    def _values_of(self, index: int) -> dict[str, Any]:
+        """Return the values of the whole mission: no others are recorded."""
+        return self._values if index == 0 else {}
+
+
+def groot_tree(nodes: WatchedNodes, mission: Mission) -> GrootTree:
+    """Make the tree of a run of a mission."""
+    return GrootTree(nodes, nodes.parent, mission.label, models_of(lambda: str(mission.to("xml"))))

@@ -16,7 +16,7 @@ from btlang.repl.draft import MissionDraft
 from btlang.repl.entering import entries
 from btlang.repl.store import Kept, Store, state_folder
 from btlang.repl.welcome import welcome
-from btlang.run.command import ENDING_SIGNALS, run_mission
+from btlang.run.terminal import ENDING_SIGNALS, run_mission
 from btlang.text.output import can_draw, has_colour, show
 from btlang.vocabulary.shipped import ENGLISH
 

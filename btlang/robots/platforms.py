@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 ROBOTS = {
     "simulated": "btlang.robots.simulation:Simulation",
     "devices": "btlang.components.device_robot:connect_devices",
-    "ros": "btlang.ros.command:connect_ros",
-    "actions": "btlang.ros.command:connect_actions",
+    "ros": "btlang.ros.connectors:connect_ros",
+    "actions": "btlang.ros.connectors:connect_actions",
 }
 """Functions of a world and a body, by what the robot runs on; imported when it is asked for."""
 
@@ -25,7 +25,7 @@ ALL = "all"
 COMPONENTS = "btlang.components.connection:component_connection"
 """What adds the components and devices of a body to a connection."""
 
-NODES = "btlang.ros.command:component_nodes"
+NODES = "btlang.ros.connectors:component_nodes"
 """What leads the components of a body that are ROS 2 nodes."""
 
 

@@ -6,7 +6,7 @@ import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from btlang.run.command import ENDING_SIGNALS
+from btlang.run.terminal import ENDING_SIGNALS
 
 
 class EndingSignals:

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from btlang.diagnostics.errors import MissionError
-from btlang.run.command import run_mission
+from btlang.run.terminal import run_mission
 from btlang.text.output import show
 
 TYPE_CHECKING = False
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from contextlib import AbstractContextManager
 
-    from btlang.run.command import Mission, Session
+    from btlang.run.terminal import Mission, Session
 
 
 def run_module(

@@ -23,7 +23,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.editing.words import Words
-from btlang.run.command import interrupted_by_signals
+from btlang.run.terminal import interrupted_by_signals
 from btlang.server.access import AccessError, address_of, is_same_site
 from btlang.server.accounts import Accounts, Identity
 from btlang.server.app import Api

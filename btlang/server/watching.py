@@ -18,8 +18,8 @@ from btlang.api import Mission
 from btlang.recording.reader import read_recording
 from btlang.robots.motion.urdf import urdf
 from btlang.robots.world_problem import read_world
-from btlang.run.command import EMERGENCY_STOPPED
 from btlang.run.controls import Controls
+from btlang.run.terminal import EMERGENCY_STOPPED
 from btlang.run.world_input import WorldInput
 from btlang.server.accounts import Accounts
 from btlang.server.links import RobotLink
@@ -75,7 +75,7 @@ class NoTasks:
 
 
 class PageMonitor:
-    """Shows a run on a page; see btlang.run.command.run_mission. It's also the reach of `link`, the page's robot.
+    """Shows a run on a page; see btlang.run.terminal.run_mission. It's also the reach of `link`, the page's robot.
 
     `world` is None for a robot whose map isn't known.
     """

@@ -19,7 +19,7 @@ from statistics import median
 
 import btlang
 from btlang.engine.compile import outline
-from btlang.monitor.command import groot_monitor
+from btlang.monitor.groot import groot_monitor
 from btlang.recording.bundle import files_of
 from btlang.recording.reader import RecordedNodes, read_recording
 from btlang.recording.recorder import Recorder

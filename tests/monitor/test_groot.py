@@ -19,8 +19,7 @@ from hypothesis import strategies as st
 
 import btlang
 from btlang.cli import main
-from btlang.monitor.command import GrootMonitor
-from btlang.monitor.groot import GrootServer
+from btlang.monitor.groot import GrootMonitor, GrootServer
 from btlang.monitor.groot_protocol import MOST_NODES
 from btlang.monitor.groot_tree import GrootTree
 from btlang.run.controls import Controls
