@@ -24,7 +24,7 @@ PUBLIC: dict[str, tuple[str, ...]] = {
         "whenever", "while_do_else",
     ),
     "btlang.components.component": ("Component", "Parameter"),
-    "btlang.decorators": ("action", "condition", "quantity"),
+    "btlang.vocabulary.decorators": ("action", "condition", "quantity"),
     "btlang.diagnostics.diagnostic": ("Diagnostic",),
     "btlang.diagnostics.errors": ("MissionError",),
     "btlang.engine.leaves.leaf": ("ActionFailed", "Failed", "NotThere", "Unknown"),

@@ -10,11 +10,11 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
 from btlang.frontends.table import frontend_of, read_text
-from btlang.gc_pause import gc_paused
-from btlang.mission_vocabulary import described, mission_vocabulary, world_of, world_vocabulary
 from btlang.passes import compile_mission, errors_of, lower_mission, run_passes
 from btlang.passes.compilation import Compilation
-from btlang.record import Record
+from btlang.robots.mission_vocabulary import described, mission_vocabulary, world_of, world_vocabulary
+from btlang.support.gc_pause import gc_paused
+from btlang.support.record import Record
 from btlang.text.output import show
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Fact, Program, all_facts, says_ports
@@ -28,8 +28,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.mission_vocabulary import Path
     from btlang.passes.compilation import Origins
+    from btlang.robots.mission_vocabulary import Path
     from btlang.robots.registry import Connect
     from btlang.run.outcome import Outcome
     from btlang.tree.dump import Outline

@@ -10,9 +10,9 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.script.values import kept
 from btlang.frontends.table import read_text
-from btlang.mission_vocabulary import described, world_vocabulary
 from btlang.passes import compile_mission, errors_of
-from btlang.record import Record
+from btlang.robots.mission_vocabulary import described, world_vocabulary
+from btlang.support.record import Record
 from btlang.text.python_line import calling_line
 from btlang.text.source import NOWHERE, Source, Span
 from btlang.tree.ast import Fact, all_facts

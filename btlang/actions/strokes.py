@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Protocol
 
-from btlang.record import Record
 from btlang.robots.capabilities import Gesturing, Operation, Voice
 from btlang.robots.geometry import Point
 from btlang.robots.robot import RobotError
 from btlang.robots.said_gestures import said_gesture
 from btlang.speech.marks import Mark
+from btlang.support.record import Record
 
 _LOOKS_AHEAD = 4.0  # seconds before a word in which the way to a stroke is planned
 _PERIOD = 0.2  # seconds to the next tick, as long as none has shown how long that takes

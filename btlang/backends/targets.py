@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from importlib import import_module
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.node import Tree
 from btlang.vocabulary.lexicon import Lexicon
 

@@ -10,7 +10,7 @@ import shlex
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 _TAKES_FILES = frozenset(("FILE", "FILE|CODE", "OUT", "DIR", "FOLDER", "NAME|DIR", "ROBOT", "LANG"))
 """Names of values that are, or may be, paths."""
@@ -172,11 +172,11 @@ SHELLS: dict[str, Callable[[list[CompletedVerb]], Iterator[str]]] = {"bash": _ba
 
 def print_script(options: Namespace) -> int:
     """Print the completion script of a shell."""
+    from btlang.cli.examples import all_examples
     from btlang.cli.parser import verb_parser
     from btlang.cli.verbs import VERBS
-    from btlang.examples import all_examples
-    from btlang.mission_vocabulary import world_vocabulary
     from btlang.robots.body_file import shipped_bodies
+    from btlang.robots.mission_vocabulary import world_vocabulary
     from btlang.robots.platforms import ROBOTS
     from btlang.text.output import pass_on
     from btlang.vocabulary.items import items

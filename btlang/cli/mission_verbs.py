@@ -11,7 +11,7 @@ from btlang.api import Mission, format_mission
 from btlang.cli.missions import hinting, mission_of, parsed_mission, typed_source
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.testing.names import is_test_file
 from btlang.text.output import listing_width, pass_on, show
 from btlang.text.source import Source
@@ -189,7 +189,7 @@ def _make_words(options: argparse.Namespace) -> None:
 
 def show_examples(options: argparse.Namespace) -> int:
     """List, print or copy the example missions."""
-    from btlang import examples
+    from btlang.cli import examples
 
     chosen = examples.found(options.name) if options.name else examples.all_examples()
     if options.copy is not None:

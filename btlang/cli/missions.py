@@ -108,7 +108,7 @@ def _example(name: str) -> str:
     """Return the file of a shipped mission, unless there is a file of its name here."""
     if os.path.lexists(name) or not name.isidentifier():
         return ""
-    from btlang.examples import path_of
+    from btlang.cli.examples import path_of
 
     return path_of(name)
 

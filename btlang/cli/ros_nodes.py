@@ -19,7 +19,7 @@ from btlang.cli.robots import platform_of
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.instance import EngineError
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.robots.needs import lacking
 from btlang.robots.registry import connector
 from btlang.ros.available import require_interfaces, require_ros

@@ -16,10 +16,10 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import reason_of
 from btlang.robots.sockets import socket_folder
+from btlang.support.user_dirs import user_dir
 from btlang.task.companion import require_server
 from btlang.text.output import show
 from btlang.text.source import NOWHERE
-from btlang.user_dirs import user_dir
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

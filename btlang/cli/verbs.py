@@ -654,7 +654,7 @@ _TABLE = (
         examples=(("btc grammar --to gbnf -o mission.gbnf", "for llama.cpp"),),
     ),
     Verb(
-        "mcp", SHARE, "let language models write and simulate missions, as an MCP server", "btlang.mcp_server:serve",
+        "mcp", SHARE, "let language models write and simulate missions, as an MCP server", "btlang.server.mcp:serve",
         WORDS, examples=(("btc mcp", "the command for your MCP client"),),
     ),
     Verb(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 UNCONFIGURED, INACTIVE, ACTIVE, FINALIZED = STATES = "unconfigured", "inactive", "active", "finalized"
 

@@ -11,8 +11,8 @@ from btlang.components.component import ComponentAbsent, ComponentError
 from btlang.components.life_cycle import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED
 from btlang.components.location import located
 from btlang.engine.leaves.leaf import ActionFailed, NotThere, described
-from btlang.record import Record
 from btlang.robots.body import ComponentPart
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from btlang.devices import kinds
 from btlang.devices.kinds import Command, Reading
 from btlang.engine.leaves.leaf import ActionFailed, Unknown, reason_of
-from btlang.record import Record
 from btlang.robots.geometry import Pose
+from btlang.support.record import Record
 from btlang.text.json_text import dump_json, load_json
 
 TYPE_CHECKING = False

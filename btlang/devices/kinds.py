@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 
 class Reading(Record):

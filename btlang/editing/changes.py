@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 
 class Change(Record):

@@ -11,9 +11,9 @@ from btlang.editing.syntax import Syntax
 from btlang.editing.values import abilities, values_of
 from btlang.editing.words import Words
 from btlang.frontends.table import frontend_of
-from btlang.gc_pause import gc_paused
 from btlang.printer.mission import printer_of
 from btlang.printer.phrase import is_written
+from btlang.support.gc_pause import gc_paused
 from btlang.text.source import Source
 from btlang.tree.ast import Phrase, Program
 

@@ -21,7 +21,7 @@ from btlang.frontends.mission.reader import read_mission
 from btlang.frontends.table import frontend_of
 from btlang.passes import compile_mission, lower_mission
 from btlang.printer.sentence import statements
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Source, Span
 from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon

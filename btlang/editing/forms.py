@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from btlang.editing.syntax import Unplaced
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon
 

@@ -15,7 +15,7 @@ from btlang.editing.words import Words
 from btlang.frontends.mission.reader import lexed
 from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.printer.exact import is_one_piece, quoted
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source, Span
 from btlang.tree import ast
 from btlang.tree.catalogue import SUBTREE

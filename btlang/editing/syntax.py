@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from btlang.passes import LOWERING, run_passes
 from btlang.passes.compilation import Compilation
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree import ast
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon

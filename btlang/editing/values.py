@@ -7,7 +7,7 @@ from functools import partial
 
 from btlang.editing.syntax import Unplaced
 from btlang.printer.phrase import value_of
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon
 

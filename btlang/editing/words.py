@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from btlang.api import Mission, parse_tree
 from btlang.diagnostics.errors import MissionError
-from btlang.mission_vocabulary import mission_vocabulary, world_vocabulary
+from btlang.robots.mission_vocabulary import mission_vocabulary, world_vocabulary
 from btlang.text.escaping import one_line
 from btlang.text.source import Source
 from btlang.vocabulary.lexicon import Lexicon

@@ -12,10 +12,10 @@ from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import Device, DeviceError
 from btlang.devices.drivers import SIMULATED
 from btlang.devices.kinds import JointState, JointTarget
-from btlang.interrupts import interrupts_later
 from btlang.robots.body import Body
 from btlang.robots.body_file import unusable_robot
 from btlang.robots.joints import joint_of
+from btlang.support.interrupts import interrupts_later
 from btlang.text.output import show
 
 _EACH = 0.1  # seconds between two commands that keep servos loose

@@ -9,7 +9,7 @@ import warnings
 import numpy as np
 
 from btlang.maps.data_text import missing
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.toml_table import Problem
 
 TYPE_CHECKING = False

@@ -10,8 +10,8 @@ import numpy as np
 from btlang.diagnostics.reading import is_below, real_path, reason_of
 from btlang.maps.fields import number, numbers, shown
 from btlang.maps.images import MapImage, read_image
-from btlang.record import Record
 from btlang.robots.geometry import Pose
+from btlang.support.record import Record
 from btlang.text.toml_table import Problem
 
 TYPE_CHECKING = False

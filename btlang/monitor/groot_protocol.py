@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.record import Record
+from btlang.support.record import Record
 
 PROTOCOL = 2
 FULL_TREE, STATUS, BLACKBOARDS = b"T", b"S", b"B"

@@ -8,7 +8,7 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -8,7 +8,6 @@ from math import dist
 
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.status import IDLE, RUNNING, SKIPPED
-from btlang.record import Record
 from btlang.robots.geometry import Point, Pose
 from btlang.run.bus import INLINE
 from btlang.run.events import (
@@ -30,6 +29,7 @@ from btlang.run.events import (
 )
 from btlang.run.lines import is_asked_wait
 from btlang.run.robot_state import Movements, Whereabouts, asked
+from btlang.support.record import Record
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.record import Record
+from btlang.support.record import Record
 
 INK = "#1f2933"
 SOFT = "#6b7680"

@@ -10,7 +10,7 @@ from btlang.passes.scripts import is_prepared
 from btlang.pictures.letters import shown
 from btlang.pictures.statuses import LastStatuses, by_definition
 from btlang.printer.phrase import MARKUP, seconds
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree
 

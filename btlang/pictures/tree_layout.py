@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from btlang.pictures.tree_block import HEAD, STUB, Block
 from btlang.pictures.tree_boxes import Box
-from btlang.record import Record
+from btlang.support.record import Record
 
 
 class Spot(Record):

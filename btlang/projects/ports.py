@@ -9,7 +9,7 @@ from btlang.engine.instance import blackboard_key
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
 from btlang.projects.places import attribute_name, attribute_value, place_of
 from btlang.projects.port_values import wanted
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Span
 from btlang.text.spelling import is_misspelling, nearest
 from btlang.tree.catalogue import CATALOGUE, SUBTREE

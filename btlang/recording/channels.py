@@ -7,7 +7,6 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 
 from btlang.engine.status import FAILURE, NAMES
-from btlang.record import Record
 from btlang.run.events import (
     LOGGED,
     Ended,
@@ -23,6 +22,7 @@ from btlang.run.events import (
 )
 from btlang.run.json_log import as_json, described
 from btlang.run.robot_state import Movements
+from btlang.support.record import Record
 from btlang.text.json_text import shallow
 from btlang.tree.node import Node
 

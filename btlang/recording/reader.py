@@ -12,12 +12,12 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import reason_of
 from btlang.engine.status import NAMES
 from btlang.engine.status_trace import Changes
-from btlang.record import Record
 from btlang.recording.channels import CLASSES, LOG, POSE, SCAN, STATE, STATUSES, THINGS, VALUES
 from btlang.recording.recorder import ABOUT
 from btlang.robots.geometry import Pose
 from btlang.run.events import Event, PeriodPassed, Sampled, StatusesChanged
 from btlang.run.robot_state import RobotState, Whereabouts
+from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Span
 from btlang.tree.node import Node
 

@@ -11,11 +11,11 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, unwritable
 from btlang.frontends.mission.symbols.definitions import find_definitions
 from btlang.frontends.mission.symbols.phrases import Phrases
-from btlang.record import Record
 from btlang.repl.draft import Entry, MissionDraft
 from btlang.repl.store import Store
 from btlang.robots.robot import Robot, RobotError
 from btlang.robots.world import said
+from btlang.support.record import Record
 from btlang.text.output import can_draw, listing_width
 from btlang.text.source import Source
 from btlang.text.table import Table

@@ -13,12 +13,12 @@ from btlang.diagnostics.errors import MissionError
 from btlang.engine.blackboard import Blackboard
 from btlang.frontends.mission.reader import DEFAULT_PARSER, lexed, read_mission
 from btlang.frontends.mission.tokens.lexer import Lexer
-from btlang.mission_vocabulary import mission_vocabulary
 from btlang.passes import compile_mission, errors_of, run_passes
 from btlang.passes.compilation import Compilation
-from btlang.record import Record
+from btlang.robots.mission_vocabulary import mission_vocabulary
 from btlang.robots.registry import runs_on
 from btlang.session import Session
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, Program, all_facts, parts
 from btlang.tree.dump import Outline

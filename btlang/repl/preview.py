@@ -7,8 +7,8 @@ from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.completion.completer import Completion, completions
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.lexer import Lexer
-from btlang.record import Record
 from btlang.repl.draft import MissionDraft
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.tree.dump import Outline
 from btlang.vocabulary.language_tables import CONNECTIVES

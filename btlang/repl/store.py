@@ -8,8 +8,8 @@ import time
 from pathlib import Path
 
 from btlang.diagnostics.reading import reason_of
-from btlang.record import Record
-from btlang.user_dirs import user_dir
+from btlang.support.record import Record
+from btlang.support.user_dirs import user_dir
 
 try:
     import fcntl

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from math import inf
 
-from btlang.record import Record
 from btlang.speech.grammar import spoken
 from btlang.speech.recogniser import Expected
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from itertools import pairwise
 from math import cos, dist, inf, radians, sqrt
 
-from btlang.interrupts import interrupts_later
 from btlang.robots.body import Body, Limits
 from btlang.robots.faults import Faults
 from btlang.robots.geometry import Point, Pose, wrap
@@ -16,6 +15,7 @@ from btlang.robots.parts import BasePart
 from btlang.robots.robot import RobotError
 from btlang.robots.surroundings import Surroundings
 from btlang.robots.world import Place, Thing, World, said
+from btlang.support.interrupts import interrupts_later
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.record import Record
 from btlang.robots.body import Body
 from btlang.robots.gesture import BEARING
 from btlang.robots.gesture_file import ARTICLES, phrase_forms
 from btlang.robots.needs import lack, needs_of
 from btlang.robots.world import World
 from btlang.speech.marks import read_marks
+from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Span
 from btlang.text.spelling import nearest
 from btlang.tree.catalogue import SUBTREE

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from btlang.record import Record
 from btlang.robots.geometry import Pose
+from btlang.support.record import Record
 
 
 class Station(Record):

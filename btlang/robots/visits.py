@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from random import Random
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.time_of_day import DAY
 
 _LEAST, _MOST = 0.5, 1.5  # of the time that a visit usually takes

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from itertools import pairwise
 
-from btlang.record import Record
 from btlang.robots.geometry import Point, Pose, Segment, contains
 from btlang.robots.likeness import Parts, head_of, of_person, of_thing, wears
 from btlang.robots.visits import Visits
+from btlang.support.record import Record
 from btlang.text.time_of_day import USUAL_START
 from btlang.vocabulary.references import HOME, PARTS
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from btlang.record import Record
 from btlang.robots.visits import Visits
 from btlang.robots.world import Door, Fault, Person, Stop, World, WorldObject
 from btlang.robots.world_tables import ANYWHERE
+from btlang.support.record import Record
 from btlang.text.time_of_day import USUAL_START, WEEKDAYS, shown
 from btlang.text.toml_writing import toml_value
 

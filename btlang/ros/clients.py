@@ -14,7 +14,6 @@ from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from btlang.record import Record
 from btlang.ros.executor_thread import ExecutorThread
 from btlang.ros.gate import Gate
 from btlang.ros.graph import full_name, is_ready, no_listener, no_publisher, no_server
@@ -22,6 +21,7 @@ from btlang.ros.latest import Latest, NodeClock, latest_of
 from btlang.ros.lease import Lease
 from btlang.ros.waiting import wait_until
 from btlang.ros.word import type_name
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -9,11 +9,11 @@ from typing import Any
 
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from btlang.record import Record
 from btlang.robots.motion.guard.guard import check_velocity
 from btlang.robots.robot import RobotError
 from btlang.ros.poses import BASE
 from btlang.ros.times import duration
+from btlang.support.record import Record
 
 _ABSURD = 1e4  # radians or metres of a joint
 _ROUNDING = 1.05  # of a limit

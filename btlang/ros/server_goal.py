@@ -14,7 +14,6 @@ from rclpy.node import Node
 from unique_identifier_msgs.msg import UUID
 
 from btlang.engine.leaves.leaf import NotThere
-from btlang.record import Record
 from btlang.robots.geometry import Pose, wrap
 from btlang.ros.awake import AWAKE
 from btlang.ros.executor_thread import ExecutorThread
@@ -22,6 +21,7 @@ from btlang.ros.gate import pose_fault
 from btlang.ros.goal_handle import unanswered
 from btlang.ros.lease import Lease
 from btlang.ros.poses import pose_of
+from btlang.support.record import Record
 
 _SHOWS = 1.0  # seconds after a success in which the pose shows it
 _SEEN = 0.3  # seconds after which odometry shows what the robot does

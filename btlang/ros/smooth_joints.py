@@ -11,7 +11,6 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from trajectory_msgs.msg import JointTrajectory
 
-from btlang.record import Record
 from btlang.robots.body import Body
 from btlang.robots.gesture import Gesture, joints_of
 from btlang.robots.joints import joint_of
@@ -27,6 +26,7 @@ from btlang.ros.commands import Reach, motion
 from btlang.ros.joint_states import TRAJECTORY, JointStates, on_wire
 from btlang.ros.subscription_cache import SubscriptionCache
 from btlang.ros.times import stamp
+from btlang.support.record import Record
 
 _AHEAD = 0.05
 """Seconds to come that are settled: so long has a new trajectory to be made and to arrive before it begins."""

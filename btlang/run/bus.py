@@ -8,8 +8,8 @@ from collections import deque
 from collections.abc import Callable
 
 from btlang.engine.clock import Clock
-from btlang.record import Record
 from btlang.run.events import ROBOT_EVENTS, Event, RobotEvent, StatusesChanged
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

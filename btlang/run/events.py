@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from time import time
 
 from btlang.engine.status import FAILURE, IDLE
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
-from btlang.record import Record
 from btlang.run.bus import INLINE
 from btlang.run.events import StatusesChanged
+from btlang.support.record import Record
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, SUBTREE, NodeKind
 
 TYPE_CHECKING = False

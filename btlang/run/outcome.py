@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from btlang.engine.engine import Failure
-from btlang.record import Record
 from btlang.run.standstill import Standstill
 from btlang.run.statuses import Status
+from btlang.support.record import Record
 from btlang.tree.node import Node
 
 SUSPENDED, EMERGENCY = "suspended", "emergency stop"

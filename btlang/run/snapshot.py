@@ -7,12 +7,12 @@ from threading import Lock
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.engine.status_trace import repeats
-from btlang.record import Record
 from btlang.run.bus import INLINE
 from btlang.run.events import Arrived, Ended, Heard, NavigationStarted, PeriodPassed, Said, StatusesChanged, Stopped
 from btlang.run.robot_state import RobotState
 from btlang.run.shape import Shape
 from btlang.run.statuses import Status
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

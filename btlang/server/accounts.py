@@ -9,8 +9,8 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 
-from btlang.record import Record
 from btlang.server.roles import Role
+from btlang.support.record import Record
 from btlang.task.backup import fill_from_backup, write_backup
 from btlang.task.checks import refused
 from btlang.task.database import Mode, StoreError, store_error

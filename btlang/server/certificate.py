@@ -14,8 +14,8 @@ from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
-from btlang.record import Record
 from btlang.server.private_files import write_private
+from btlang.support.record import Record
 
 _DAYS, _RENEWED = 365, 30  # days that one is valid, and before its end when it is renewed
 

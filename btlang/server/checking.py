@@ -26,12 +26,12 @@ from btlang.editing.palette import palette
 from btlang.editing.rename import rename
 from btlang.editing.words import Words
 from btlang.frontends.table import frontend_of
-from btlang.gc_pause import gc_paused
-from btlang.record import Record
 from btlang.recording.trial import tried
 from btlang.server.access import AccessError
 from btlang.server.bodies import text_in
 from btlang.server.utf16 import in_units
+from btlang.support.gc_pause import gc_paused
+from btlang.support.record import Record
 from btlang.testing.trial import results_of
 from btlang.text.source import Source
 from btlang.text.utf16 import Units

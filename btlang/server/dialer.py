@@ -21,13 +21,13 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, WebSocketException
 
 from btlang.diagnostics.reading import reason_of
-from btlang.record import Record
 from btlang.server.access import AccessError
 from btlang.server.certificate import pin
 from btlang.server.fleet import pin_in
 from btlang.server.private_files import write_private
 from btlang.server.reach import STREAM, LocalSockets
 from btlang.server.recordings import listed, piece
+from btlang.support.record import Record
 from btlang.text.escaping import one_line
 from btlang.text.output import show
 

@@ -7,8 +7,8 @@ import secrets
 import time
 from collections.abc import Callable
 
-from btlang.record import Record
 from btlang.server.accounts import secret_hash
+from btlang.support.record import Record
 from btlang.task.checks import refused
 from btlang.task.database import Mode
 from btlang.task.rows import columns_of, from_row, insert

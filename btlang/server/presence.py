@@ -6,10 +6,10 @@ import asyncio
 import itertools
 import json
 
-from btlang.record import Record
 from btlang.server.access import AccessError
 from btlang.server.bodies import text_in
 from btlang.server.sockets import Visitor
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -11,7 +11,6 @@ from itertools import count
 
 from starlette.websockets import WebSocketDisconnect
 
-from btlang.record import Record
 from btlang.ros.bridge.replies import failures, status
 from btlang.server.access import Access, AccessError
 from btlang.server.accounts import Identity
@@ -19,6 +18,7 @@ from btlang.server.bodies import read_object
 from btlang.server.bridge_process import BridgeProcess
 from btlang.server.roles import Role
 from btlang.server.sockets import LOST, Visitor
+from btlang.support.record import Record
 from btlang.text.escaping import one_line
 
 TYPE_CHECKING = False

@@ -6,7 +6,7 @@ from calendar import monthrange
 from collections.abc import Iterator
 from datetime import date
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.enumeration import NTH, joined, nth
 from btlang.text.time_of_day import EVERY_DAY, WEEKDAYS, WEEKEND, WORKDAYS
 

@@ -12,11 +12,11 @@ from btlang.api import Mission, value_key
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.leaves.leaf import described
 from btlang.engine.status import RUNNING
-from btlang.house_rules import HouseRules
 from btlang.run.outcome import EMERGENCY, SUSPENDED
 from btlang.session import Run, Session
 from btlang.task.database import StoreError
 from btlang.task.emergency import EmergencyStop
+from btlang.task.house_rules import HouseRules
 from btlang.task.manager import ENDED, Manager, recovered
 from btlang.task.outbox import Outbox
 from btlang.task.recordings import Recordings

@@ -10,7 +10,6 @@ from functools import partial
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.house_rules import HouseRules, house_rules, no_house_rules
 from btlang.robots.needs import needs_of_tree
 from btlang.robots.preflight import check_mission
 from btlang.robots.registry import runs_on
@@ -22,6 +21,7 @@ from btlang.task.emergency import EmergencyStop, latch_path
 from btlang.task.executor import Executor
 from btlang.task.feed import Feed
 from btlang.task.handler import Handler
+from btlang.task.house_rules import HouseRules, house_rules, no_house_rules
 from btlang.task.manager import DAY, Manager
 from btlang.task.messages import Answer, Command, as_json, read_command
 from btlang.task.missions import MissionReader

@@ -9,8 +9,8 @@ from collections.abc import Mapping
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.record import Record
 from btlang.run.field_types import field_type
+from btlang.support.record import Record
 from btlang.task.keepable import can_be_kept
 from btlang.task.task import Kind, Missed, Overlap, Restart
 from btlang.text.source import NOWHERE

@@ -6,8 +6,8 @@ import os
 import re
 
 from btlang.robots.sockets import socket_folder
+from btlang.support.user_dirs import user_dir
 from btlang.task.messages import wrong
-from btlang.user_dirs import user_dir
 
 USUAL_NAME = "robot"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from datetime import date, datetime, timedelta
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.task.days import Days
 from btlang.task.rule import Rule
 from btlang.task.rule_reader import EXAMPLE, read_rule_in

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from enum import StrEnum
 from functools import cache
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.task.task import Kind, Missed, MissionText, Overlap, Restart, State
 from btlang.text.json_text import dump_json
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.task.days import Days
 from btlang.text.enumeration import joined
 from btlang.text.time_of_day import shown

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.task.backup import write_backup
 from btlang.task.database import Database, Mode, store_error
 from btlang.task.migrations import open_database

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btlang.api import Mission
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree.catalogue import SUBTREE

@@ -12,7 +12,7 @@ from btlang.backends.engine import bind_leaf
 from btlang.engine.clock import Clock
 from btlang.engine.leaves.leaf import Failed, LeafBinding
 from btlang.engine.leaves.signature import LeafSignature
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.testing.commands import Command
 from btlang.vocabulary.lexicon import Lexicon
 

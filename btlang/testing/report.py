@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from xml.etree import ElementTree
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.testing.runner import Result, brief_time
 from btlang.text.escaping import one_line
 

@@ -7,12 +7,12 @@ from functools import partial
 
 from btlang.api import Mission
 from btlang.engine.blackboard import Blackboard
-from btlang.record import Record
 from btlang.robots.registry import Connector, body_of
 from btlang.robots.world import World
 from btlang.run.controls import Controls
 from btlang.run.outcome import Outcome
 from btlang.session import Run, Session
+from btlang.support.record import Record
 from btlang.testing.chaos import Chaos
 from btlang.testing.commands import Command, find_command
 from btlang.testing.coverage import statuses_seen

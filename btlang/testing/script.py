@@ -9,10 +9,10 @@ from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine, EngineError
 from btlang.engine.status import SUCCESS
-from btlang.record import Record
 from btlang.run.bus import INLINE
 from btlang.run.controls import Controls
 from btlang.run.events import Event, PeriodPassed
+from btlang.support.record import Record
 from btlang.testing.observations import Observations
 from btlang.testing.test import ALWAYS, BEFORE, EVENT, FINALLY, FOR, HOLDS, NEVER, MissionTest, Step
 from btlang.tree.node import Node, Tree

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, Line, Words
 from btlang.vocabulary.lexicon import Lexicon

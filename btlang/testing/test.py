@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btlang.api import Mission
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.testing.fakes import Fake
 from btlang.text.source import Span
 from btlang.tree.node import Tree

@@ -19,11 +19,11 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import OUTSIDE, included_path, is_below, read_source
 from btlang.frontends.mission.symbols.needs import WORDS as NEEDED_WORDS
-from btlang.house_rules import house_rules
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.printer.layout import laid_out
-from btlang.record import Record
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.robots.registry import body_of
+from btlang.support.record import Record
+from btlang.task.house_rules import house_rules
 from btlang.testing.pieces import Pieces, moved
 from btlang.testing.statements import Statement, statements_of
 from btlang.testing.test import MissionTest

@@ -13,7 +13,7 @@ from markdown_it import MarkdownIt
 from btlang.cli import main
 from btlang.documents.keys import KeyReader
 from btlang.documents.markdown import block, code, escaped, file_name
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.tree.node import Node
 from tests.conftest import matches_golden
 from tests.corpus.test_team import TEAM

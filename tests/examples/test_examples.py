@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from btlang.cli import main
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.robots import simulation
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.robots.simulated import SimulatedRobot
 
 from .cases import CASES, Case

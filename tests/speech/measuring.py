@@ -6,12 +6,12 @@ import time
 from collections.abc import Sequence
 
 from btlang.actions.conversation import answers, meaning_of
-from btlang.record import Record
 from btlang.robots.body import Body, Ears
 from btlang.speech.attention import Attention
 from btlang.speech.engine import Settings
 from btlang.speech.pocketsphinx import PocketSphinx
 from btlang.speech.recogniser import RATE, Expected, RecogniserSettings, Understood
+from btlang.support.record import Record
 from tests.speech.sounds import AFTER, guide, lines, recorded
 
 WAKE = "hello robot"

@@ -14,9 +14,9 @@ import pytest
 
 from btlang.api import parse_tree
 from btlang.diagnostics.errors import MissionError
-from btlang.house_rules import house_rules
 from btlang.session import Session
 from btlang.task.house import read_schedules
+from btlang.task.house_rules import house_rules
 from btlang.task.missions import MissionReader
 from btlang.task.paths import socket_path
 from btlang.task.store import open_store

@@ -16,7 +16,7 @@ from btlang.devices.dynamixel.polling import Polling
 from btlang.devices.dynamixel.protocol import OVERHEAD
 from btlang.devices.dynamixel.servo import WATCHDOG_SET, Orders, Restarted, Servo
 from btlang.devices.kinds import Command, JointTarget, Reading
-from btlang.record import Record
+from btlang.support.record import Record
 
 _RATE = 100.0
 _MORE_TRIES = 2  # to find a servo when the line is opened

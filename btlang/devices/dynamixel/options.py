@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from btlang.devices.driver import Device, DeviceError
 from btlang.devices.dynamixel.protocol import HIGHEST_ID
-from btlang.record import Record
+from btlang.support.record import Record
 
 _HIGHEST_BAUD = 4_500_000
 

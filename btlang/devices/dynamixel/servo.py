@@ -9,7 +9,7 @@ from btlang.devices.dynamixel import control_table as table
 from btlang.devices.dynamixel.client import Client
 from btlang.devices.dynamixel.options import ServoOptions
 from btlang.devices.kinds import JointState, JointTarget
-from btlang.record import Record
+from btlang.support.record import Record
 
 WATCHDOG_SET = round(0.2 / table.WATCHDOG_UNIT)
 """What the watchdog of a servo is set to: 200 ms without an instruction on the line stop it."""

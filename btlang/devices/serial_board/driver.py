@@ -23,7 +23,7 @@ from btlang.devices.serial_board.messages import (
 )
 from btlang.devices.serial_board.options import BoardOptions, ChannelOptions, read_options
 from btlang.devices.serial_board.values import COMMANDS, KIND_NUMBERS, READINGS, Tally
-from btlang.record import Record
+from btlang.support.record import Record
 
 _SHARE = 0.8  # of what a line carries that is used
 _SLOWEST = 12.5  # cycles a second, so that a board that moves hears a few before it stops alone

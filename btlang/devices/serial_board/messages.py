@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from struct import Struct
 
 from btlang.devices.serial_board.values import COMMANDS, KIND_NUMBERS, READINGS
-from btlang.record import Record
+from btlang.support.record import Record
 
 VERSION = 1
 """Of the protocol."""

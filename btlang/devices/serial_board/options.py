@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from btlang.devices.driver import Device, DeviceError
-from btlang.record import Record
+from btlang.support.record import Record
 
 _SEARCHED = "board "
 _BOARD = {"baud": 115_200, "rate": 50.0, "board": ""}

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from btlang.record import Record
 from btlang.robots.motion.course import Limits, Piece, State
 from btlang.robots.motion.kinematics import Array
+from btlang.support.record import Record
 
 _TINY = 1e-9
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from btlang.record import Record
 from btlang.robots.motion.course import Limits, Piece, State, on_quintic, quintic
 from btlang.robots.motion.kinematics import Array
+from btlang.support.record import Record
 
 _LOOKS = 25  # at each quintic
 _ROUNDS = 30

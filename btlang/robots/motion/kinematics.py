@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from btlang.record import Record
 from btlang.robots.body import Body, Joint, Vector
+from btlang.support.record import Record
 
 Array = npt.NDArray[np.float64]
 

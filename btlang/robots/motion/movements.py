@@ -8,11 +8,11 @@ from typing import Protocol
 
 import numpy as np
 
-from btlang.record import Record
 from btlang.robots.gesture import Gesture
 from btlang.robots.motion.course import Limits, Piece, State, to_state
 from btlang.robots.motion.key_frames import Frames, curve
 from btlang.robots.motion.kinematics import Array
+from btlang.support.record import Record
 
 _SAME = 1e-9
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from math import floor, inf
 
-from btlang.record import Record
 from btlang.robots.motion.braking import brake, braking
 from btlang.robots.motion.course import PERIOD, Limits, Piece, State, to_state
 from btlang.robots.motion.movements import Movement, Tail, resting, staying
+from btlang.support.record import Record
 
 _EXACT = 1e-6
 _SLOWED = 1.02  # times as long: less is not worth a word

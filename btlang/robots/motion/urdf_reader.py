@@ -8,11 +8,11 @@ from xml.parsers import expat
 
 import numpy as np
 
-from btlang.record import Record
 from btlang.robots.body import Capsule, Joint, Vector
 from btlang.robots.body_file import BodyError
 from btlang.robots.joint_tables import BASE
 from btlang.robots.motion.kinematics import Array
+from btlang.support.record import Record
 from btlang.text.source import Source
 
 _MOVES = ("revolute", "continuous", "prismatic")

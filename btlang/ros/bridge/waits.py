@@ -8,8 +8,8 @@ from collections.abc import Callable
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
-from btlang.record import Record
 from btlang.ros.bridge.replies import reason_of
+from btlang.support.record import Record
 
 _LOOK = 0.02  # seconds between two looks
 

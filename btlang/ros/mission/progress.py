@@ -5,9 +5,9 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from btlang.record import Record
 from btlang.run.bus import INLINE
 from btlang.run.events import Ended, PeriodPassed, StatusesChanged
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.task.executor import NOTHING_TO_DO
 from btlang.task.task import State, Task
 

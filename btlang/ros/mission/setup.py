@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.diagnostics.reading import read_included
-from btlang.record import Record
 from btlang.robots.registry import connector
+from btlang.support.record import Record
 from btlang.task.house import furnished_layer
 from btlang.task.layer import TaskLayer
 from btlang.task.missions import MissionReader

@@ -8,8 +8,8 @@ from typing import Any
 from builtin_interfaces.msg import Time
 from rclpy.node import Node
 
-from btlang.record import Record
 from btlang.ros.node import LATCHED
+from btlang.support.record import Record
 
 COMMANDS = 10
 """How many commands of a topic may wait."""

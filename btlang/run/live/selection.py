@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.record import Record
 from btlang.run.live.choice import Choice, hidden_from
 from btlang.run.shape import Shape
 from btlang.run.snapshot import HALTED, SUSPENDED
+from btlang.support.record import Record
 
 LEAST_HEIGHT = 3
 

@@ -9,7 +9,6 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, suppress
 
-from btlang.record import Record
 from btlang.run.bus import INLINE
 from btlang.run.events import PeriodPassed
 from btlang.run.live import frame
@@ -18,6 +17,7 @@ from btlang.run.live.capture import captured
 from btlang.run.live.keys import GONE, Keys
 from btlang.run.live.screen import Screen
 from btlang.run.live.stopping import stoppable
+from btlang.support.record import Record
 from btlang.text.output import is_unicode
 
 TYPE_CHECKING = False

@@ -15,13 +15,13 @@ from typing import Any
 
 import pytest
 
-from btlang.decorators import action
 from btlang.diagnostics.reading import MOST_BYTES
-from btlang.mcp_server import Tools
+from btlang.server.mcp import Tools
+from btlang.vocabulary.decorators import action
 
 mcp = pytest.importorskip("mcp")
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parent.parent.parent
 Ask = Callable[..., Awaitable[dict[str, Any]]]
 
 
@@ -105,7 +105,7 @@ def test_a_mission_without_end_is_bounded() -> None:
 
 
 def test_a_simulation_that_takes_too_long_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.mcp_server._PATIENCE", 0.05)
+    monkeypatch.setattr("btlang.server.mcp._PATIENCE", 0.05)
     answer = Tools().simulate("repeat wave", seconds=1e9, ticks=10**9)
     assert (answer["ok"], answer["stopped"]) == (False, "it took too long to simulate")
 
@@ -117,7 +117,7 @@ def test_a_command_that_never_returns_is_left_alone(monkeypatch: pytest.MonkeyPa
     def meditate() -> None:
         released.wait(30)
 
-    monkeypatch.setattr("btlang.mcp_server._PATIENCE", 0.2)
+    monkeypatch.setattr("btlang.server.mcp._PATIENCE", 0.2)
     answer = Tools([meditate]).simulate("meditate")
     released.set()
     assert (answer["ok"], answer["stopped"]) == (False, "a command never returns")

@@ -7,7 +7,7 @@ from copy import deepcopy
 
 import pytest
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 
 class Pair(Record, uncompared=("right",)):

@@ -10,7 +10,7 @@ import pytest
 
 import btlang
 from btlang.frontends.mission.tokens.lexer import Lexer
-from btlang.gc_pause import gc_paused
+from btlang.support.gc_pause import gc_paused
 from btlang.text.source import Source
 from btlang.vocabulary.load import load_vocabulary
 
@@ -73,8 +73,8 @@ def test_garbage_that_was_made_in_pauses_goes(monkeypatch: pytest.MonkeyPatch) -
         def __init__(self) -> None:
             self.itself = self
 
-    monkeypatch.setattr("btlang.gc_pause._MANY", 100)
-    monkeypatch.setattr("btlang.gc_pause._LOOK_AFTER", 20_000)
+    monkeypatch.setattr("btlang.support.gc_pause._MANY", 100)
+    monkeypatch.setattr("btlang.support.gc_pause._LOOK_AFTER", 20_000)
     made = weakref.WeakSet[Node]()
     for _ in range(10):
         with gc_paused:
@@ -84,8 +84,8 @@ def test_garbage_that_was_made_in_pauses_goes(monkeypatch: pytest.MonkeyPatch) -
 
 def test_what_somebody_froze_stays_frozen(monkeypatch: pytest.MonkeyPatch) -> None:
     """And the collector works as it would without btlang."""
-    monkeypatch.setattr("btlang.gc_pause._MANY", -1)
-    monkeypatch.setattr("btlang.gc_pause._LOOK_AFTER", 0)
+    monkeypatch.setattr("btlang.support.gc_pause._MANY", -1)
+    monkeypatch.setattr("btlang.support.gc_pause._LOOK_AFTER", 0)
     monkeypatch.setattr(gc, "collect", lambda: pytest.fail("it looks through everything"))
     gc.freeze()
     before = gc.get_freeze_count()

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from btlang.interrupts import interrupts_later
+from btlang.support.interrupts import interrupts_later
 
 
 @pytest.fixture(autouse=True)

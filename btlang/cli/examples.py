@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source, Span
 from btlang.vocabulary.shipped import shipped
 
