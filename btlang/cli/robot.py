@@ -20,19 +20,16 @@ from btlang.robots.answers_file import read_answers
 from btlang.robots.registry import connector, runs_in_real_time
 from btlang.run.emergency import emergency_signal
 from btlang.task import messages
-from btlang.task.backup import restore_backup
-from btlang.task.client import Client, emergency_stop
-from btlang.task.companion import companions, require_companions
-from btlang.task.house import furnished_layer
-from btlang.task.layer import KEPT, TaskLayer
-from btlang.task.library_handler import kept_text
-from btlang.task.manager import DAY
-from btlang.task.missions import MissionReader
-from btlang.task.paths import USUAL_NAME, data_folder
-from btlang.task.socket_server import SocketServer
-from btlang.task.store import open_store
-from btlang.task.task import Kind
-from btlang.task.timeliness import keep_ticks_in_time
+from btlang.task.commands.client import USUAL_NAME, Client, data_folder, emergency_stop
+from btlang.task.commands.companion import companions, require_companions
+from btlang.task.commands.socket_server import SocketServer
+from btlang.task.commands.store_handlers import kept_text
+from btlang.task.execution.manager import DAY
+from btlang.task.execution.missions import MissionReader
+from btlang.task.layer import KEPT, TaskLayer, furnished_layer, keep_ticks_in_time
+from btlang.task.store.backup import restore_backup
+from btlang.task.store.records import Kind
+from btlang.task.store.task_store import open_store
 from btlang.text.escaping import one_line
 from btlang.text.output import pass_on, show
 

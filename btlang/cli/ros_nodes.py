@@ -63,9 +63,9 @@ def _spin_node(options: argparse.Namespace, came: EndingSignals) -> int:
     from btlang.ros.mission.setup import Setup, robot_name
     from btlang.ros.mission.stop import StopNode
     from btlang.ros.node import SpunNode
-    from btlang.task.companion import companions
-    from btlang.task.socket_server import SocketServer
-    from btlang.task.timeliness import keep_ticks_in_time
+    from btlang.task.commands.companion import companions
+    from btlang.task.commands.socket_server import SocketServer
+    from btlang.task.layer import keep_ticks_in_time
 
     robot = robot_name(options.namespace, options.name)
     setup = Setup(

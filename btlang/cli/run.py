@@ -78,7 +78,7 @@ def _run_shown(options: argparse.Namespace, mission: Mission, robot: Connector, 
 
 def _note_robots_up() -> None:
     """Say that what is typed moves none of the robots that are up: somebody may want to stop one."""
-    from btlang.task.paths import names_up
+    from btlang.task.commands.client import names_up
 
     if names := names_up():
         who = f"robot '{names[0]}', which is up" if len(names) == 1 else "robots that are up"

@@ -17,7 +17,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import reason_of
 from btlang.robots.sockets import socket_folder
 from btlang.support.user_dirs import user_dir
-from btlang.task.companion import require_server
+from btlang.task.commands.companion import require_server
 from btlang.text.output import show
 from btlang.text.source import NOWHERE
 

@@ -13,9 +13,9 @@ from btlang.cli.parser import check_act, check_count
 from btlang.cli.verbs import VERBS
 from btlang.diagnostics.reading import read_source
 from btlang.task import messages
-from btlang.task.client import Client
+from btlang.task.commands.client import Client
 from btlang.task.messages import Answer, Command, wrong
-from btlang.task.task import State
+from btlang.task.store.records import State
 from btlang.text.escaping import one_line
 from btlang.text.output import pass_on, show
 

@@ -9,11 +9,11 @@ import sys
 import time
 
 from btlang.cli.server import door_path, notify_changes, server_folder
-from btlang.task.checks import refused
-from btlang.task.companion import require_server
+from btlang.task.commands.checks import refused
+from btlang.task.commands.client import checked_name, names_up
+from btlang.task.commands.companion import require_server
 from btlang.task.messages import wrong
-from btlang.task.moments import shown
-from btlang.task.paths import checked_name, names_up
+from btlang.task.schedule.calendar import format_moment
 from btlang.text.escaping import one_line
 from btlang.text.output import pass_on, show
 
@@ -49,7 +49,7 @@ def _do(options: argparse.Namespace, accounts: Accounts) -> None:
     if act == "trail":
         for entry in accounts.entries():
             by = f"{one_line(entry.user)} from {one_line(entry.address)}"
-            show(f"{shown(entry.time, now)}  {by}: {one_line(entry.what)}: {one_line(entry.outcome)}")
+            show(f"{format_moment(entry.time, now)}  {by}: {one_line(entry.what)}: {one_line(entry.outcome)}")
         return
     if act in ("backup", "restore"):
         _copy(options, accounts)
@@ -58,7 +58,7 @@ def _do(options: argparse.Namespace, accounts: Accounts) -> None:
         raise wrong(act, "it needs the name of a user")
     if act == "tokens":
         for token in accounts.tokens(name):
-            used = "never used" if token.used is None else f"used at {shown(token.used, now)}"
+            used = "never used" if token.used is None else f"used at {format_moment(token.used, now)}"
             show(f"{one_line(token.name)}  {used}")
         return
     show(_changed(options, accounts))
@@ -115,7 +115,7 @@ def _check_name(name: str) -> None:
 
 def _role(role: str, act: str) -> Role:
     from btlang.server.roles import Role
-    from btlang.task.checks import choice
+    from btlang.task.commands.checks import choice
 
     return choice(Role, role, "role", act)
 
@@ -176,8 +176,8 @@ def _list_invited(fleet: Fleet, *, as_json: bool) -> None:
         pass_on(json.dumps({"robots": listed}, indent=2) + "\n")
         return
     for each in robots:
-        seen = "never seen" if each.seen is None else f"last seen at {shown(each.seen, now)}"
-        show(f"{each.name}  {seen if each.key else f'invited at {shown(each.invited, now)}'}")
+        seen = "never seen" if each.seen is None else f"last seen at {format_moment(each.seen, now)}"
+        show(f"{each.name}  {seen if each.key else f'invited at {format_moment(each.invited, now)}'}")
 
 
 def _door() -> tuple[bytes, int]:

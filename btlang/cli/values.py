@@ -155,7 +155,7 @@ def server_address(text: str) -> str:
 def robot_name(text: str) -> str:
     """Read the name of a robot that is up, or ""."""
     from btlang.diagnostics.errors import MissionError
-    from btlang.task.paths import checked_name
+    from btlang.task.commands.client import checked_name
 
     try:
         return text and checked_name(text)

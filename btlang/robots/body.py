@@ -266,7 +266,7 @@ class Body(Record):
     `over` is what it runs on where nothing else is said: a name of btlang.robots.registry.ROBOTS. Joints that a posture
     does not name stay where they are; its steps follow each other. `file` is where this comes from, `world` the path of
     the world file of the place where it works; "" without one. `rules`, `missions` and `schedules` are the paths of
-    what it does where it is up: see btlang.task.house. `forbidden` are pairs of links that may not touch.
+    what it does where it is up: see btlang.task.layer. `forbidden` are pairs of links that may not touch.
     What moves has to get on within the seconds of its `patience`.
     """
 

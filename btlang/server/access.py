@@ -15,7 +15,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.server.accounts import Accounts, Identity
 from btlang.server.passwords import BusyError, Verifier
 from btlang.server.throttle import Throttle
-from btlang.task.keepable import is_whole
+from btlang.task.store.records import is_whole
 from btlang.text.escaping import one_line
 
 TYPE_CHECKING = False

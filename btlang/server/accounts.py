@@ -11,12 +11,12 @@ from contextlib import suppress
 
 from btlang.server.roles import Role
 from btlang.support.record import Record
-from btlang.task.backup import fill_from_backup, write_backup
-from btlang.task.checks import refused
-from btlang.task.database import Mode, StoreError, store_error
-from btlang.task.migrations import migrate
-from btlang.task.rows import columns_of, from_row, insert
-from btlang.task.sqlite import Sqlite
+from btlang.task.commands.checks import refused
+from btlang.task.store.backup import fill_from_backup, write_backup
+from btlang.task.store.database import Mode, StoreError, store_error
+from btlang.task.store.migrations import migrate
+from btlang.task.store.rows import columns_of, from_row, insert
+from btlang.task.store.sqlite import Sqlite
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -34,9 +34,9 @@ from btlang.server.roles import NEEDED
 from btlang.server.rosbridge import Rosbridge
 from btlang.server.sockets import Sockets
 from btlang.task import messages
-from btlang.task.database import StoreError
 from btlang.task.messages import Answer, Command, read_command
-from btlang.task.task import Kind
+from btlang.task.store.database import StoreError
+from btlang.task.store.records import Kind
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from btlang.server.links import RobotLink, Robots
 from btlang.server.outlet import TOPICS
 from btlang.server.presence import Presence
 from btlang.server.sockets import Visitor
-from btlang.task.allowance import Allowance
+from btlang.task.live.feed import Allowance
 from btlang.task.messages import Answer, Command, read_command
 
 TYPE_CHECKING = False

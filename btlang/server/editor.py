@@ -14,8 +14,8 @@ from btlang.server.accounts import Accounts
 from btlang.server.bodies import JsonResponse, json_object, text_in
 from btlang.server.files import Files, TreeFiles, XmlFiles, english_beside, tree_sort
 from btlang.server.local_page import LocalApi, LocalRobots, check_page, local_page, say_where
-from btlang.task.keepable import is_whole
 from btlang.task.messages import Answer
+from btlang.task.store.records import is_whole
 from btlang.text.escaping import one_line
 from btlang.text.output import show
 

@@ -21,8 +21,8 @@ from btlang.frontends.mission.symbols.includes import find_includes
 from btlang.frontends.table import FRONTENDS, frontend_of
 from btlang.server.access import AccessError
 from btlang.server.checking import MOST_CHARACTERS
-from btlang.task.answers import differences
-from btlang.task.checks import refused
+from btlang.task.commands.answers import differences
+from btlang.task.commands.checks import refused
 from btlang.task.messages import Answer
 from btlang.testing.names import ENDING, is_test_file
 from btlang.text.source import Source, Span

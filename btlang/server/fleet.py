@@ -9,13 +9,13 @@ from collections.abc import Callable
 
 from btlang.server.accounts import secret_hash
 from btlang.support.record import Record
-from btlang.task.checks import refused
-from btlang.task.database import Mode
-from btlang.task.rows import columns_of, from_row, insert
+from btlang.task.commands.checks import refused
+from btlang.task.store.database import Mode
+from btlang.task.store.rows import columns_of, from_row, insert
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.task.sqlite import Sqlite
+    from btlang.task.store.sqlite import Sqlite
 
 VALID = 3600.0
 """Seconds for which a code is good."""

@@ -12,8 +12,8 @@ from btlang.editing.words import Words
 from btlang.server.outlet import News, Outlet
 from btlang.server.reach import LocalSockets
 from btlang.server.robot_view import RobotView
+from btlang.task.commands.client import names_up
 from btlang.task.messages import Answer, Command, as_json
-from btlang.task.paths import names_up
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import cache
 
 from btlang.server.checking import ASKED, TextQuery
-from btlang.task.command_schema import schema
-from btlang.task.task import Kind
+from btlang.task.commands.schema import schema
+from btlang.task.store.records import Kind
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

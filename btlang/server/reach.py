@@ -7,7 +7,7 @@ import json
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
-from btlang.task.paths import socket_path
+from btlang.task.commands.client import socket_path
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
             """The emergency stop; when it returns the robot has it."""
 
         def watching(self, request: dict[str, Any]) -> AbstractAsyncContextManager[asyncio.StreamReader]:
-            """What happens (btlang.task.feed), a line of JSON each."""
+            """What happens (btlang.task.live.feed), a line of JSON each."""
 
     class ReachElsewhere(Reach, Protocol):
         """A way to a robot of another computer."""

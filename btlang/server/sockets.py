@@ -11,7 +11,7 @@ from btlang.server.access import Access, AccessError, address_of, is_same_site
 from btlang.server.accounts import Identity
 from btlang.server.bodies import read_object
 from btlang.server.outlet import Outlet
-from btlang.task.allowance import Allowance
+from btlang.task.live.feed import Allowance
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -27,10 +27,10 @@ from btlang.server.local_page import LocalApi, LocalPage, LocalRobots, local_pag
 from btlang.server.reach import LONGEST
 from btlang.server.roles import Role
 from btlang.session import Run
-from btlang.task.feed import Feed
+from btlang.task.live.feed import Feed
 from btlang.task.messages import Answer, EmergencyStop, List
 from btlang.task.messages import Urdf as UrdfCommand
-from btlang.task.task import Change
+from btlang.task.store.records import Change
 from btlang.text.escaping import one_line
 from btlang.text.output import show
 

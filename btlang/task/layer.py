@@ -1,8 +1,10 @@
-"""A robot that is up: its session with all of the task layer, in one process."""
+"""A robot that is up: its session with all of the task layer, and its daily routine from the robot file."""
 
 from __future__ import annotations
 
+import gc
 import os
+import sys
 import time
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -10,34 +12,38 @@ from functools import partial
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import read_source
+from btlang.robots.data_file import DataFileError, as_mission_error, load_data
 from btlang.robots.needs import needs_of_tree
 from btlang.robots.preflight import check_mission
 from btlang.robots.registry import runs_on
 from btlang.run.controls import disable
 from btlang.run.world_input import WorldInput
 from btlang.session import Run, Session
-from btlang.task.component_handler import component_data
-from btlang.task.emergency import EmergencyStop, latch_path
-from btlang.task.executor import Executor
-from btlang.task.feed import Feed
-from btlang.task.handler import Handler
-from btlang.task.house_rules import HouseRules, house_rules, no_house_rules
-from btlang.task.manager import DAY, Manager
-from btlang.task.messages import Answer, Command, as_json, read_command
-from btlang.task.missions import MissionReader
-from btlang.task.recordings import Recordings
-from btlang.task.store import open_store
-from btlang.task.task import MissionText, Task
-from btlang.task.world_handler import takes_talk, takes_visitors
+from btlang.task.commands.handler import Handler
+from btlang.task.commands.robot_handlers import component_data, takes_talk, takes_visitors
+from btlang.task.execution.emergency import EmergencyStop, latch_path
+from btlang.task.execution.executor import Executor
+from btlang.task.execution.manager import DAY, Manager
+from btlang.task.execution.missions import HouseRules, MissionReader, house_rules, no_house_rules
+from btlang.task.execution.run_sinks import Recordings
+from btlang.task.live.feed import Feed
+from btlang.task.messages import AddSchedule, Answer, Command, Put, RemoveSchedule, as_json, read_command
+from btlang.task.schedule.recurrence import read_rule
+from btlang.task.store.records import Missed, MissionText, Overlap, Restart, Schedule, Task
+from btlang.task.store.task_store import open_store
 from btlang.text.source import NOWHERE
+from btlang.text.toml_table import Problems, Table
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import TracebackType
     from typing import Any
 
-    from btlang.robots.registry import Connect
+    from btlang.robots.registry import Connect, Connector
     from btlang.run.events import Sink
+    from btlang.task.execution.missions import MissionReader
+
 
 _IDLE = MissionText("repeat forever: wait 24 h")
 KEPT = 90 * DAY
@@ -50,13 +56,16 @@ _EMPTY = 1.0  # percent of the battery below which no mission begins that needs 
 class TaskLayer:
     """A robot for many tasks of many people: `handle` takes their commands until `close`; `start` begins to do them.
 
-    `robot` and `over` are those of btlang.Session. `reader` has the robot's words and its world, by default those that
-    ship. `folder` keeps what belongs to the robot; `store` is the place of its store (btlang.task.store), by default a
-    file there. `rules` is the path of its house rules. `speed` is that of all runs: if it isn't "real", time is that of
-    the robot, and begins at the moment `begins` (seconds since 1970). `recordings` is the folder for the recordings of
-    tasks, None for none. Tasks that are over are kept for `keeps` seconds. `trouble` gets what goes wrong, for people.
-    `sinks` makes sinks for each run (None: of the house rules between tasks), `down` is what the command of that name
-    calls. `answers` to the robot's questions are those of WorldInput. Raises MissionError.
+    - `robot` and `over` are those of btlang.Session; `reader` has the robot's words and its world, by default those that
+      ship.
+    - `folder` keeps what belongs to the robot; `store` is the place of its store, by default a file there; `rules` is
+      the path of its house rules; `recordings` is the folder for recordings of tasks, None for none.
+    - `speed` is that of all runs: if it isn't "real", time is that of the robot, and begins at the moment `begins`
+      (seconds since 1970). Tasks that are over are kept for `keeps` seconds.
+    - `trouble` gets what goes wrong, for people. `sinks` makes sinks for each run (None: of the house rules between
+      tasks), `down` is what the command of that name calls. `answers` to the robot's questions are those of WorldInput.
+
+    Raises MissionError.
     """
 
     def __init__(
@@ -216,3 +225,119 @@ class TaskLayer:
 def _over(robot: str | Connect, over: str | None) -> str:
     """What the robot runs on."""
     return runs_on(robot, over)[1] if isinstance(robot, str) else getattr(robot, "over", "simulated")
+
+
+LABEL = "robot file"
+"""Of the schedules that a file of schedules has made, and their person."""
+_ENDING = ".txt"
+
+
+class ScheduleFileError(DataFileError):
+    """A file of schedules that can't be used."""
+
+    code = "BT191"
+
+
+def read_schedules(path: str) -> tuple[AddSchedule, ...]:
+    """The schedules in a file, `[[schedule]]` each. Raises MissionError (BT191)."""
+    try:
+        return load_data(path, "a schedule", _schedules, ScheduleFileError)
+    except ScheduleFileError as error:
+        raise as_mission_error(error) from None
+
+
+def furnished_layer(
+    robot: Connector, reader: MissionReader, *, rules: str | None = None, schedules: str | None = None, **options: Any
+) -> TaskLayer:
+    """The task layer of a robot, with the missions, schedules and rules of its file where none are given, and further
+    options of TaskLayer. Raises MissionError.
+    """
+    body = robot.body
+    path = schedules or body.schedules
+    wanted = read_schedules(path) if path else ()
+    layer = TaskLayer(robot, reader, rules=rules or body.rules or None, **options)
+    try:
+        _furnish(layer, body.missions, list(wanted))
+    except BaseException:
+        layer.close()
+        raise
+    return layer
+
+
+def _furnish(layer: TaskLayer, missions: str, wanted: list[AddSchedule]) -> None:
+    """Puts the missions of a folder, "" for none, into the robot's library, and makes these its schedules in place of
+    those that a file has made before. Others stay. Raises MissionError.
+    """
+    for name in sorted(os.listdir(missions)) if missions else ():
+        if name.endswith(_ENDING):
+            text = read_source(os.path.join(missions, name)).text
+            _do(layer, Put(name.removesuffix(_ENDING), text))
+    for known in [each for each in layer.store.schedules() if LABEL in each.labels]:
+        same = next((command for command in wanted if _is_of(command, known, layer)), None)
+        if same is None:
+            _do(layer, RemoveSchedule(known.id))
+        else:
+            wanted.remove(same)  # it goes on, with what it has missed
+    for command in wanted:
+        _do(layer, command)
+
+
+def _do(layer: TaskLayer, command: Command) -> None:
+    """Raises MissionError where it is refused."""
+    layer.handler.do(command, LABEL)
+
+
+def _is_of(command: AddSchedule, schedule: Schedule, layer: TaskLayer) -> bool:
+    """Whether a command would make the same schedule."""
+    text = layer.store.text(command.name)
+    return text is not None and (
+        (str(read_rule(command.rule, command.zone)), command.zone, text.text, command.priority, command.labels)
+        == (schedule.rule, schedule.zone, schedule.mission.text, schedule.priority, schedule.labels)
+        and (command.restart, command.overlap, command.missed, command.within)
+        == (schedule.restart, schedule.overlap, schedule.missed, schedule.within)
+    )
+
+
+def _schedules(top: Table) -> tuple[AddSchedule, ...]:
+    problems = Problems()
+    found = problems.rows(top, "schedule", _schedule)
+    problems.part(lambda: top.finish(None), None)
+    problems.end()
+    return tuple(each for each in found if each is not None)
+
+
+def _schedule(table: Table) -> AddSchedule:
+    rule, zone = table.text("every"), table.text("zone") if table.has("zone") else ""
+    try:
+        read_rule(rule, zone)
+    except MissionError as error:
+        raise table.problem("every", _plain(error)) from None
+    return table.finish(
+        AddSchedule(
+            rule, name=table.text("mission"), zone=zone,
+            priority=int(table.number("priority", 0, low=-100, high=100)),
+            labels=(*table.texts("labels"), LABEL),
+            restart=table.choice("restart", tuple(Restart), Restart.GIVE_UP),
+            overlap=table.choice("overlap", tuple(Overlap), Overlap.SKIP),
+            missed=table.choice("missed", tuple(Missed), Missed.SKIP),
+            within=table.number("within", low=1.0) if table.has("within") else None,
+        )
+    )  # fmt: skip
+
+
+def _plain(error: MissionError) -> str:
+    """The first message with its advice, as part of a sentence."""
+    first = error.diagnostics[0]
+    return f"{first.message} {first.hint}".strip().rstrip(".")
+
+
+_SWITCH = 0.0002  # seconds after which a thread that is at work lets another one go on; 0.005 if nobody says so
+
+
+def keep_ticks_in_time() -> None:
+    """To be called once the robot is up. What there is then is never searched for garbage again (up to 50 ms),
+    and a tick that is due waits for other threads much less than is usual.
+    """
+    gc.collect()
+    gc.freeze()
+    sys.setswitchinterval(_SWITCH)

@@ -11,8 +11,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.run.field_types import field_type
 from btlang.support.record import Record
-from btlang.task.keepable import can_be_kept
-from btlang.task.task import Kind, Missed, Overlap, Restart
+from btlang.task.store.records import Kind, Missed, Overlap, Restart, can_be_kept
 from btlang.text.source import NOWHERE
 from btlang.text.spelling import nearest
 

@@ -23,7 +23,7 @@ from btlang.printer.layout import laid_out
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.robots.registry import body_of
 from btlang.support.record import Record
-from btlang.task.house_rules import house_rules
+from btlang.task.execution.missions import house_rules
 from btlang.testing.pieces import Pieces, moved
 from btlang.testing.statements import Statement, statements_of
 from btlang.testing.test import MissionTest

@@ -30,7 +30,7 @@ MODULES = {
     "access": ("btlang/server/access.py", _ACCESS),
     "throttle": ("btlang/server/throttle.py", _ACCESS),
     "guard": ("btlang/robots/motion/guard/guard.py", _GUARD),
-    "manager": ("btlang/task/manager.py", ["tests/task/test_manager.py"]),
+    "manager": ("btlang/task/execution/manager.py", ["tests/task/test_manager.py"]),
 }
 """The modules, with the tests that are to notice."""
 _TURNED: dict[type[ast.cmpop], type[ast.cmpop]] = {

@@ -25,7 +25,7 @@ from pathlib import Path
 from statistics import median
 
 from btlang.diagnostics.errors import MissionError
-from btlang.task.client import Client, emergency_stop
+from btlang.task.commands.client import Client, emergency_stop
 from btlang.task.messages import Pause, Release, Resume, Show, Submit
 
 _WANTED = 1000  # tasks a second

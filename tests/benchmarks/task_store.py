@@ -16,8 +16,8 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from btlang.task.store import Store, open_store
-from btlang.task.task import MissionText, State, Task
+from btlang.task.store.records import MissionText, State, Task
+from btlang.task.store.task_store import Store, open_store
 from tests.task.places import connection, new_place, server
 
 MISSION = MissionText("go to the lobby then say hello then go to the dock", "tour", values={"speed": 0.5})

@@ -21,9 +21,9 @@ from btlang.robots.world_file import load_world
 from btlang.robots.world_writing import to_toml
 from btlang.run.events import Bumped, Called, Event, Heard, PeriodPassed, Said
 from btlang.speech.marks import read_marks
-from btlang.task.house import furnished_layer
-from btlang.task.missions import MissionReader
-from btlang.task.task import FINAL, State
+from btlang.task.execution.missions import MissionReader
+from btlang.task.layer import furnished_layer
+from btlang.task.store.records import FINAL, State
 from btlang.text.source import Source
 
 GUIDE = Path(__file__).parents[2] / "examples" / "guide"

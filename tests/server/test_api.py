@@ -10,7 +10,7 @@ from websockets.exceptions import InvalidStatus
 from btlang.server.roles import NEEDED, Role
 from btlang.task.layer import TaskLayer
 from btlang.task.messages import COMMANDS
-from btlang.task.task import State
+from btlang.task.store.records import State
 from tests.server.conftest import ROLES
 from tests.server.doors import PASSWORD, Door, close_code, received
 from tests.task.layers import wait_for, wait_until

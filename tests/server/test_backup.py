@@ -17,8 +17,8 @@ from btlang.diagnostics.errors import MissionError
 from btlang.server import accounts as module
 from btlang.server.accounts import Accounts
 from btlang.server.roles import Role
-from btlang.task.backup import restore_backup
-from btlang.task.store import open_store
+from btlang.task.store.backup import restore_backup
+from btlang.task.store.task_store import open_store
 from tests.server.doors import Door
 from tests.task.places import execute_at
 

@@ -28,8 +28,8 @@ from websockets.exceptions import WebSocketException
 from btlang.server.accounts import Accounts
 from btlang.server.door import kept_key
 from btlang.server.roles import Role
-from btlang.task.store import Store, open_store
-from btlang.task.task import FINAL, State
+from btlang.task.store.records import FINAL, State
+from btlang.task.store.task_store import Store, open_store
 from tests.profiles import amount
 from tests.server.doors import Door, Program
 from tests.task.layers import LONG, wait_until

@@ -10,7 +10,7 @@ import pytest
 
 from btlang.server.links import RobotLink
 from btlang.server.outlet import _MOST, _MUCH, News, Outlet
-from btlang.task.allowance import Allowance
+from btlang.task.live.feed import Allowance
 
 
 def statuses(run: str, *changes: tuple[int, str], t: float = 1.0, robot: str = "robot") -> News:

@@ -16,7 +16,7 @@ from btlang.cli import main
 from btlang.server.access import AccessError
 from btlang.server.recordings import listed, path_of
 from btlang.task.layer import TaskLayer
-from btlang.task.task import State
+from btlang.task.store.records import State
 from tests.server.doors import Door, robot_in
 from tests.task.layers import submit, wait_for
 

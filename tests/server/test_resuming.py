@@ -13,7 +13,7 @@ from websockets.sync.client import ClientConnection
 
 from btlang.server.outlet import _MOST
 from btlang.task.layer import TaskLayer
-from btlang.task.task import State
+from btlang.task.store.records import State
 from tests.server.doors import Door, received
 from tests.task.layers import LONG, submit, wait_for, wait_until
 from tests.task.places import a_task

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.task.store import Store, open_store
+from btlang.task.store.task_store import Store, open_store
 from tests.task.places import connection, new_place, server
 
 

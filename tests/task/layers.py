@@ -8,10 +8,10 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
+from btlang.task.commands.client import USUAL_NAME
+from btlang.task.commands.socket_server import SocketServer
 from btlang.task.layer import TaskLayer
-from btlang.task.paths import USUAL_NAME
-from btlang.task.socket_server import SocketServer
-from btlang.task.task import State, Task
+from btlang.task.store.records import State, Task
 
 LONG = 20.0
 """Seconds for what should happen soon."""

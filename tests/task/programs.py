@@ -10,7 +10,7 @@ import sys
 import time
 
 from btlang.diagnostics.errors import MissionError
-from btlang.task.store import Store, open_store
+from btlang.task.store.task_store import Store, open_store
 from tests.task.places import a_task
 
 

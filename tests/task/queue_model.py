@@ -6,7 +6,7 @@ from collections.abc import Callable
 from random import Random
 from typing import Any
 
-from btlang.task.task import Restart, State
+from btlang.task.store.records import Restart, State
 
 from .driven import HOUR, Driven
 

@@ -14,7 +14,7 @@ import pytest
 
 from btlang.cli import main
 from btlang.task.layer import TaskLayer
-from btlang.task.task import State
+from btlang.task.store.records import State
 
 from .layers import ask, refusal, robot_up, submit, task, wait_for, wait_until
 

@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 
-from btlang.task.task import Restart, State
+from btlang.task.store.records import Restart, State
 from tests.profiles import amount
 
 from .driven import Driven
@@ -30,7 +30,7 @@ def problem(robot: Driven, commands: list[Command]) -> str:
 @pytest.fixture(params=["sqlite", "postgres"])
 def robot(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[Driven]:
     for waited in ("_LOOK", "_ANSWER"):  # who would be waited for is this thread
-        monkeypatch.setattr(f"btlang.task.executor.{waited}", 0.0)
+        monkeypatch.setattr(f"btlang.task.execution.executor.{waited}", 0.0)
     driven = Driven(request.param)
     yield driven
     driven.close()

@@ -18,9 +18,9 @@ from pathlib import Path
 
 import pytest
 
-from btlang.task.manager import ENDED
-from btlang.task.store import open_store
-from btlang.task.task import FINAL, State
+from btlang.task.execution.manager import ENDED
+from btlang.task.store.records import FINAL, State
+from btlang.task.store.task_store import open_store
 from tests.profiles import amount
 
 from .layers import LONG, wait_until

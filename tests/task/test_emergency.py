@@ -13,12 +13,12 @@ from pathlib import Path
 import pytest
 
 from btlang.cli import main
-from btlang.task import socket_server
-from btlang.task.emergency import EmergencyStop, latch_path, shut_latch
+from btlang.task.commands import socket_server
+from btlang.task.commands.client import data_folder, socket_path
+from btlang.task.commands.socket_server import SocketServer
+from btlang.task.execution.emergency import EmergencyStop, latch_path, shut_latch
 from btlang.task.messages import Answer
-from btlang.task.paths import data_folder, socket_path
-from btlang.task.socket_server import SocketServer
-from btlang.task.task import State
+from btlang.task.store.records import State
 
 from .layers import ask, layer_in, robot_up, submit, wait_for, wait_until
 

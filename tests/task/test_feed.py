@@ -14,11 +14,11 @@ from typing import Any
 
 import pytest
 
-from btlang.task.feed import _MOST_CHANGES
+from btlang.task.commands.client import USUAL_NAME, socket_path
+from btlang.task.execution.missions import MissionReader
 from btlang.task.layer import TaskLayer
-from btlang.task.missions import MissionReader
-from btlang.task.paths import USUAL_NAME, socket_path
-from btlang.task.task import FINAL, State
+from btlang.task.live.feed import _MOST_CHANGES
+from btlang.task.store.records import FINAL, State
 from btlang.text.source import Source
 from tests.world.worlds import LIVELY
 

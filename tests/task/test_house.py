@@ -10,9 +10,8 @@ import pytest
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.body_file import read_body
 from btlang.robots.registry import connector
-from btlang.task.house import LABEL, furnished_layer, read_schedules
-from btlang.task.layer import TaskLayer
-from btlang.task.missions import MissionReader
+from btlang.task.execution.missions import MissionReader
+from btlang.task.layer import LABEL, TaskLayer, furnished_layer, read_schedules
 from btlang.vocabulary.shipped import STANDARD_BODY
 
 WEEK = """

@@ -18,11 +18,11 @@ import pytest
 from btlang.api import parse_tree
 from btlang.diagnostics.errors import MissionError
 from btlang.run.events import Event, Printed
-from btlang.task import executor
+from btlang.task.execution import executor
+from btlang.task.execution.missions import MissionReader
 from btlang.task.layer import TaskLayer
 from btlang.task.messages import Answer, Submit
-from btlang.task.missions import MissionReader
-from btlang.task.task import FINAL, MissionText, State, Task
+from btlang.task.store.records import FINAL, MissionText, State, Task
 
 from .layers import ask, layer_in, refusal, submit, task, wait_for, wait_until
 

@@ -9,9 +9,9 @@ from urllib.parse import urlsplit
 import pytest
 
 from btlang.run.events import Event, Printed
-from btlang.task.database import store_error
-from btlang.task.store import Store
-from btlang.task.task import FINAL, State, Task
+from btlang.task.store.database import store_error
+from btlang.task.store.records import FINAL, State, Task
+from btlang.task.store.task_store import Store
 
 from .layers import layer_in, refusal, submit, task, wait_for, wait_until
 from .places import connection, execute_at, new_place
@@ -39,7 +39,7 @@ class Server:
 
 @pytest.fixture
 def server(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Server]:
-    monkeypatch.setattr("btlang.task.executor._RETRY", 0.05)
+    monkeypatch.setattr("btlang.task.execution.executor._RETRY", 0.05)
     return Server(tmp_path)
 
 
@@ -96,7 +96,7 @@ def test_a_claim_of_which_nobody_was_told(tmp_path: Path, place: str, monkeypatc
             raise store_error(store.place, "the connection is lost")
         return found
 
-    monkeypatch.setattr("btlang.task.executor._RETRY", 0.05)
+    monkeypatch.setattr("btlang.task.execution.executor._RETRY", 0.05)
     monkeypatch.setattr(Store, "claim", claimed)
     with layer_in(tmp_path, store=place) as layer:
         number = submit(layer, "wave")

@@ -15,12 +15,12 @@ from btlang.api import parse_tree
 from btlang.robots.platforms import ROBOTS
 from btlang.robots.registry import Connector, body_of
 from btlang.robots.simulation import Simulation
-from btlang.task.answers import outdated
+from btlang.task.commands.answers import outdated
+from btlang.task.commands.store_handlers import MOST_CHARACTERS, kept_text
+from btlang.task.execution.missions import MissionReader
 from btlang.task.layer import TaskLayer
-from btlang.task.library_handler import MOST_CHARACTERS, kept_text
 from btlang.task.messages import Put
-from btlang.task.missions import MissionReader
-from btlang.task.task import Kind, Revision
+from btlang.task.store.records import Kind, Revision
 from btlang.text.source import Source
 from tests.conftest import matches_golden
 

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from btlang.task.manager import Manager
-from btlang.task.recurrence import read_rule
-from btlang.task.store import Store, open_store
-from btlang.task.task import Missed, MissionText, Overlap, Restart, Schedule, State, Task
+from btlang.task.execution.manager import Manager
+from btlang.task.schedule.recurrence import read_rule
+from btlang.task.store.records import Missed, MissionText, Overlap, Restart, Schedule, State, Task
+from btlang.task.store.task_store import Store, open_store
 
 DAY = 86_400.0
 NINE = datetime(2026, 3, 2, 9, tzinfo=UTC).timestamp()

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from btlang.task.report import report
-from btlang.task.store import Store, open_store
-from btlang.task.task import FINAL, MissionText, State, Task
+from btlang.task.commands.answers import report
+from btlang.task.store.records import FINAL, MissionText, State, Task
+from btlang.task.store.task_store import Store, open_store
 from tests.profiles import amount
 
 from .museum import DAY, HOUR

@@ -9,9 +9,8 @@ from typing import Any
 import pytest
 
 from btlang.diagnostics.errors import MissionError
-from btlang.task.database import StoreError
-from btlang.task.store import Store, open_store
-from btlang.task.task import (
+from btlang.task.store.database import StoreError
+from btlang.task.store.records import (
     ACTIVE,
     FINAL,
     WAITING,
@@ -27,6 +26,7 @@ from btlang.task.task import (
     State,
     Task,
 )
+from btlang.task.store.task_store import Store, open_store
 from tests.task.places import a_task, execute_at
 
 FULL = Task(

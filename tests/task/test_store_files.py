@@ -14,12 +14,12 @@ from pathlib import Path
 import pytest
 
 from btlang.diagnostics.errors import MissionError
-from btlang.task import migrations
-from btlang.task.backup import restore_backup
-from btlang.task.database import StoreError
-from btlang.task.sqlite import Sqlite
-from btlang.task.store import Store, open_store
-from btlang.task.task import Act, Change, Kind, Revision, State
+from btlang.task.store import migrations
+from btlang.task.store.backup import restore_backup
+from btlang.task.store.database import StoreError
+from btlang.task.store.records import Act, Change, Kind, Revision, State
+from btlang.task.store.sqlite import Sqlite
+from btlang.task.store.task_store import Store, open_store
 from tests.task.places import a_task, closed, execute_at, program
 from tests.task.test_store import FULL, PLAN, reason
 
@@ -167,7 +167,7 @@ def test_an_older_store_is_migrated(place: str, monkeypatch: pytest.MonkeyPatch,
             assert len(store.tasks()) == 2
     before = Path(old).read_bytes()
     restored = str(tmp_path / "restored.db")
-    monkeypatch.setattr("btlang.task.backup.MIGRATIONS", migrations.MIGRATIONS)
+    monkeypatch.setattr("btlang.task.store.backup.MIGRATIONS", migrations.MIGRATIONS)
     restore_backup(old, restored)
     assert Path(old).read_bytes() == before
     with open_store(restored) as store:
@@ -304,7 +304,7 @@ def test_a_full_database(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_a_store_that_is_locked_for_too_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.task.sqlite.PATIENCE", 0.05)
+    monkeypatch.setattr("btlang.task.store.sqlite.PATIENCE", 0.05)
     place = str(tmp_path / "tasks.db")
     with open_store(place) as store, closed(sqlite3.connect(place, isolation_level=None)) as other:
         task = store.add(a_task())

@@ -11,9 +11,9 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule, run_state_machine_as_test
 
-from btlang.task.backup import restore_backup
-from btlang.task.store import open_store
-from btlang.task.task import FINAL, Act, Change, Kind, MissionText, Restart, Revision, Schedule, State, Task
+from btlang.task.store.backup import restore_backup
+from btlang.task.store.records import FINAL, Act, Change, Kind, MissionText, Restart, Revision, Schedule, State, Task
+from btlang.task.store.task_store import open_store
 from tests.profiles import amount
 from tests.task.places import new_place
 

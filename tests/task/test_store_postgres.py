@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from btlang.diagnostics.errors import MissionError
-from btlang.task.database import StoreError
-from btlang.task.postgres import Postgres
-from btlang.task.store import Store, open_store
-from btlang.task.task import State
+from btlang.task.store.database import StoreError
+from btlang.task.store.postgres import Postgres
+from btlang.task.store.records import State
+from btlang.task.store.task_store import Store, open_store
 from tests.task.places import a_task, connection, execute_at, new_place, server
 from tests.task.test_store import reason
 
@@ -107,7 +107,7 @@ def test_what_the_server_refuses(store: Store, place: str, code: str, told: str)
 
 
 def test_a_store_that_is_locked_for_too_long(place: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.task.postgres.PATIENCE", 0.1)
+    monkeypatch.setattr("btlang.task.store.postgres.PATIENCE", 0.1)
     with open_store(place) as store, open_store(place) as other:
         task = store.add(a_task())
         with other._database.transaction() as execute:

@@ -16,8 +16,8 @@ from pathlib import Path
 import pytest
 
 from btlang.diagnostics.errors import MissionError
-from btlang.task.store import Store, open_store
-from btlang.task.task import Act, State
+from btlang.task.store.records import Act, State
+from btlang.task.store.task_store import Store, open_store
 from tests.profiles import amount
 from tests.task.places import a_task, program
 

@@ -15,12 +15,11 @@ import pytest
 from btlang.api import parse_tree
 from btlang.diagnostics.errors import MissionError
 from btlang.session import Session
-from btlang.task.house import read_schedules
-from btlang.task.house_rules import house_rules
-from btlang.task.missions import MissionReader
-from btlang.task.paths import socket_path
-from btlang.task.store import open_store
-from btlang.task.task import MissionText, State
+from btlang.task.commands.client import socket_path
+from btlang.task.execution.missions import MissionReader, house_rules
+from btlang.task.layer import read_schedules
+from btlang.task.store.records import MissionText, State
+from btlang.task.store.task_store import open_store
 from tests.ros.declared import Peer
 from tests.ros.domains import free_domain
 from tests.task.layers import robot_up, submit, wait_for, wait_until

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from btlang.task.missions import MissionReader
-from btlang.task.task import State
+from btlang.task.execution.missions import MissionReader
+from btlang.task.store.records import State
 from hatch_build import build_page
 from tests.task.layers import layer_in, submit, wait_for
 from tests.web.packages import ROOT, WEB

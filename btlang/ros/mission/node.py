@@ -19,10 +19,10 @@ from btlang.ros.mission.topics import ERROR, OK, WARN, Topics
 from btlang.ros.mission.tree_topic import TreeTopic
 from btlang.run.lines import Lines
 from btlang.task import messages
-from btlang.task.emergency import shut_latch
-from btlang.task.follower import Follower
+from btlang.task.execution.emergency import shut_latch
+from btlang.task.live.feed import Follower
 from btlang.task.messages import Answer, Command
-from btlang.task.task import ACTIVE, FINAL, WAITING, Change, MissionText, State, Task
+from btlang.task.store.records import ACTIVE, FINAL, WAITING, Change, MissionText, State, Task
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -173,7 +173,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         return layer.handle(command, person)
 
     def watch(self, *wanted: Any) -> Generator[dict[str, Any]]:
-        """What happens on the robot (see `btlang.task.feed.Feed.watch`); nothing if there is none."""
+        """What happens on the robot (see `btlang.task.live.feed.Feed.watch`); nothing if there is none."""
         if self._layer is not None:
             yield from self._layer.feed.watch(*wanted)
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from btlang.support.record import Record
-from btlang.task.executor import NOTHING_TO_DO
-from btlang.task.task import State, Task
+from btlang.task.execution.executor import NOTHING_TO_DO
+from btlang.task.store.records import State, Task
 
 _OUTCOMES = {State.COMPLETED: "success", State.FAILED: "failure", State.ERROR: "failure"}
 _PHRASES = {"success": "succeeded", "failure": "failed", "skipped": "had nothing to do", "stopped": "was stopped"}

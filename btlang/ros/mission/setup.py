@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from btlang.diagnostics.reading import read_included
 from btlang.robots.registry import connector
 from btlang.support.record import Record
-from btlang.task.house import furnished_layer
-from btlang.task.layer import TaskLayer
-from btlang.task.missions import MissionReader
-from btlang.task.task import MissionText
+from btlang.task.execution.missions import MissionReader
+from btlang.task.layer import TaskLayer, furnished_layer
+from btlang.task.store.records import MissionText
 from btlang.vocabulary.shipped import ENGLISH
 
 TYPE_CHECKING = False
