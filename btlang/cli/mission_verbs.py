@@ -217,7 +217,7 @@ def edit(options: argparse.Namespace) -> int:
         from btlang.editing.in_editor import edit_xml
 
         return edit_xml(options)
-    from btlang.server import editor
+    from btlang.server.page import editor
 
     return editor.edit(options)
 

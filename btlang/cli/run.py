@@ -45,7 +45,7 @@ def run(options: argparse.Namespace) -> int:
         _note_robots_up()
     if not options.watch:
         return _run_shown(options, mission, robot)
-    from btlang.server.watching import watched
+    from btlang.server.page.watching import watched
 
     name = "mission" if options.text is not None or options.file == "-" else os.path.basename(options.file)
     with watched(mission, name, robot.body, robot.over == "simulated", options.browser) as monitor:

@@ -25,8 +25,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     import argparse
 
-    from btlang.server.accounts import Accounts
-    from btlang.server.certificate import Certificate
+    from btlang.server.accounts.accounts import Accounts
+    from btlang.server.accounts.certificate import Certificate
 
 _ADMINISTRATOR = "admin"
 _NICE = 5  # robots on this computer come first
@@ -54,10 +54,10 @@ def serve(options: argparse.Namespace) -> int:
     """Serve until SIGINT or SIGTERM; return the exit code. Raises MissionError."""
     require_server()
     from btlang.ros.available import require_package
-    from btlang.server.accounts import Accounts
-    from btlang.server.app import Api
-    from btlang.server.door import kept_key, listening
-    from btlang.server.door import serve as serve_door
+    from btlang.server.accounts.accounts import Accounts
+    from btlang.server.http.app import Api
+    from btlang.server.http.listener import kept_key, listening
+    from btlang.server.http.listener import serve as serve_door
 
     if (options.cert is None) != (options.key is None):
         options.refuse("--cert and --key go together")
@@ -111,8 +111,8 @@ def _is_loopback(host: str) -> bool:
 
 
 def _certificate(options: argparse.Namespace) -> Certificate:
-    from btlang.server.certificate import Certificate, fingerprint_of, own_certificate
-    from btlang.server.door import tls
+    from btlang.server.accounts.certificate import Certificate, fingerprint_of, own_certificate
+    from btlang.server.http.listener import tls
 
     try:
         if options.cert is None:
@@ -133,8 +133,7 @@ def door_path() -> str:
 
 def _keep_door(certificate: Certificate | None, port: int) -> None:
     """Write the pin and the port for `btc robot invite`, which is another process."""
-    from btlang.server.certificate import pin_of
-    from btlang.server.private_files import write_private
+    from btlang.server.accounts.certificate import pin_of, write_private
 
     with suppress(FileNotFoundError):
         os.unlink(door_path())
@@ -145,8 +144,8 @@ def _keep_door(certificate: Certificate | None, port: int) -> None:
 
 def _first_password(accounts: Accounts) -> str:
     """Add an administrator if there is no user, and return the password; return "" if there is one."""
-    from btlang.server.passwords import hashed, random_password
-    from btlang.server.roles import Role
+    from btlang.server.accounts.accounts import Role
+    from btlang.server.accounts.passwords import hashed, random_password
 
     if accounts.users():
         return ""

@@ -21,15 +21,14 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     import argparse
 
-    from btlang.server.accounts import Accounts
-    from btlang.server.fleet import Fleet
-    from btlang.server.roles import Role
+    from btlang.server.accounts.accounts import Accounts, Role
+    from btlang.server.fleet.fleet import Fleet
 
 
 def run_act(options: argparse.Namespace) -> int:
     """Do what the act says; return the exit code. Raises MissionError."""
     require_server("user")
-    from btlang.server.accounts import Accounts
+    from btlang.server.accounts.accounts import Accounts
 
     accounts = Accounts(server_folder(), notify_changes)
     try:
@@ -81,7 +80,7 @@ def _copy(options: argparse.Namespace, accounts: Accounts) -> None:
 
 def _changed(options: argparse.Namespace, accounts: Accounts) -> str:
     """Do what changes something; return what to say."""
-    from btlang.server.passwords import hashed
+    from btlang.server.accounts.passwords import hashed
 
     act, name, item = options.act, options.name, options.item
     if act == "add":
@@ -114,7 +113,7 @@ def _check_name(name: str) -> None:
 
 
 def _role(role: str, act: str) -> Role:
-    from btlang.server.roles import Role
+    from btlang.server.accounts.accounts import Role
     from btlang.task.commands.checks import choice
 
     return choice(Role, role, "role", act)
@@ -122,7 +121,7 @@ def _role(role: str, act: str) -> Role:
 
 def _asked_password(name: str) -> str:
     """Ask for a password: twice at a terminal, else a line of standard input."""
-    from btlang.server.passwords import problem
+    from btlang.server.accounts.passwords import problem
 
     if sys.stdin is not None and sys.stdin.isatty():
         password = getpass.getpass("Password: ")
@@ -139,8 +138,8 @@ def _asked_password(name: str) -> str:
 def change_invitations(options: argparse.Namespace) -> int:
     """Invite a robot elsewhere, revoke an invitation or list them; return the exit code. Raises MissionError."""
     require_server()
-    from btlang.server.accounts import Accounts
-    from btlang.server.fleet import Fleet
+    from btlang.server.accounts.accounts import Accounts
+    from btlang.server.fleet.fleet import Fleet
 
     accounts = Accounts(server_folder())
     try:

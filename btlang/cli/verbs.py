@@ -158,7 +158,7 @@ _TABLE = (
         ),
     ),
     Verb(
-        "watch", RUN, "show a recorded run in the browser", "btlang.server.watching:serve", (BROWSER, RECORDING),
+        "watch", RUN, "show a recorded run in the browser", "btlang.server.page.watching:serve", (BROWSER, RECORDING),
         examples=(("btc watch tea.mcap", "opens the browser"),),
     ),
     Verb(

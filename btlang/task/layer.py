@@ -56,8 +56,8 @@ _EMPTY = 1.0  # percent of the battery below which no mission begins that needs 
 class TaskLayer:
     """A robot for many tasks of many people: `handle` takes their commands until `close`; `start` begins to do them.
 
-    - `robot` and `over` are those of btlang.Session; `reader` has the robot's words and its world, by default those that
-      ship.
+    - `robot` and `over` are those of btlang.Session; `reader` has the robot's words and its world, by default those
+      that ship.
     - `folder` keeps what belongs to the robot; `store` is the place of its store, by default a file there; `rules` is
       the path of its house rules; `recordings` is the folder for recordings of tasks, None for none.
     - `speed` is that of all runs: if it isn't "real", time is that of the robot, and begins at the moment `begins`

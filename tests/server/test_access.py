@@ -11,12 +11,10 @@ from typing import Any
 import pytest
 from starlette.requests import Request
 
-from btlang.server import access as module
-from btlang.server.access import COOKIE, CSRF, Access, AccessError, address_of, is_same_site
-from btlang.server.accounts import Accounts, Identity
-from btlang.server.passwords import hashed
-from btlang.server.roles import Role
-from btlang.server.throttle import FREE, Throttle
+from btlang.server.accounts.accounts import Accounts, Identity, Role
+from btlang.server.accounts.passwords import FREE, Throttle, hashed
+from btlang.server.http import access as module
+from btlang.server.http.access import COOKIE, CSRF, Access, AccessError, address_of, is_same_site
 from tests.server.doors import PASSWORD
 
 HERE, THERE = "10.0.0.1", "10.0.0.2"
@@ -130,7 +128,7 @@ def test_who_mistyped_and_then_was_right_is_forgiven(guard: Guard) -> None:
 
 
 def test_too_many_at_once(guard: Guard, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.server.passwords._MOST_WAITING", 0)
+    monkeypatch.setattr("btlang.server.accounts.passwords._MOST_WAITING", 0)
     error = refusal(lambda: guard.log_in("bo"))
     assert (error.status, error.wait) == (503, 1.0)
     monkeypatch.undo()
@@ -244,7 +242,7 @@ def test_wrong_passwords_are_forgotten_after_a_quarter_of_an_hour() -> None:
 
 
 def test_of_too_many_the_least_recent_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.server.throttle._MOST_KNOWN", 2)
+    monkeypatch.setattr("btlang.server.accounts.passwords._MOST_KNOWN", 2)
     throttle = Throttle(lambda: 0.0)
     for key in ("ann", "bo", "ann", "ed"):
         throttle.wrong(key)

@@ -7,7 +7,7 @@ import json
 import pytest
 from websockets.exceptions import InvalidStatus
 
-from btlang.server.roles import NEEDED, Role
+from btlang.server.accounts.accounts import NEEDED, Role
 from btlang.task.layer import TaskLayer
 from btlang.task.messages import COMMANDS
 from btlang.task.store.records import State

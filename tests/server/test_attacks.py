@@ -18,12 +18,10 @@ from hypothesis import HealthCheck, given
 from starlette.testclient import TestClient, WebSocketDisconnect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from btlang.server.accounts import Accounts
-from btlang.server.app import Api
-from btlang.server.door import listening
-from btlang.server.passwords import LONGEST, Verifier, fits, hashed, problem
-from btlang.server.roles import Role
-from btlang.server.throttle import Throttle
+from btlang.server.accounts.accounts import Accounts, Role
+from btlang.server.accounts.passwords import LONGEST, Throttle, Verifier, fits, hashed, problem
+from btlang.server.http.app import Api
+from btlang.server.http.listener import listening
 from tests.profiles import amount, searches
 from tests.server.doors import PASSWORD, Door, close_code, received, trusting
 from tests.task.test_commands import commands
@@ -335,7 +333,7 @@ def test_the_last_administrator_stays(tmp_path: Path) -> None:
 
 
 def test_the_trail_fills_no_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.server.accounts.MOST_ENTRIES", 3)
+    monkeypatch.setattr("btlang.server.accounts.accounts.MOST_ENTRIES", 3)
     with closing(Accounts(str(tmp_path))) as accounts:
         for number in range(5):
             accounts.log("ann", "::1", str(number), "refused")

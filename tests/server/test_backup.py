@@ -14,9 +14,8 @@ import pytest
 
 from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
-from btlang.server import accounts as module
-from btlang.server.accounts import Accounts
-from btlang.server.roles import Role
+from btlang.server.accounts import accounts as module
+from btlang.server.accounts.accounts import Accounts, Role
 from btlang.task.store.backup import restore_backup
 from btlang.task.store.task_store import open_store
 from tests.server.doors import Door

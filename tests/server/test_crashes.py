@@ -25,9 +25,8 @@ import pytest
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import WebSocketException
 
-from btlang.server.accounts import Accounts
-from btlang.server.door import kept_key
-from btlang.server.roles import Role
+from btlang.server.accounts.accounts import Accounts, Role
+from btlang.server.http.listener import kept_key
 from btlang.task.store.records import FINAL, State
 from btlang.task.store.task_store import Store, open_store
 from tests.profiles import amount

@@ -18,9 +18,9 @@ from websockets.exceptions import InvalidStatus
 
 from btlang.cli import main
 from btlang.editing.words import Words
-from btlang.server import editor, local_page
-from btlang.server.accounts import Accounts
-from btlang.server.files import Files
+from btlang.server.accounts.accounts import Accounts
+from btlang.server.page import editor, local_page
+from btlang.server.page.editor import Files
 from tests.server.doors import LocalDoor, Reply, received
 from tests.server.test_edit_trees import TREE
 from tests.task.layers import LONG

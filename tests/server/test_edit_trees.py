@@ -10,7 +10,7 @@ import pytest
 
 from btlang.api import parse_tree
 from btlang.editing.words import Words
-from btlang.server.files import TreeFiles, XmlFiles, english_beside, tree_sort
+from btlang.server.page.editor import TreeFiles, XmlFiles, english_beside, tree_sort
 
 TREE = """<root BTCPP_format="4" main_tree_to_execute="Main">
   <BehaviorTree ID="Main"><Sequence><!-- both --><Open door="kitchen"/><SubTree ID="Grab"/></Sequence></BehaviorTree>

@@ -13,9 +13,8 @@ from typing import Any
 
 import pytest
 
-from btlang.server.fetching import Pieces, fetched
-from btlang.server.reach import STREAM
-from btlang.server.recordings import PIECE
+from btlang.server.live.robot_connection import STREAM
+from btlang.server.page.recordings import PIECE, Pieces, fetched
 from tests.server.cable import Cable
 from tests.server.doors import Door, Reply, received
 from tests.server.elsewhere import Elsewhere, asked_to_watch, btc, command, in_background, invited, is_up

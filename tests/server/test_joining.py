@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from btlang.diagnostics.errors import MissionError
-from btlang.server.accounts import Accounts
-from btlang.server.fleet import VALID, Fleet, pin_in
-from btlang.server.reach import STREAM
-from btlang.server.sockets import FORBIDDEN
+from btlang.server.accounts.accounts import Accounts
+from btlang.server.fleet.fleet import VALID, Fleet, pin_in
+from btlang.server.live.robot_connection import STREAM
+from btlang.server.live.sockets import FORBIDDEN
 from tests.server.cable import Cable
 from tests.server.doors import Door, close_code, received
 from tests.server.elsewhere import Elsewhere, asked_to_watch, btc, command, in_background, invited, is_up, listed

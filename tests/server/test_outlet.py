@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from btlang.server.links import RobotLink
-from btlang.server.outlet import _MOST, _MUCH, News, Outlet
+from btlang.server.live.client_queue import _MOST, _MUCH, News, Outlet
+from btlang.server.live.robot_feeds import RobotLink
 from btlang.task.live.feed import Allowance
 
 

@@ -11,11 +11,11 @@ from typing import Any
 
 from starlette.applications import Starlette
 
-from btlang.server.access import AccessError
-from btlang.server.openapi import ROUTES
-from btlang.server.outlet import TOPICS
-from btlang.server.pages import page_routes
-from btlang.server.rosbridge import OPERATIONS
+from btlang.server.http.access import AccessError
+from btlang.server.http.openapi import ROUTES
+from btlang.server.http.pages import page_routes
+from btlang.server.live.client_queue import TOPICS
+from btlang.server.live.rosbridge import OPERATIONS
 from btlang.task.layer import TaskLayer
 from tests.server.doors import Door
 

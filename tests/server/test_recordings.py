@@ -13,8 +13,8 @@ import pytest
 
 from btlang.api import parse_tree
 from btlang.cli import main
-from btlang.server.access import AccessError
-from btlang.server.recordings import listed, path_of
+from btlang.server.http.access import AccessError
+from btlang.server.page.recordings import list_recordings, path_of
 from btlang.task.layer import TaskLayer
 from btlang.task.store.records import State
 from tests.server.doors import Door, robot_in
@@ -85,13 +85,13 @@ def test_recordings_of_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[st
     capsys.readouterr()
     (tmp_path / "broken.mcap").write_bytes(b"no recording")
     (tmp_path / "other.txt").write_text("x")
-    assert {each["name"] for each in listed(folder)} == {path.name, "broken.mcap"}
+    assert {each["name"] for each in list_recordings(folder)} == {path.name, "broken.mcap"}
     assert path_of(folder, path.name) == os.path.join(folder, path.name)
     for name in ("../x.mcap", "other.txt", "none.mcap", "", "a/b.mcap", "\0.mcap", "x.mcap\n", "..mcap"):
         with pytest.raises(AccessError):
             path_of(folder, name)
     with pytest.raises(AccessError):
-        listed("")
+        list_recordings("")
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from websockets.sync.client import ClientConnection
 
-from btlang.server.outlet import _MOST
+from btlang.server.live.client_queue import _MOST
 from btlang.task.layer import TaskLayer
 from btlang.task.store.records import State
 from tests.server.doors import Door, received

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.server.outlet import News, Outlet
-from btlang.server.robot_view import STATES, RobotView
+from btlang.server.live.client_queue import News, Outlet
+from btlang.server.live.robot_view import STATES, RobotView
 from tests.profiles import searches
 
 CASES = json.loads(Path(__file__).with_name("robot_views.json").read_text(encoding="utf-8"))

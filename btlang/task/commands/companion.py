@@ -117,7 +117,9 @@ def companions(options: argparse.Namespace, robot: str, report: Callable[[str], 
         if options.join:
             kept = os.path.join(data_folder(robot), "server.json")
             settings = {"robot": robot, "address": options.join, "code": options.code, "kept": kept}
-            started.append(Companion("link to the server", ["btlang.server.dialer"], json.dumps(settings), report))
+            started.append(
+                Companion("link to the server", ["btlang.server.fleet.dialer"], json.dumps(settings), report)
+            )
         yield max([each.start() for each in started], default=0)
     finally:
         for each in started:

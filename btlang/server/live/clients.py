@@ -1,0 +1,211 @@
+"""Clients at /api/ws: log-in, commands with ids, what happens on the robots, and who is here."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import json
+from collections.abc import Awaitable, Callable
+
+from btlang.diagnostics.errors import MissionError
+from btlang.server.accounts.accounts import Identity
+from btlang.server.http.access import AccessError, read_object, text_in
+from btlang.server.live.client_queue import TOPICS
+from btlang.server.live.robot_feeds import RobotLink, Robots
+from btlang.server.live.sockets import Visitor
+from btlang.support.record import Record
+from btlang.task.live.feed import Allowance
+from btlang.task.messages import Answer, Command, read_command
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    Do = Callable[[Identity, str, Command, str], Awaitable[Answer]]
+
+
+SCREENS = ("robots", "watch", "tasks", "write", "runs")
+MOST_PAGES, MOST_PAGES_OF_USER = 200, 20
+LONGEST = 200
+"""Characters of the name of a robot or mission."""
+_PAUSE = 0.2  # seconds between two lists of people
+
+
+class Place(Record):
+    """What a page shows. `mission` is the name of the one that is open, "" for none; `is_changing` says that it isn't
+    saved.
+    """
+
+    robot: str
+    screen: str
+    mission: str
+    is_changing: bool
+
+
+class Presence:
+    """In one event loop. All pages that say what they show are sent the list of people whenever it changes."""
+
+    def __init__(self) -> None:
+        self._pages: dict[Visitor, tuple[int, Place]] = {}
+        self._numbers = itertools.count(1)
+        self._sending: asyncio.TimerHandle | None = None
+
+    def show(self, visitor: Visitor, data: dict[str, Any]) -> int:
+        """A page shows something else. Returns its number in the list. Raises AccessError (400, 403, 429)."""
+        if not visitor.identity.is_session:
+            raise AccessError(403, "Only pages say what they show: a program isn't a person.")
+        place = _place_in(data)
+        number, before = self._pages.get(visitor, (0, None))
+        if before is None:
+            self._make_room(visitor)
+            number = next(self._numbers)
+        if place != before:
+            self._pages[visitor] = number, place
+            self._changed()
+        return number
+
+    def leave(self, visitor: Visitor) -> None:
+        """The socket of a page has ended."""
+        if self._pages.pop(visitor, None) is not None:
+            self._changed()
+
+    def _make_room(self, visitor: Visitor) -> None:
+        user = visitor.identity.user
+        own = sum(page.identity.user == user for page in self._pages)
+        if own >= MOST_PAGES_OF_USER or len(self._pages) >= MOST_PAGES:
+            raise AccessError(429, "Too many pages are open to list them all.")
+
+    def _changed(self) -> None:
+        if self._sending is None:
+            self._sending = asyncio.get_running_loop().call_later(_PAUSE, self._send)
+
+    def _send(self) -> None:
+        self._sending = None
+        people = [
+            {
+                "page": number, "user": page.identity.user, "robot": place.robot, "screen": place.screen,
+                "mission": place.mission, "changing": place.is_changing,
+            }
+            for page, (number, place) in self._pages.items()
+        ]  # fmt: skip
+        text = json.dumps({"type": "people", "people": people}, separators=(",", ":"))
+        for page in self._pages:
+            page.outlet.keep("people", text, 1)
+
+
+def _place_in(data: dict[str, Any]) -> Place:
+    robot, screen, mission = (text_in(data, name) for name in ("robot", "screen", "mission"))
+    is_changing = data.get("changing")
+    if screen not in SCREENS:
+        raise AccessError(400, f"'screen' must be one of these: {', '.join(SCREENS)}.")
+    if max(len(robot), len(mission)) > LONGEST:
+        raise AccessError(400, f"'robot' and 'mission' must have at most {LONGEST} characters.")
+    if not isinstance(is_changing, bool):
+        raise AccessError(400, "'changing' must be true or false.")
+    return Place(robot, screen, mission, is_changing)
+
+
+_MOST_AT_ONCE = 8  # commands of a client that wait for their answers
+
+
+class Clients:
+    """A `btlang.server.live.sockets.Subprotocol`. `do` does a command of somebody for a robot."""
+
+    def __init__(self, robots: Robots, do: Do) -> None:
+        self.greeting: dict[str, Any] | None = {"type": "auth_required"}
+        self.refusal: dict[str, Any] = {"type": "auth_invalid", "text": "This token isn't valid."}
+        self._robots, self._do, self._presence = robots, do, Presence()
+        self._watchers: dict[Visitor, tuple[frozenset[str] | None, dict[str, int]]] = {}
+        """With the robots that they watch, None for all, and the last changes that they know."""
+        robots.came = self._came
+
+    def token(self, data: dict[str, Any]) -> object:
+        """See `Subprotocol`."""
+        return data.get("token") if data.get("type") == "auth" else None
+
+    def welcome(self, identity: Identity) -> dict[str, Any]:
+        """See `Subprotocol`."""
+        return {"type": "auth_ok", "user": identity.user, "role": identity.role}
+
+    async def talk(self, visitor: Visitor) -> None:
+        """See `Subprotocol`."""
+        waiting: set[asyncio.Task[None]] = set()
+        try:
+            while True:
+                text = await visitor.receive()
+                await visitor.outlet.wait_for_room()  # else who asks, but never reads, would fill the memory
+                while len(waiting) >= _MOST_AT_ONCE:
+                    await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+                task = asyncio.create_task(self._answer(visitor, text))
+                waiting.add(task)
+                task.add_done_callback(waiting.discard)
+        finally:
+            self._unsubscribe(visitor)
+            for task in waiting:
+                task.cancel()
+            self._presence.leave(visitor)
+
+    async def _answer(self, visitor: Visitor, text: str) -> None:
+        number: Any = None
+        try:
+            data = read_object(text)
+            number = data.pop("id", None)
+            result = await self._result(visitor, data)
+        except AccessError as error:
+            result = {"ok": False, "text": error.reason, "status": error.status, "code": ""}
+        except MissionError as error:
+            result = {"ok": False, "text": str(error), "code": error.diagnostics[0].code}
+        visitor.outlet.say(json.dumps({"id": number, "type": "result", **result}, default=str))
+
+    async def _result(self, visitor: Visitor, data: dict[str, Any]) -> dict[str, Any]:
+        kind = data.pop("type", "command")
+        if kind == "ping":
+            return {"ok": True}
+        if kind == "subscribe":
+            return self._subscribe(visitor, data)
+        if kind == "unsubscribe":
+            self._unsubscribe(visitor)
+            return {"ok": True}
+        if kind == "presence":
+            return {"ok": True, "page": self._presence.show(visitor, data)}
+        if kind != "command":
+            raise AccessError(400, "'type' must be command, subscribe, unsubscribe, presence or ping.")
+        robot = data.pop("robot", "")
+        answer = await self._do(visitor.identity, str(robot), read_command(data), visitor.address)
+        return answer.as_json()
+
+    def _subscribe(self, visitor: Visitor, data: dict[str, Any]) -> dict[str, Any]:
+        """{"robots": [...], "topics": [...], "rate": N, "after": {...}}: by default all that all robots publish, at
+        their rate, and only what comes from now on.
+        """
+        robots, rate, after = data.get("robots"), data.get("rate", 0), data.get("after", {})
+        topics = data.get("topics", list(TOPICS))
+        if robots is not None and not (isinstance(robots, list) and all(isinstance(name, str) for name in robots)):
+            raise AccessError(400, "'robots' must be a list of names.")
+        if not isinstance(rate, int | float) or isinstance(rate, bool) or not 0 <= rate <= 100:
+            raise AccessError(400, "'rate' must be a number up to 100.")
+        if not isinstance(after, dict) or not all(type(number) is int and number >= 0 for number in after.values()):
+            raise AccessError(400, "'after' must have the number of a change for each robot.")
+        if not isinstance(topics, list) or not all(isinstance(topic, str) and topic in TOPICS for topic in topics):
+            raise AccessError(400, f"'topics' must be a list of these: {', '.join(TOPICS)}.")
+        self._unsubscribe(visitor)
+        visitor.allowance = Allowance(1.0 / rate if rate else 0.0)
+        visitor.outlet.topics = frozenset(topics)
+        self._watchers[visitor] = None if robots is None else frozenset(robots), after
+        for link in self._robots.links.values():
+            self._watch(visitor, link)
+        return {"ok": True}
+
+    def _unsubscribe(self, visitor: Visitor) -> None:
+        self._watchers.pop(visitor, None)
+        for link in self._robots.links.values():
+            link.discard(visitor.outlet)
+
+    def _came(self, link: RobotLink) -> None:
+        for visitor in self._watchers:
+            self._watch(visitor, link)
+
+    def _watch(self, visitor: Visitor, link: RobotLink) -> None:
+        robots, after = self._watchers[visitor]
+        if robots is None or link.name in robots:
+            link.add(visitor.outlet, after.get(link.name))

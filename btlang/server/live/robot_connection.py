@@ -1,0 +1,74 @@
+"""How a robot is reached: over the Unix sockets of this computer; `joining` has those of other computers."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from btlang.task.commands.client import socket_path
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from contextlib import AbstractAsyncContextManager
+    from typing import Any, Protocol
+
+    class Reach(Protocol):
+        """A way to a robot. What it raises is an OSError, or a TimeoutError; who calls has his own patience."""
+
+        async def ask(self, message: dict[str, Any]) -> Any:
+            """Its answer to a command in JSON."""
+
+        async def stop(self) -> None:
+            """The emergency stop; when it returns the robot has it."""
+
+        def watching(self, request: dict[str, Any]) -> AbstractAsyncContextManager[asyncio.StreamReader]:
+            """What happens (btlang.task.live.feed), a line of JSON each."""
+
+    class ReachElsewhere(Reach, Protocol):
+        """A way to a robot of another computer."""
+
+        async def read(self, message: dict[str, Any]) -> Any:
+            """What the program beside the robot says of its recordings: see `btlang.server.fleet.dialer`."""
+
+
+LONGEST = 32_000_000
+"""Bytes of a line from a robot."""
+STREAM = 4
+"""Bytes of the number of a stream, before what happens on a robot elsewhere."""
+
+
+class LocalSockets:
+    """The way to a robot of this computer."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    async def ask(self, message: dict[str, Any]) -> Any:
+        """See `Reach`. Raises ValueError for an answer that isn't JSON."""
+        async with _connected(socket_path(self._name)) as (reader, writer):
+            writer.write(json.dumps(message).encode() + b"\n")
+            return json.loads(await reader.readline())
+
+    async def stop(self) -> None:
+        """See `Reach`. The socket is for nothing else."""
+        async with _connected(socket_path(self._name, stop=True)) as (reader, _):
+            if not await reader.read(16):
+                raise ConnectionError("it has hung up")
+
+    @asynccontextmanager
+    async def watching(self, request: dict[str, Any]) -> AsyncIterator[asyncio.StreamReader]:
+        """See `Reach`."""
+        async with _connected(socket_path(self._name)) as (reader, writer):
+            writer.write(json.dumps({"watch": request}).encode() + b"\n")
+            yield reader
+
+
+@asynccontextmanager
+async def _connected(path: str) -> AsyncIterator[tuple[asyncio.StreamReader, asyncio.StreamWriter]]:
+    reader, writer = await asyncio.open_unix_connection(path, limit=LONGEST)
+    try:
+        yield reader, writer
+    finally:
+        writer.close()

@@ -1,0 +1,175 @@
+"""WebSockets: who comes in, whatever is spoken there, and who has to leave."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import suppress
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from btlang.server.accounts.accounts import Identity
+from btlang.server.http.access import Access, AccessError, address_of, is_same_site, read_object
+from btlang.server.live.client_queue import Outlet
+from btlang.task.live.feed import Allowance
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, Protocol
+
+    class Subprotocol(Protocol):
+        """What is spoken over a socket. A message of None isn't sent."""
+
+        greeting: dict[str, Any] | None
+        """For somebody who isn't logged in yet."""
+        refusal: dict[str, Any]
+        """For somebody whose first message doesn't log him in."""
+
+        def token(self, data: dict[str, Any]) -> object:
+            """What a first message logs in with."""
+
+        def welcome(self, identity: Identity) -> dict[str, Any] | None:
+            """For somebody who is logged in now."""
+
+        async def talk(self, visitor: Visitor) -> None:
+            """Until he leaves (WebSocketDisconnect), or has to (CancelledError)."""
+
+
+_LOG_IN = 10.0  # seconds that somebody has for that
+REVOKED, FORBIDDEN, LOST = 4001, 4003, 1011
+"""Codes with which a socket is closed."""
+_UNSUPPORTED = 1003  # the code for what isn't text
+
+
+class Visitor:
+    """Somebody who is logged in, on one socket, with what is on its way to him."""
+
+    def __init__(self, socket: WebSocket, identity: Identity) -> None:
+        self.socket, self.identity = socket, identity
+        self.outlet = Outlet()
+        self.allowance = Allowance(0.0)
+        self._talk: asyncio.Task[None] | None = None
+        self._code, self._last = 0, ""
+
+    @property
+    def address(self) -> str:
+        """Where he is."""
+        return address_of(self.socket)
+
+    async def receive(self) -> str:
+        """The next text. Raises WebSocketDisconnect."""
+        return await _text(self.socket)
+
+    async def talk(self, subprotocol: Subprotocol) -> None:
+        """Until one of both ends it."""
+        sending = asyncio.create_task(self._send())
+        self._talk = asyncio.create_task(subprotocol.talk(self))
+        if self._code:
+            self._talk.cancel()
+        try:
+            await asyncio.wait({self._talk})
+        finally:
+            sending.cancel()
+            self._talk.cancel()
+        if not self._talk.cancelled():
+            self._talk.result()
+            return
+        with suppress(OSError):
+            if self._last:
+                await self.socket.send_text(self._last)
+            await self.socket.close(self._code)
+
+    async def leave(self, code: int, last: str = "") -> None:
+        """Ends what he does; his socket is closed with a code, after a last text."""
+        self._code, self._last = code, last
+        if self._talk is not None:
+            self._talk.cancel()
+            await asyncio.wait({self._talk})
+
+    async def _send(self) -> None:
+        now, outlet = asyncio.get_running_loop().time, self.outlet
+        with suppress(WebSocketDisconnect, RuntimeError, OSError):
+            while True:
+                await outlet.wait()
+                early = self.allowance.wait(now())
+                if early:
+                    await outlet.wait_for_answer(early)
+                self.allowance.use(now())
+                for text in outlet.take():
+                    await self.socket.send_text(text)
+        outlet.close()
+
+
+class Sockets:
+    """All that are open."""
+
+    def __init__(self, access: Access) -> None:
+        self._access = access
+        self._visitors: set[Visitor] = set()
+
+    def __len__(self) -> int:
+        return len(self._visitors)
+
+    async def serve(self, subprotocol: Subprotocol, socket: WebSocket) -> None:
+        """One socket, until it ends."""
+        if not is_same_site(socket.headers):  # a page of another site, with our cookie
+            await socket.close(FORBIDDEN)
+            return
+        await socket.accept()
+        try:
+            identity = await self._log_in(subprotocol, socket)
+            if identity is None:
+                return
+            visitor = Visitor(socket, identity)
+            self._visitors.add(visitor)
+            try:
+                await self._look(visitor)  # while he was welcomed, his token may have been revoked
+                await visitor.talk(subprotocol)
+            finally:
+                self._visitors.discard(visitor)
+        except (WebSocketDisconnect, RuntimeError, TimeoutError):
+            return
+
+    async def check(self) -> None:
+        """Ends the sockets of those who may no longer be here, and gives the others their present role."""
+        self._access.forget()
+        for visitor in tuple(self._visitors):
+            await self._look(visitor)
+
+    async def _look(self, visitor: Visitor) -> None:
+        now = await asyncio.to_thread(self._access.accounts.still, visitor.identity)
+        if now is None:
+            await visitor.leave(REVOKED)
+        else:
+            visitor.identity = now
+
+    async def _log_in(self, subprotocol: Subprotocol, socket: WebSocket) -> Identity | None:
+        with suppress(AccessError):
+            identity = await self._access.identify(socket.headers, changes=False)
+            return await _welcomed(subprotocol, socket, identity)
+        if subprotocol.greeting is not None:
+            await socket.send_json(subprotocol.greeting)
+        async with asyncio.timeout(_LOG_IN):
+            text = await _text(socket)
+        with suppress(AccessError):
+            token = subprotocol.token(read_object(text))
+            found = await self._access.by_token(token) if isinstance(token, str) else None
+            if found is not None:
+                return await _welcomed(subprotocol, socket, found)
+        await socket.send_json(subprotocol.refusal)
+        await socket.close(FORBIDDEN)
+        return None
+
+
+async def _welcomed(subprotocol: Subprotocol, socket: WebSocket, identity: Identity) -> Identity:
+    message = subprotocol.welcome(identity)
+    if message is not None:
+        await socket.send_json(message)
+    return identity
+
+
+async def _text(socket: WebSocket) -> str:
+    try:
+        return await socket.receive_text()
+    except KeyError:  # bytes
+        await socket.close(_UNSUPPORTED)
+        raise WebSocketDisconnect(_UNSUPPORTED) from None
