@@ -25,13 +25,12 @@ from btlang.robots.spoken import SpokenCommands, choices
 from btlang.robots.world import Place
 from btlang.robots.world_problem import read_world
 from btlang.run.bus import Bus
+from btlang.run.connection import RunChoices
 from btlang.run.controls import Controls, disable
-from btlang.run.failure_history import FailureHistory
+from btlang.run.failure_history import FailureHistory, failure_report
 from btlang.run.limits import RATES, SLOWEST
 from btlang.run.outcome import Outcome
 from btlang.run.recent import RecentEvents
-from btlang.run.report import failure_report
-from btlang.run.resumption import RunChoices
 from btlang.run.runner import Runner, traced_engine
 from btlang.run.snapshot import Follower, Snapshot
 from btlang.run.statuses import Status

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from btlang.pictures.style import INK, SMALL, SOFT, TITLE
-from btlang.pictures.svg import SvgSurface
+from btlang.pictures.drawing import SvgSurface
+from btlang.pictures.surface import INK, SMALL, SOFT, TITLE
 
 CLIENTS = ("page", "HTTP, WebSocket", "programs", "ROS 2")
 LAYERS = (

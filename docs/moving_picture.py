@@ -15,16 +15,13 @@ from moving_svg import FASTER, MovingSurface
 
 import btlang
 from btlang.pictures import letters
-from btlang.pictures.placing import Area, Placer, along
-from btlang.pictures.run_legend import outcome
-from btlang.pictures.run_record import RunRecord, Sample
+from btlang.pictures.run_record import RunRecord, Sample, outcome
 from btlang.pictures.statuses import LastStatuses
-from btlang.pictures.style import BUBBLES, INK, LOOKS, NEVER, SMALL, SOFT, TITLE, Look
+from btlang.pictures.surface import BUBBLES, INK, LOOKS, NEVER, SMALL, SOFT, TITLE, Look
 from btlang.pictures.track import END, draw_body, way
-from btlang.pictures.tree_boxes import Maker
-from btlang.pictures.tree_layout import Layout, laid_out
+from btlang.pictures.tree_layout import Layout, Maker, laid_out
 from btlang.pictures.tree_picture import _TreePicture
-from btlang.pictures.world_map import OBJECT, WorldMap
+from btlang.pictures.world_map import OBJECT, Area, Placer, WorldMap, along
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.world import Thing, World
 from btlang.robots.world_file import load_world

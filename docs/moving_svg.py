@@ -8,7 +8,7 @@ from itertools import pairwise
 from math import dist
 from operator import itemgetter
 
-from btlang.pictures.svg import SvgSurface, joined
+from btlang.pictures.drawing import SvgSurface, joined
 
 FASTER = 3.0
 """Seconds of the mission in a second of the picture."""

@@ -16,8 +16,8 @@ from typing import Any
 import btlang
 from btlang import PUBLIC
 from btlang.run.events import LOGGED, Event
-from btlang.run.field_types import field_type
 from btlang.run.json_log import described
+from btlang.support.field_types import field_type
 from btlang.task.commands import schema as command_schema
 from btlang.tree.catalogue import CATALOGUE, POST_CONDITIONS, PRE_CONDITIONS, NodeKind, Port
 from tests.cli_page import cli_page

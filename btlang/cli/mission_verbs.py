@@ -135,7 +135,7 @@ def compile_mission(options: argparse.Namespace) -> int:
 
 
 def _write_pages(options: argparse.Namespace) -> None:
-    from btlang.documents.folder import write_pages
+    from btlang.documents.pages import write_pages
     from btlang.documents.project import read_documents
 
     vocabulary = world_vocabulary(options.keywords, options.world, options.language)

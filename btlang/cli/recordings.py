@@ -14,11 +14,10 @@ from btlang.api import Mission
 from btlang.cli.run import pictures_of
 from btlang.pictures.terminal_map import TerminalMap
 from btlang.recording.bundle import ROBOT
-from btlang.recording.compare import first_difference
-from btlang.recording.drawing import drawn
+from btlang.recording.diff import first_difference
 from btlang.recording.open import opened
 from btlang.recording.reader import RecordedNodes, Recording
-from btlang.recording.replay import Player, Timeline
+from btlang.recording.replay import Player, Timeline, drawn
 from btlang.recording.story import Story
 from btlang.robots.body_file import shipped_bodies
 from btlang.robots.world_problem import read_world
@@ -100,8 +99,8 @@ def _shown(port: int | None, controls: Controls, mission: Mission, nodes: Record
 def _write_log(path: str, recording: Recording, mission: Mission, nodes: RecordedNodes) -> int:
     """Write a recording as a log of BehaviorTree.CPP."""
     from btlang.backends.files import write_file
-    from btlang.monitor.btlog import to_btlog
     from btlang.monitor.groot import groot_tree
+    from btlang.monitor.groot_tree import to_btlog
 
     write_file(path, to_btlog(groot_tree(nodes, mission), recording.events(nodes)))
     show(f"Wrote {path}.")

@@ -18,7 +18,7 @@ from btlang.components.words import words_of
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.answers_file import read_answers
 from btlang.robots.registry import connector, runs_in_real_time
-from btlang.run.emergency import emergency_signal
+from btlang.run.controls import emergency_signal
 from btlang.task import messages
 from btlang.task.commands.client import USUAL_NAME, Client, data_folder, emergency_stop
 from btlang.task.commands.companion import companions, require_companions

@@ -24,8 +24,7 @@ from btlang.robots.world_problem import read_world
 from btlang.ros.available import require_ros
 from btlang.ros.devices.driver import PACKAGES
 from btlang.ros.ending import EndingSignals, ending_signals
-from btlang.run.controls import Controls
-from btlang.run.emergency import emergency_signal
+from btlang.run.controls import Controls, emergency_signal
 from btlang.text.output import show
 
 TYPE_CHECKING = False

@@ -26,8 +26,7 @@ from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.ending import EndingSignals, ending_signals
 from btlang.ros.serving.names import FOLDER
 from btlang.ros.serving.selection import chosen, servable
-from btlang.run.controls import Controls
-from btlang.run.emergency import emergency_signal
+from btlang.run.controls import Controls, emergency_signal
 from btlang.session import Session
 from btlang.text.output import show
 from btlang.text.source import NOWHERE

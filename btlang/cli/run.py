@@ -118,7 +118,7 @@ def pictures_of(mission: Mission, run: str | None, tree: str | None, quiet: bool
         sinks.append(statuses)
     if run is not None:
         from btlang.pictures.run_picture import RunPicture
-        from btlang.pictures.tree_boxes import title_of
+        from btlang.pictures.tree_layout import title_of
         from btlang.robots.world_file import load_world
 
         picture = RunPicture(load_world(mission.world), mission.label, mission.is_action, title_of(mission.tree))

@@ -1,16 +1,19 @@
-"""Pages of Markdown about a project: a page for each file with a chapter for each tree, and an index."""
+"""Pages of Markdown about a project: a page for each file with a chapter for each tree, an index, and their files."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import os
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from btlang.backends.english import to_english
+from btlang.backends.files import put, write_file
 from btlang.diagnostics.errors import MissionError
-from btlang.documents.keys import KeyReader
-from btlang.documents.markdown import block, code, escaped, file_name, table
-from btlang.documents.project import DocumentedProject, TreeChapter, nodes_of
+from btlang.diagnostics.reading import read_source, unwritable
+from btlang.documents.project import DocumentedProject, KeyReader, TreeChapter, nodes_of
 from btlang.frontends.btcpp.models import nav2_models
-from btlang.pictures.target import to_svg
+from btlang.pictures.tree_picture import to_svg
+from btlang.text.escaping import one_line, printable
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SUBTREE
 from btlang.tree.comments import KEPT
 from btlang.tree.model import NodeModel, PortModel
@@ -22,6 +25,53 @@ if TYPE_CHECKING:
     from typing import TypeVar
 
     Key = TypeVar("Key")
+
+
+_MARKS = re.compile(r"[\\`*_\[\]<>|~#&!$^{}]")
+_BREAK = "\N{WORD JOINER}"  # between what GitHub would make a link of, though nobody wrote one
+_LINKS = re.compile(r"(?i)(?<=:)(?=//)|(?<=mailto)(?=:)|(?<=xmpp)(?=:)|(?<=www)(?=\.)|(?=@)")
+_BLOCKS = re.compile(r"^(?:[-+=]|\d+(?=[.)]))")
+
+
+def escaped(text: str) -> str:
+    """A text on one line that is shown as it is."""
+    line = _LINKS.sub(_BREAK, one_line(" ".join(text.split())))
+    line = _MARKS.sub(r"\\\g<0>", line)
+    block = _BLOCKS.match(line)
+    if block is None:
+        return line
+    return f"\\{line}" if not block[0].isdigit() else f"{block[0]}\\{line[block.end() :]}"
+
+
+def code(text: str) -> str:
+    """A text on one line as code, also in a table."""
+    line = one_line(" ".join(text.split())) or " "
+    marks = "`" * (max(map(len, re.findall("`+", line)), default=0) + 1)
+    room = " " if "`" in (line[0], line[-1]) else ""
+    return f"{marks}{room}{line}{room}{marks}".replace("|", "\\|")
+
+
+def block(text: str) -> Iterator[str]:
+    """Lines as they are."""
+    marks = "`" * max(3, *(len(run) + 1 for run in re.findall("`+", text) or [""]))
+    yield from (f"{marks}text", *printable(text).rstrip("\n").split("\n"), marks)
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:
+    """A table of cells that are Markdown; no lines where it has no rows."""
+    rows = list(rows)
+    if rows:
+        yield from (_row(heads), _row(["---"] * len(heads)), *map(_row, rows))
+
+
+def _row(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def file_name(text: str) -> str:
+    """A text as a part of the names of files and places in pages: letters and digits of ASCII, `.`, `_` and `-`."""
+    return re.sub(r"[^A-Za-z0-9._-]+", "-", text).strip("-.") or "tree"
+
 
 MADE = "<!-- Made by btc compile --to markdown. What you change here is lost when it is made again. -->"
 INDEX = "index.md"
@@ -184,3 +234,42 @@ def _distinct(names: Mapping[Key, str], ending: str, *taken: str) -> dict[Key, s
         used.add(made.lower())
         found[key] = made
     return found
+
+
+def write_pages(project: DocumentedProject, paths: Sequence[str], out: str | None) -> bool:
+    """Write the pages about what was read at these paths; a page of somebody else isn't replaced.
+
+    One file becomes a page on standard output, or in a file whose name ends in `.md`; all else becomes a folder. False
+    where that needs a folder and none is named. Raises MissionError (BT009).
+    """
+    writer = PageWriter(project)
+    is_single = len(paths) == 1 and not os.path.isdir(paths[0])
+    if out is None or (out.endswith(".md") and not os.path.isdir(out)):
+        if not is_single:
+            return False
+        [file] = project.files
+        if out is not None:
+            _check(out)
+        put(writer.page(file, pictures=False), out)
+        return True
+    contents = {writer.pages[file]: writer.page(file) for file in project.files}
+    contents |= {INDEX: writer.index(), **dict(writer.pictures())}
+    try:
+        os.makedirs(out, exist_ok=True)
+    except OSError as error:
+        raise MissionError([unwritable(out, error)]) from None
+    found = {os.path.join(out, name): content for name, content in contents.items()}
+    for path in found:
+        if path.endswith(".md"):
+            _check(path)
+    for path, content in found.items():
+        write_file(path, content)
+    return True
+
+
+def _check(path: str) -> None:
+    """Raise MissionError (BT009) where a page is there that was not made here."""
+    if os.path.isfile(path) and not read_source(path).text.startswith(MADE):
+        raise MissionError(
+            [unwritable(path, "a page is there that btc didn't make; choose another folder, or remove it")]
+        )

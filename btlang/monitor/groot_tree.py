@@ -1,20 +1,23 @@
-"""The tree of a run as Groot2 wants it: XML in which each use of a subtree is a tree, and nodes have numbers."""
+"""The tree of a run as Groot2 wants it, and log files of BehaviorTree.CPP (FileLogger2)."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+import struct
+from collections.abc import Callable, Iterable, Iterator
 
 from btlang.backends.btcpp.markup import Markers
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.btcpp.spelling import MAIN_TREE, is_xml_name
-from btlang.monitor.groot_protocol import MOST_NODES
+from btlang.monitor.groot_protocol import CODES, MOST_NODES, transition
+from btlang.run.events import Event, StatusesChanged
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.run.events import Nodes
+
 
 _MODELS = re.compile(r"<TreeNodesModel\b.*</TreeNodesModel>", re.DOTALL)
 _UNWRITABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
@@ -102,3 +105,24 @@ def models_of(to_xml: Callable[[], str]) -> str:
         return to_xml()
     except MissionError:
         return ""
+
+
+MAGIC = b"BTCPP4-FileLogger2"
+_FORMAT = 1
+
+
+def to_btlog(tree: GrootTree, events: Iterable[Event]) -> bytes:
+    """The file: the tree, the wall time at which the run began, and each change with its time since then."""
+    xml = tree.to_xml().encode("utf-8", "replace")
+    began: float | None = None
+    changes: list[bytes] = []
+    for event in events:
+        if began is None:
+            began = event.wall - event.t
+        if isinstance(event, StatusesChanged):
+            at = max(0, int(event.t * 1e6))  # mission time: a pause is no part of it
+            changes += [
+                transition(at, index + 1, CODES[status]) for index, status, _, _ in event.changes if index < tree.size
+            ]
+    head = MAGIC + bytes([_FORMAT]) + struct.pack("<i", len(xml))
+    return b"".join((head, xml, struct.pack("<q", int((began or 0.0) * 1e6)), *changes))

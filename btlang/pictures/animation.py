@@ -8,14 +8,10 @@ from math import ceil
 
 from btlang.pictures import letters
 from btlang.pictures.canvas import Canvas
-from btlang.pictures.people import PERSON, WALKED, draw_standing, place_of, sighting_at
-from btlang.pictures.placing import Area, Placer, along
-from btlang.pictures.run_legend import outcome
-from btlang.pictures.run_record import Mark, RunRecord, Sample
-from btlang.pictures.style import BUBBLES, INK, SMALL, SOFT, TITLE
-from btlang.pictures.track import END, draw_body, way
-from btlang.pictures.world_details import DOOR_COLOUR, draw_door, draw_route
-from btlang.pictures.world_map import OBJECT, WorldMap
+from btlang.pictures.run_record import Mark, RunRecord, Sample, outcome
+from btlang.pictures.surface import BUBBLES, INK, SMALL, SOFT, TITLE
+from btlang.pictures.track import END, PERSON, WALKED, draw_body, draw_standing, place_of, sighting_at, way
+from btlang.pictures.world_map import DOOR_COLOUR, OBJECT, Area, Placer, WorldMap, along, draw_door, draw_route
 from btlang.robots.geometry import Point, Pose, wrap
 from btlang.robots.world import PERSON_RADIUS, World
 

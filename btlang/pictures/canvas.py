@@ -12,7 +12,7 @@ from math import sqrt
 
 from btlang.pictures.files import missing
 from btlang.pictures.letters import CAP_HEIGHT, FAMILY, UNKNOWN, width
-from btlang.pictures.style import INK, PAPER, TEXT
+from btlang.pictures.surface import INK, PAPER, TEXT
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -9,13 +9,22 @@ from btlang.engine.status import FAILURE
 from btlang.pictures import letters
 from btlang.pictures.drawing import drawing
 from btlang.pictures.files import MOVING, STILL, ending
-from btlang.pictures.people import WALKED, draw_walks, name_walks, place_of, ways
-from btlang.pictures.placing import Area, Placer, along
-from btlang.pictures.run_legend import WIDTH, Legend, listed
-from btlang.pictures.run_record import Command, Mark, RunRecord
-from btlang.pictures.style import BUBBLES, HEADING, INK, LOOKS, SMALL, SOFT, TITLE
-from btlang.pictures.track import END, START, draw_body, draw_track, shade, way
-from btlang.pictures.world_map import WorldMap
+from btlang.pictures.run_record import WIDTH, Command, Legend, Mark, RunRecord, listed
+from btlang.pictures.surface import BUBBLES, HEADING, INK, LOOKS, SMALL, SOFT, TITLE
+from btlang.pictures.track import (
+    END,
+    START,
+    WALKED,
+    draw_body,
+    draw_track,
+    draw_walks,
+    name_walks,
+    place_of,
+    shade,
+    way,
+    ways,
+)
+from btlang.pictures.world_map import Area, Placer, WorldMap, along
 from btlang.robots.geometry import Point
 from btlang.robots.world import World
 from btlang.run.bus import INLINE

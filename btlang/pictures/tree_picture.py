@@ -1,24 +1,40 @@
-"""The picture of a tree, with the statuses of a run in colour."""
+"""The picture of a tree, with the statuses of a run in colour; also as a target of `btc compile`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from math import sqrt
 
 from btlang.backends.files import write_file
 from btlang.pictures import letters
 from btlang.pictures.drawing import drawing
 from btlang.pictures.files import STILL, ending
-from btlang.pictures.style import HEADING, INK, LINE, LOOKS, NEVER, PAPER, SMALL, SOFT, TEXT, TITLE, Look
-from btlang.pictures.tree_block import FRAME_TITLE, LINE_HEIGHT, SIGN, SYMBOL, side
-from btlang.pictures.tree_boxes import Maker, Sheet, title_of
-from btlang.pictures.tree_layout import Layout, Link, Spot, laid_out
+from btlang.pictures.letters import shown
+from btlang.pictures.surface import HEADING, INK, LINE, LOOKS, NEVER, PAPER, SMALL, SOFT, TEXT, TITLE, Look
+from btlang.pictures.tree_layout import (
+    FRAME_TITLE,
+    LINE_HEIGHT,
+    SIGN,
+    SYMBOL,
+    Layout,
+    Link,
+    Maker,
+    Sheet,
+    Spot,
+    laid_out,
+    side,
+    title_of,
+)
+from btlang.printer.phrase import phrase_of
 from btlang.tree.node import Node, Tree
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.pictures.statuses import LastStatuses
     from btlang.pictures.surface import Surface
+
 
 _MARGIN = 16.0
 _LEGEND = 26.0
@@ -198,3 +214,27 @@ def _arranged(layouts: list[Layout]) -> list[tuple[float, float]]:
         x += max(layout.width, 60.0) + 36
         low = max(low, y + layout.height)
     return corners
+
+
+def to_svg(tree: Tree, vocabulary: Lexicon, *, title: str = "") -> str:
+    """The text of an SVG file, whose `title` is by default the name of the tree's file."""
+    return _drawn(tree, vocabulary, ".svg", title).decode()
+
+
+def to_png(tree: Tree, vocabulary: Lexicon) -> bytes:
+    """The content of a PNG file. Raises MissionError (BT081)."""
+    return _drawn(tree, vocabulary, ".png")
+
+
+def _drawn(tree: Tree, vocabulary: Lexicon, kind: str, title: str = "") -> bytes:
+    sheets = Maker(tree, partial(_label, vocabulary), partial(_is_action, vocabulary)).sheets()
+    return picture_of(sheets, shown(title) or title_of(tree), kind)
+
+
+def _label(vocabulary: Lexicon, node: Node) -> str:
+    return node.name or phrase_of(node, vocabulary)
+
+
+def _is_action(vocabulary: Lexicon, node: Node) -> bool:
+    entry = vocabulary.entry(node.id)
+    return entry is not None and entry.sort == "action"

@@ -6,10 +6,9 @@ from btlang.backends.files import write_file
 from btlang.pictures import letters
 from btlang.pictures.drawing import drawing
 from btlang.pictures.files import STILL, ending
-from btlang.pictures.placing import Area, Placer
-from btlang.pictures.style import HEADING, TITLE
+from btlang.pictures.surface import HEADING, TITLE
 from btlang.pictures.track import START, draw_body
-from btlang.pictures.world_map import WorldMap
+from btlang.pictures.world_map import Area, Placer, WorldMap
 from btlang.robots.body_file import standard_body
 from btlang.robots.world import World
 

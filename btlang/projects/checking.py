@@ -16,17 +16,16 @@ from btlang.passes.compilation import Compilation
 from btlang.passes.lint.allow import not_allowed
 from btlang.projects.cpp_ports import CppSources
 from btlang.projects.entries import conflicting_types, entries_of, unset_entries, unset_enums
-from btlang.projects.port_values import enum_names
 from btlang.projects.ports import (
     DescribedUses,
     constant_outputs,
+    enum_names,
     misspelt_ports,
     port_problems,
     several_alone,
     subtree_problems,
 )
-from btlang.projects.unknown import unknown_nodes
-from btlang.projects.unused import keys_read, unread_subtree_ports, unread_values, unused_trees
+from btlang.projects.unused import keys_read, unknown_nodes, unread_subtree_ports, unread_values, unused_trees
 from btlang.text.source import NOWHERE, Span
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SEQUENCE, SUBTREE
 from btlang.tree.model import NodeModel, PortModel

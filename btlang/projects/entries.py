@@ -10,7 +10,7 @@ from btlang.engine.instance import blackboard_key
 from btlang.engine.script.names import READS, SETS, uses_in_script
 from btlang.engine.script.tokens import ScriptError
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
-from btlang.projects.places import attribute_value, place_of
+from btlang.projects.ports import attribute_value, place_of
 from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.text.spelling import misspelt

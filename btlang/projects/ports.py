@@ -1,20 +1,99 @@
-"""The ports of nodes by their models: unknown and missing ones, values of another type, and outdated models."""
+"""The ports of nodes by their models: unknown and missing ones, values of another type, and outdated names."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
-from btlang.projects.places import attribute_name, attribute_value, place_of
-from btlang.projects.port_values import wanted
 from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Span
 from btlang.text.spelling import is_misspelling, nearest
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node
+
+_ATTRIBUTE = re.compile(r"""([^\s"'=<>/]+)\s*=\s*("[^"]*"|'[^']*')""")
+
+
+def place_of(node: Node) -> Span:
+    """Its start tag."""
+    return node.span or NOWHERE
+
+
+def attribute_name(node: Node, port: str) -> Span:
+    """The name of an attribute; the start tag where it has no such attribute."""
+    return _found(node, port, 1)
+
+
+def attribute_value(node: Node, port: str) -> Span:
+    """The text of an attribute, without its quotes; the start tag where it has no such attribute."""
+    return _found(node, port, 2)
+
+
+def id_place(node: Node) -> Span:
+    """What names its id: the tag, or the attribute ID behind a tag of its kind."""
+    span = place_of(node)
+    tag = re.match(r"<([^\s/>]+)", span.text)
+    if tag is not None and tag[1] == node.id:
+        return Span(span.source, span.start + 1, span.start + 1 + len(node.id))
+    return attribute_value(node, "ID")
+
+
+def _found(node: Node, port: str, group: int) -> Span:
+    span = place_of(node)
+    for match in _ATTRIBUTE.finditer(span.text):
+        if match[1] == port:
+            inner = group - 1  # the quotes
+            return Span(span.source, span.start + match.start(group) + inner, span.start + match.end(group) - inner)
+    return span
+
+
+_INTEGER = re.compile(r"(?:std::)?(?P<unsigned>u|unsigned )?(?:int|long|short|long long|int(?P<bits>8|16|32|64)_t)")
+_ALONE = {"unsigned": (0, 2**32 - 1), "size_t": (0, 2**64 - 1), "std::size_t": (0, 2**64 - 1)}
+_BITS = {"short": 16, "long": 64, "long long": 64}
+_DECIMAL = ("double", "float")
+_NUMBER = re.compile(r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan)", re.IGNORECASE)
+_BOOL = frozenset(("0", "1", "true", "True", "TRUE", "false", "False", "FALSE"))
+_ENUM = re.compile(r"(?:enum\b[\w ]*)?[({\[]?\s*(\w+(?:\s*[|,;]\s*\w+)+)\s*[)}\]]?")
+
+
+def wanted(text: str, type: str) -> str:
+    """What a value of the type is, where the text is none; "" where it is one, or nothing is known of the type."""
+    if text[:5] == "json:":
+        return ""
+    bounds = _bounds(type)
+    if bounds is not None:
+        least, most = bounds
+        is_whole = re.fullmatch(r"[+-]?\d{1,30}", text) is not None
+        return "" if is_whole and least <= int(text) <= most else f"a whole number from {least:,} to {most:,}"
+    if type in _DECIMAL:
+        return "" if _NUMBER.fullmatch(text) else "a number"
+    if type == "bool":
+        return "" if text in _BOOL else "true or false"
+    names = enum_names(type)
+    return "" if not names or text in names or text.isdecimal() else f"one of {', '.join(names)}"
+
+
+def enum_names(type: str) -> list[str]:
+    """The names of an enum whose type lists them, such as `LEFT|RIGHT`; none for any other type."""
+    listed = _ENUM.fullmatch(type.strip())
+    return re.split(r"\s*[|,;]\s*", listed[1]) if listed else []
+
+
+def _bounds(type: str) -> tuple[int, int] | None:
+    """The least and the greatest value of a type of whole numbers."""
+    if type in _ALONE:
+        return _ALONE[type]
+    match = _INTEGER.fullmatch(type)
+    if match is None:
+        return None
+    name = type.removeprefix("unsigned ")
+    bits = int(match["bits"] or 0) or _BITS.get(name, 32)
+    return (0, 2**bits - 1) if match["unsigned"] else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
+
 
 _SEVERAL = 2
 

@@ -1,16 +1,18 @@
-"""BT235 and BT236: what nothing in a project reads or uses."""
+"""Nodes that neither a model nor btlang knows (BT231), and what nothing reads or uses (BT235, BT236)."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
 from btlang.engine.script.names import READS, SETS, uses_of_names
+from btlang.frontends.btcpp.dialect import ONLY_IN_3
 from btlang.frontends.btcpp.project import XmlProject
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
-from btlang.projects.places import attribute_value
+from btlang.projects.ports import attribute_value, id_place, respelling
+from btlang.text.spelling import misspelt
 from btlang.tree.catalogue import KEY, SCRIPT, SUBTREE, held
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import subtree_names, used_subtrees
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from typing import TypeAlias
 
     OutputsOf: TypeAlias = Callable[[Node], Container[str]]
+
 
 _WORD = re.compile(r"[^\W\d]\w*")
 
@@ -98,3 +101,27 @@ def unused_trees(project: XmlProject) -> Iterator[Diagnostic]:
     for name, head in project.heads.items():
         if name in trees and name not in reached and head.span.source.name in files:
             yield diagnostic("BT236", head.span, name=head.written or name)
+
+
+def unknown_nodes(
+    nodes: Iterable[Node], described: Collection[str], words: Collection[str], dialects: Mapping[str, int]
+) -> Iterator[Diagnostic]:
+    """At the first node of each such id, with how often it is used.
+
+    `described` are the ids that the project can mean, `words` those of btlang's leaves; `dialects` are those of files.
+    """
+    uses: dict[str, list[Node]] = {}
+    for node in nodes:
+        if node.id and node.id not in described and node.id not in words and node.span is not None:
+            uses.setdefault(node.id, []).append(node)
+    for node_id, found in uses.items():
+        first = found[0]
+        place = id_place(first)
+        if node_id in ONLY_IN_3 and dialects.get(place.source.name) == 3:
+            continue
+        near, words_near = misspelt(node_id, described), misspelt(node_id, words)
+        # a tag with an end tag can't be changed alone
+        fix = None if first.children and place.text == node_id else respelling(place, near)
+        times = {1: "once", 2: "twice"}.get(len(found), f"{len(found)} times")
+        help = f"Similar: {', '.join(near or words_near)}" if near or words_near else ""
+        yield diagnostic("BT231", place, (), fix, id=node_id, times=times, help=help)

@@ -1,27 +1,39 @@
-"""A run as data that a page can play, from its beginning to its end: of a recording, or of a trial."""
+"""Runs as data that a page can play: of a recording, of two side by side, or of a trial in the simulated world."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import ExitStack
 
 from btlang.api import Mission
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.engine.compile import outline
 from btlang.engine.status import NAMES
 from btlang.passes.scripts import is_prepared
+from btlang.recording.diff import describe_step, ended_differently, first_pair, mission_differences, run_differences
+from btlang.recording.open import opened
 from btlang.recording.reader import RecordedNodes
 from btlang.recording.story import Story
 from btlang.robots.world_problem import read_world
 from btlang.run.bus import BLOCK
 from btlang.run.events import LOGGED, Event, PeriodPassed, Sampled, StatusesChanged
 from btlang.run.json_log import as_json
-from btlang.run.known_nodes import KnownNodes, text_and_places
 from btlang.run.robot_state import Movements, rounded_scan
-from btlang.run.shape import Shape
-from btlang.run.snapshot import State
+from btlang.run.snapshot import KnownNodes, Shape, State, text_and_places
+from btlang.session import Session
+from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Any
+
+    from btlang.run.events import Sink
+    from btlang.run.outcome import Outcome
+    from btlang.tree.node import Node, Tree
+    from btlang.vocabulary.lexicon import Lexicon
+
 
 MOST_CHANGES = 200_000
 """Of statuses in a film; a longer run ends there."""
@@ -152,3 +164,99 @@ class Film:
             "is_cut": self.is_cut,
             "map": read_world(mission.world).as_map(),
         }
+
+
+def side_by_side(one: str, other: str) -> dict[str, Any]:
+    """Two recordings, by their paths, as JSON has it; runs nothing. Raises MissionError for what can't be read.
+
+    - `films`: see Film.data; `stories`: what only one of the runs did, as `btc diff` writes it;
+    - `missions`: what differs between their trees, as `btc diff` writes it; nodes are compared only where nothing does:
+    - `first`: of each run the time, node and words of the first change of status that the other one doesn't have, with
+      None and -1 for a run that has no more; None if there is none. Times don't count;
+    - `ended`: the numbers of the nodes whose last status isn't the same.
+    """
+    with ExitStack() as stack:
+        sides = [stack.enter_context(opened(path, ())) for path in (one, other)]
+        films = [Film(mission, dict(recording.about)) for recording, mission, _ in sides]
+        events = [list(recording.events(nodes)) for recording, _, nodes in sides]
+        stories = [
+            Story(mission, nodes, {}).take(happened)
+            for (_, mission, nodes), happened in zip(sides, events, strict=True)
+        ]
+        missions = list(mission_differences(sides[0][1], sides[1][1]))
+        pair = None if missions else first_pair(*events)
+        first = pair and [
+            {
+                "t": None if step is None else step[0], "node": -1 if step is None else step[1],
+                "words": describe_step(step, nodes.node, mission.label),
+            }
+            for step, (_, mission, nodes) in zip(pair, sides, strict=True)
+        ]  # fmt: skip
+        return {
+            "films": [film.take(happened).data() for film, happened in zip(films, events, strict=True)],
+            "stories": list(run_differences(*(story.body() for story in stories))),
+            "missions": missions,
+            "first": first,
+            "ended": [] if missions else ended_differently(*events),
+        }
+
+
+MOST_SECONDS = 3600.0
+"""Of the mission's time."""
+_MOST_TICKS = 72_000
+_RATE = 20.0
+_ENDING = 2.0  # seconds that a stopped run may take at least to end
+OURS = "btlang.actions."
+"""The prefix of modules whose functions do nothing but command the robot that they are given."""
+
+
+def simulated(
+    mission: Mission,
+    sink: Sink,
+    seconds: float,
+    patience: float,
+    ticks: int = _MOST_TICKS,
+    seed: int | None = None,
+) -> tuple[Outcome | None, str]:
+    """Runs a mission on the simulated robot, as fast as possible, for at most so many seconds of the mission and ticks.
+
+    The outcome, None for a mission with a command that never returns, and what stopped it: "" if it ended by itself. It
+    is stopped after `patience` seconds of real time. Raises MissionError for a mission that can't be run.
+    """
+    mission.check()
+    limit = min(max(seconds, 0.0), MOST_SECONDS, min(max(ticks, 1), _MOST_TICKS) / _RATE)
+    options = {} if seed is None else {"seed": seed}
+    session = Session("simulated", world=mission.world)
+    run = session.start(mission, speed="max", rate=_RATE, time_limit=limit, sinks=(sink,), **options)
+    outcome = run.wait(patience)
+    if outcome is not None:
+        session.close()
+        return outcome, outcome.stopped
+    run.stop()
+    outcome = run.wait(max(patience, _ENDING))
+    if outcome is not None:  # closing the session would wait for the command
+        session.close()
+    return outcome, "it took too long to simulate"
+
+
+def check_words(tree: Tree, vocabulary: Lexicon, label: Callable[[Node], str], further: str = OURS) -> None:
+    """Raises MissionError (BT221) for a tree with words that are no words of btlang: what they do might move a real
+    robot. `further` is where the names of functions of other words that are allowed begin.
+    """
+    for node in tree.walk():
+        entry = vocabulary.entry(node.id)
+        if entry is not None and not str(entry.call).startswith((OURS, further)):
+            raise MissionError([diagnostic("BT221", node.span or NOWHERE, words=label(node), file=entry.file)])
+
+
+def tried(mission: Mission, seconds: float = 600.0, patience: float = 6.0, seed: int | None = None) -> dict[str, Any]:
+    """The film of a run (see Film.data) of at most so many seconds of the mission and `patience` seconds of real time,
+    and what `stopped` it: "" if it ended by itself.
+
+    Raises MissionError for a mission that can't be run, and BT221 for one with words that are no words of btlang: what
+    they do might move a real robot.
+    """
+    check_words(mission.tree, mission.vocabulary, mission.label)
+    film = Film(mission)
+    _, stopped = simulated(mission, film, seconds, patience, seed=seed)
+    return {**film.data(), "stopped": stopped}

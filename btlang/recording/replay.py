@@ -1,23 +1,70 @@
-"""Plays a recording: hands its events to sinks at the pace of the mission, with pause, single steps and jumps."""
+"""The replay of a recording: its events at the pace of the mission, with pause and steps, also for pictures."""
 
 from __future__ import annotations
 
 import math
 import time
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.status import FAILURE
 from btlang.recording.reader import RecordedNodes
+from btlang.robots.body_file import standard_body
+from btlang.robots.geometry import Point, Pose
 from btlang.run.controls import Controls
 from btlang.run.events import Event, PeriodPassed, StatusesChanged
-from btlang.run.shape import Shape
-from btlang.run.snapshot import State
+from btlang.run.robot_state import RobotState
+from btlang.run.snapshot import Shape, State
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from btlang.run.events import Sink
+
+
+_IN_FRONT = 0.4  # metres from its centre at which a robot puts things down, about
+
+
+class RecordedRobot:
+    """What a recording knows of the robot at one moment."""
+
+    def __init__(self, state: RobotState) -> None:
+        self._state = state
+        self.radius = standard_body().radius
+
+    @property
+    def battery(self) -> float:
+        """Raises ActionFailed where it was not known."""
+        if self._state.battery is None:
+            raise ActionFailed("how full the battery was isn't recorded")
+        return self._state.battery
+
+    @property
+    def pose(self) -> Pose:
+        """Raises ActionFailed where it was not known."""
+        if self._state.pose is None:
+            raise ActionFailed("where the robot was isn't recorded")
+        pose: Pose = self._state.pose
+        return pose
+
+    def locate(self, name: str) -> Point:
+        """Where a thing lies that the robot has just put down: in front of it."""
+        return self.pose.ahead(_IN_FRONT)
+
+
+def drawn(picture: Sink) -> Callable[[Event], object]:
+    """The same sink for events of a recording."""
+
+    def take(event: Event) -> None:
+        if isinstance(event, PeriodPassed) and event.state is not None:
+            event = event.replace(robot=RecordedRobot(event.state))
+        picture(event)
+
+    return take
+
 
 _KEPT = 2_000  # changes of statuses between two states that are kept: a jump takes so many, some milliseconds
 

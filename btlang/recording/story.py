@@ -10,9 +10,8 @@ from btlang.engine.engine import Failure
 from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED
 from btlang.recording.reader import RecordedNodes
 from btlang.run.events import Chosen, Ended, Event, FaultInjected, InTheWorld, Notice, PartChanged, StatusesChanged
-from btlang.run.failure_history import FailureHistory
+from btlang.run.failure_history import FailureHistory, failure_report
 from btlang.run.lines import is_asked_wait
-from btlang.run.report import failure_report
 from btlang.text.escaping import one_line
 from btlang.tree.node import Node
 

@@ -13,7 +13,7 @@ from btlang.diagnostics.render import render
 from btlang.frontends.mission.reader import DEFAULT_PARSER
 from btlang.repl.commands import Commands, Leave, command_of
 from btlang.repl.draft import MissionDraft
-from btlang.repl.entering import entries
+from btlang.repl.keys import entries
 from btlang.repl.store import Kept, Store, state_folder
 from btlang.repl.welcome import welcome
 from btlang.run.terminal import ENDING_SIGNALS, run_mission

@@ -1,12 +1,19 @@
-"""What is shown while an entry is being typed: its words, what is wrong with it, and its tree."""
+"""What is shown while an entry is being typed: its words, problems, tree, and the menu of what may follow."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from prompt_toolkit.completion import CompleteEvent, Completer, PathCompleter
+from prompt_toolkit.completion import Completion as MenuItem
+from prompt_toolkit.document import Document
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.completion.completer import Completion, completions
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.lexer import Lexer
+from btlang.repl.commands import COMMANDS
 from btlang.repl.draft import MissionDraft
 from btlang.support.record import Record
 from btlang.text.source import Source
@@ -124,3 +131,44 @@ def _marks(tokens: list[Token]) -> tuple[tuple[int, int, str], ...]:
         elif token.kind not in _OPERANDS and token.end > token.start:
             marks.append((token.start, token.end, "connective"))
     return tuple(marks)
+
+
+_TAKE_FILES = frozenset(("load", "save", "world"))
+_SPEEDS = ("real", "max", "5")
+
+
+class Offers(Completer):
+    """The completer of the entry. At the start of a line it offers nothing until the user asks."""
+
+    def __init__(self, draft: MissionDraft) -> None:
+        self._draft = draft
+        self._paths = PathCompleter(expanduser=False)
+
+    def get_completions(self, document: Document, complete_event: CompleteEvent) -> Iterable[MenuItem]:
+        """Of the text before the cursor."""
+        text = document.text_before_cursor
+        if not document.current_line_before_cursor.strip() and not complete_event.completion_requested:
+            return
+        name, space, rest = text.partition(" ")
+        if space and name in _TAKE_FILES:
+            rest = rest.removeprefix("over ") if name == "save" else rest
+            yield from self._paths.get_completions(Document(rest), complete_event)
+            return
+        if space and name in ("show", "speed"):
+            words = [*self._draft.definitions, "tree"] if name == "show" else _SPEEDS
+            yield from (MenuItem(word, -len(rest)) for word in words if word.startswith(rest))
+            if name == "speed":
+                return
+        own = list(_own_words(text)) if not space and "\n" not in text else []
+        for option in continuations(self._draft, text):
+            if option.spelling and own:
+                break
+            mark = "(spelling) " if option.spelling else ""
+            yield MenuItem(option.text, option.start - len(text), display_meta=mark + option.help)
+        yield from own
+
+
+def _own_words(start: str) -> Iterator[MenuItem]:
+    for command in COMMANDS:
+        if command.name.startswith(start.lower()) and command.name != start:
+            yield MenuItem(command.name, -len(start), display_meta=command.help)

@@ -35,8 +35,7 @@ from rich.text import Text
 from btlang.repl.commands import command_of, is_begun, near_command, robot_line
 from btlang.repl.draft import MissionDraft
 from btlang.repl.keys import key_bindings
-from btlang.repl.offers import Offers
-from btlang.repl.preview import Preview, continuations, preview
+from btlang.repl.preview import Offers, Preview, continuations, preview
 from btlang.repl.store import Store
 from btlang.text.drawing import lines
 from btlang.text.output import has_colour

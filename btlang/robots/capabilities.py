@@ -14,7 +14,7 @@ from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.station import Station
 from btlang.robots.zones import Zones
-from btlang.run.standstill import Standstill
+from btlang.run.outcome import Standstill
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

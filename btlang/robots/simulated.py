@@ -29,8 +29,8 @@ from btlang.robots.station import Station
 from btlang.robots.surroundings import Surroundings
 from btlang.robots.world import Place, World, said
 from btlang.robots.zones import Zones
+from btlang.run.outcome import Standstill
 from btlang.run.robot_state import Whereabouts
-from btlang.run.standstill import Standstill
 from btlang.text.time_of_day import DAY, weekday_after
 from btlang.vocabulary.capabilities import part_of
 

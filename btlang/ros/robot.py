@@ -45,8 +45,8 @@ from btlang.ros.services import Services
 from btlang.ros.speech import RosSpeech
 from btlang.ros.subscription_cache import SubscriptionCache
 from btlang.ros.zones import RosZones
+from btlang.run.outcome import Standstill
 from btlang.run.robot_state import Whereabouts
-from btlang.run.standstill import Standstill
 from btlang.text.time_of_day import DAY, local, weekday_after
 
 TYPE_CHECKING = False

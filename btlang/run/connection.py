@@ -1,17 +1,22 @@
-"""A robot that runs can use: itself, how it does words, and how its time passes."""
+"""A robot that runs can use, and what it has to know again where another run goes on."""
 
 from __future__ import annotations
 
 from typing import Any, Protocol
 
-from btlang.run.bus import Bus
+from btlang.run.bus import INLINE, Bus
 from btlang.run.controls import Controls
+from btlang.run.events import Chosen, LanguageChosen
 from btlang.run.pace import Pace
 from btlang.tree.node import Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from typing import Any
+
     from btlang.engine.leaves.leaf import LeafBinding
+    from btlang.run.events import Event
     from btlang.vocabulary.entry import Entry
     from btlang.vocabulary.lexicon import Lexicon
 
@@ -41,3 +46,30 @@ class Connection(Protocol):
 
     def close(self) -> None:
         """Lets go of the robot, at rest, within a few seconds. May be called twice."""
+
+
+class RunChoices:
+    """Counts the random choices of a run, and keeps the language in which it has the robot speak."""
+
+    policy = INLINE
+
+    def __init__(self) -> None:
+        self._made, self._language = 0, ""
+
+    def __call__(self, event: Event) -> None:
+        if isinstance(event, Chosen) and event.how == "random":
+            self._made += 1
+        elif isinstance(event, LanguageChosen):
+            self._language = event.name
+
+    def save(self) -> dict[str, Any]:
+        """As JSON."""
+        return {"choices": self._made, "language": self._language}
+
+    def restore(self, saved: Mapping[str, Any], robot: Any, seed: int) -> None:
+        """Raises KeyError, TypeError or ValueError where `save` never gave that, ActionFailed where the robot can't."""
+        self._made = int(saved["choices"])
+        if self._made:
+            robot.seed_choices(seed, self._made)
+        if language := str(saved.get("language", "")):
+            robot.speak_in(language)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from btlang.engine.status import NAMES
 from btlang.run.events import LOGGED, Event, StatusesChanged
-from btlang.run.field_types import field_type
+from btlang.support.field_types import field_type
 from btlang.text.json_text import shallow
 from btlang.tree.node import Node
 

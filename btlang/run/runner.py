@@ -15,11 +15,9 @@ from btlang.engine.status import IDLE, NAMES, RUNNING
 from btlang.run.bus import Bus
 from btlang.run.controls import Controls, disable
 from btlang.run.events import Ended, PeriodPassed, StatusesChanged, Troubled, Warned
-from btlang.run.outcome import EMERGENCY, SUSPENDED, Outcome
-from btlang.run.overruns import Overruns
-from btlang.run.pace import Pace
+from btlang.run.outcome import EMERGENCY, SUSPENDED, Outcome, Standstill, standstill_of
+from btlang.run.pace import Overruns, Pace
 from btlang.run.robot_state import read_robot
-from btlang.run.standstill import Standstill, standstill_of
 from btlang.run.statuses import Status
 from btlang.tree.node import Tree
 

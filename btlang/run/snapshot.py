@@ -1,8 +1,8 @@
-"""What is known of a run: the status of each node and when it got it, the robot, the counts."""
+"""What is known of a run: the status of each node, the robot, the counts; and what of it is new for a page."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from threading import Lock
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
@@ -10,21 +10,70 @@ from btlang.engine.status_trace import repeats
 from btlang.run.bus import INLINE
 from btlang.run.events import Arrived, Ended, Heard, NavigationStarted, PeriodPassed, Said, StatusesChanged, Stopped
 from btlang.run.robot_state import RobotState
-from btlang.run.shape import Shape
 from btlang.run.statuses import Status
 from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Protocol
+    from typing import Any, Protocol
 
     from btlang.run.events import Event, Nodes
+    from btlang.text.source import Span
     from btlang.tree.node import Node
 
     class WatchedNodes(Nodes, Protocol):
         """The nodes of a run that goes on (btlang.engine.engine.Engine), or of a recorded one."""
 
         def parent(self, index: int) -> int: ...
+
+    class Spans(Protocol):
+        """The nodes of a run by their numbers: a btlang.engine.engine.Engine, or those of a recording."""
+
+        @property
+        def size(self) -> int: ...
+
+        def span(self, index: int) -> Span | None: ...
+
+
+class Shape:
+    """A node is its preorder number; all below node i are the numbers from i + 1 up to `ends[i]` (exclusive).
+
+    `parents` holds the parent of each node (-1: the root), `before` the sibling in front of it (-1: there is none),
+    `depths` the distance to the root, and `depth` the largest of them.
+    """
+
+    __slots__ = ("before", "depth", "depths", "ends", "parents")
+
+    def __init__(self, parents: Sequence[int]) -> None:
+        count = len(parents)
+        self.parents = list(parents)
+        self.ends = [i + 1 for i in range(count)]
+        for i in range(count - 1, 0, -1):
+            parent = parents[i]
+            if self.ends[parent] < self.ends[i]:
+                self.ends[parent] = self.ends[i]
+        self.before, self.depths = [-1] * count, [0] * count
+        latest = [-1] * count
+        for i in range(1, count):
+            self.before[i] = latest[parents[i]]
+            latest[parents[i]] = i
+            self.depths[i] = self.depths[parents[i]] + 1
+        self.depth = max(self.depths)
+
+    def __len__(self) -> int:
+        return len(self.parents)
+
+    def children(self, node: int) -> Iterator[int]:
+        """The children of a node in order."""
+        child, end = node + 1, self.ends[node]
+        while child < end:
+            yield child
+            child = self.ends[child]
+
+    def after(self, node: int) -> int:
+        """The sibling behind a node, -1 if there is none."""
+        parent, end = self.parents[node], self.ends[node]
+        return end if parent >= 0 and end < self.ends[parent] else -1
 
 
 HALTED = IDLE + 1
@@ -251,3 +300,55 @@ class Follower:
 
 def _status(code: int) -> Status:
     return Status(min(code, IDLE))  # HALTED and SUSPENDED are IDLE for everybody else
+
+
+_SHOWN = bytes.maketrans(bytes([HALTED, SUSPENDED]), bytes([IDLE, IDLE]))
+
+
+class KnownNodes:
+    """The statuses and the words of `count` nodes, as somebody has got them so far. In the beginning all are IDLE."""
+
+    def __init__(self, count: int) -> None:
+        self._codes = bytes([IDLE]) * count
+        self._valued: dict[int, Node] = {}
+
+    def new_statuses(self, codes: bytes) -> list[tuple[int, int]]:
+        """Return number and status of each node that has another status by now; HALTED and SUSPENDED are IDLE."""
+        before, self._codes = self._codes, codes.translate(_SHOWN)
+        return [(index, self._codes[index]) for index in _differing(before, self._codes)]
+
+    def new_words(self, valued: Mapping[int, Node], label: Callable[[Node], str]) -> list[tuple[int, str]]:
+        """Return number and words of each node whose keys have other values by now."""
+        found = []
+        for index, node in valued.items():
+            known = self._valued.get(index)
+            if known is not node:
+                self._valued[index] = node
+                if known is None or known.ports != node.ports:
+                    found.append((index, label(node)))
+        return found
+
+
+def text_and_places(syntax: Any, nodes: Spans) -> tuple[str, list[tuple[int, int] | None]]:
+    """Return the text that a mission was read from, and the characters of it that say each node.
+
+    `syntax` is that of a btlang.api.Mission, None for one without a text. A node that another file says has no place.
+    """
+    source = None if syntax is None else syntax.span.source
+    spans = [nodes.span(index) for index in range(nodes.size)]
+    places = [(span.start, span.end) if span is not None and span.source is source else None for span in spans]
+    return "" if source is None else source.text, places
+
+
+def _differing(before: bytes, after: bytes) -> Iterator[int]:
+    """Yield the positions that differ, found by halves: few nodes of a large tree change at a time."""
+    spans = [(0, len(after))]
+    while spans:
+        start, end = spans.pop()
+        if before[start:end] == after[start:end]:
+            continue
+        if end - start == 1:
+            yield start
+        else:
+            middle = (start + end) // 2
+            spans += (middle, end), (start, middle)

@@ -13,14 +13,12 @@ from btlang.diagnostics.reading import unwritable
 from btlang.diagnostics.render import render
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.status import FAILURE
-from btlang.run.controls import Controls
-from btlang.run.emergency import PATIENCE, emergency_signal
+from btlang.run.controls import PATIENCE, Controls, emergency_signal
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines, brief
-from btlang.run.outcome import Outcome
-from btlang.run.overruns import are_many
+from btlang.run.outcome import Outcome, Standstill
+from btlang.run.pace import are_many
 from btlang.run.sampler import Sampler
-from btlang.run.standstill import Standstill
 from btlang.run.world_input import WorldInput
 from btlang.text.output import can_draw, has_colour, show
 from btlang.tree.node import Node, Tree

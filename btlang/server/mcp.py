@@ -17,7 +17,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError, in_order
 from btlang.diagnostics.reading import MOST_BYTES
 from btlang.editing.partial import partial_reading
-from btlang.recording.trial import simulated
+from btlang.recording.film import simulated
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.run.lines import Lines
 from btlang.text.source import Source, Span

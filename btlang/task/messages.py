@@ -9,7 +9,7 @@ from collections.abc import Mapping
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.run.field_types import field_type
+from btlang.support.field_types import field_type
 from btlang.support.record import Record
 from btlang.task.store.records import Kind, Missed, Overlap, Restart, can_be_kept
 from btlang.text.source import NOWHERE

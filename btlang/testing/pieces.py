@@ -7,10 +7,21 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import lexed, read_mission
 from btlang.passes import compile_mission
-from btlang.testing.commands import find_command
-from btlang.testing.fakes import Fake
 from btlang.testing.statements import Statement
-from btlang.testing.test import ALWAYS, BEFORE, EVENT, FINALLY, FOR, HOLDS, NEVER, USUAL_LIMIT, WITHIN, Step
+from btlang.testing.test import (
+    ALWAYS,
+    BEFORE,
+    EVENT,
+    FINALLY,
+    FOR,
+    HOLDS,
+    NEVER,
+    USUAL_LIMIT,
+    WITHIN,
+    Fake,
+    Step,
+    find_command,
+)
 from btlang.text.source import Source, Span
 from btlang.text.words import Words
 from btlang.tree.catalogue import SUBTREE

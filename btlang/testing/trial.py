@@ -9,8 +9,7 @@ from threading import Event, Timer
 from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.editing.messages import offsets
-from btlang.recording.film import Film
-from btlang.recording.trial import check_words
+from btlang.recording.film import Film, check_words
 from btlang.run.controls import Controls
 from btlang.testing.runner import Result, run_test
 from btlang.testing.test import MissionTest

@@ -11,8 +11,8 @@ import pytest
 from markdown_it import MarkdownIt
 
 from btlang.cli import main
-from btlang.documents.keys import KeyReader
-from btlang.documents.markdown import block, code, escaped, file_name
+from btlang.documents.pages import block, code, escaped, file_name
+from btlang.documents.project import KeyReader
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.tree.node import Node
 from tests.conftest import matches_golden

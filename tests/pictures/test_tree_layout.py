@@ -6,9 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from btlang.pictures.letters import clipped, shown, width, wrapped
-from btlang.pictures.tree_block import side
-from btlang.pictures.tree_boxes import DEEPEST, IN_PLACE, MOST, Maker, Sheet
-from btlang.pictures.tree_layout import Layout, laid_out
+from btlang.pictures.tree_layout import DEEPEST, IN_PLACE, MOST, Layout, Maker, Sheet, laid_out, side
 from btlang.tree.node import Node, Tree
 
 WORDS = ("go to the kitchen", "wave", 'say "Good morning, dear visitors of our museum, follow me please!"', "w" * 60)

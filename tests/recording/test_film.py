@@ -14,10 +14,9 @@ from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.compile import outline
 from btlang.engine.status import IDLE
-from btlang.recording.film import Film
+from btlang.recording.film import Film, tried
 from btlang.recording.open import opened
 from btlang.recording.reader import RecordedNodes
-from btlang.recording.trial import tried
 from btlang.run.events import Event
 from btlang.run.snapshot import Follower
 from btlang.text.source import Source

@@ -6,7 +6,7 @@ import sys
 
 from btlang.api import parse_tree
 from btlang.diagnostics.errors import MissionError
-from btlang.recording.trial import tried
+from btlang.recording.film import tried
 
 
 def try_sample(text: str, keywords: str) -> int:

@@ -9,7 +9,7 @@ import pytest
 from btlang.diagnostics.errors import MissionError
 from btlang.repl.commands import COMMANDS, Commands, Leave, command_of, near_command
 from btlang.repl.draft import MissionDraft
-from btlang.repl.entering import entries, needs_more
+from btlang.repl.keys import entries, needs_more
 from btlang.repl.store import Store
 
 

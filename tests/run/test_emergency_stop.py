@@ -247,7 +247,7 @@ def test_a_signal_ends_the_command_that_does_not_end_by_itself(name: str, code: 
 
 GOES_ON = """
 import signal, time
-from btlang.run.emergency import emergency_signal
+from btlang.run.controls import emergency_signal
 began = time.monotonic()
 tell = lambda what: print(what, round(time.monotonic() - began, 1), flush=True)
 signal.signal(signal.SIGTERM, lambda *_: tell("told"))

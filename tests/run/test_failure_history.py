@@ -10,8 +10,7 @@ import pytest
 from btlang.engine.leaves.leaf import ActionFailed, LeafBinding
 from btlang.engine.status import FAILURE, RUNNING
 from btlang.run.bus import Bus
-from btlang.run.failure_history import MOST, FailureHistory
-from btlang.run.report import failure_report
+from btlang.run.failure_history import MOST, FailureHistory, failure_report
 from btlang.run.runner import traced_engine
 from btlang.text.source import Source, Span
 from btlang.tree.node import Node, Tree

@@ -17,7 +17,8 @@ from btlang.engine.engine import Engine
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import RUNNING, SUCCESS
 from btlang.engine.timing import Stopwatch
-from btlang.run import command, overruns
+from btlang.run import command
+from btlang.run import pace as overruns
 from btlang.run.bus import Bus
 from btlang.run.events import Overrun
 from btlang.run.json_log import JsonLog

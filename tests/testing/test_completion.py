@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from btlang.robots.mission_vocabulary import world_vocabulary
-from btlang.testing.completion import completions_in_tests
+from btlang.testing.statements import completions_in_tests
 from btlang.testing.test_file import WORDS
 from tests.testing.files import codes
 

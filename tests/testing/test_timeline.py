@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from btlang.run.controls import Controls
 from btlang.run.events import PeriodPassed
 from btlang.testing.observations import Observations
-from btlang.testing.script import Script
+from btlang.testing.runner import Script
 from btlang.testing.test import ALWAYS, BEFORE, FINALLY, FOR, HOLDS, WITHIN, Step
 from btlang.tree.node import Node, Tree
 from tests.profiles import searches

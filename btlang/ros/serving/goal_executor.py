@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from btlang.engine.status import RUNNING
 from btlang.ros.serving.goal import Goal
-from btlang.run.standstill import standstill_of
+from btlang.run.outcome import standstill_of
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False

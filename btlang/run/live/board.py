@@ -11,8 +11,7 @@ from btlang.run.events import PeriodPassed
 from btlang.run.lines import Lines
 from btlang.run.live import frame
 from btlang.run.live.selection import LEAST_HEIGHT
-from btlang.run.shape import Shape
-from btlang.run.snapshot import State
+from btlang.run.snapshot import Shape, State
 from btlang.text.escaping import one_line
 
 TYPE_CHECKING = False

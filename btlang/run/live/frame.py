@@ -10,7 +10,7 @@ from rich.cells import cell_len, set_cell_size
 from btlang.engine.nodes.decorators import WAS_TRUE
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.run.live.selection import LEAST_HEIGHT, Row, choose_rows
-from btlang.run.overruns import are_many
+from btlang.run.pace import are_many
 from btlang.run.robot_state import RobotState
 from btlang.run.snapshot import HALTED, SUSPENDED, State
 from btlang.support.record import Record

@@ -13,9 +13,8 @@ from btlang.run.bus import INLINE
 from btlang.run.events import PeriodPassed
 from btlang.run.live import frame
 from btlang.run.live.board import Board
-from btlang.run.live.capture import captured
 from btlang.run.live.keys import GONE, Keys
-from btlang.run.live.screen import Screen
+from btlang.run.live.screen import Screen, captured
 from btlang.run.live.stopping import stoppable
 from btlang.support.record import Record
 from btlang.text.output import is_unicode

@@ -25,10 +25,8 @@ from btlang.editing.palette import palette
 from btlang.editing.rename import rename
 from btlang.editing.words import Words
 from btlang.frontends.table import frontend_of
-from btlang.recording.film import Film
+from btlang.recording.film import Film, side_by_side, tried
 from btlang.recording.open import opened
-from btlang.recording.side_by_side import side_by_side
-from btlang.recording.trial import tried
 from btlang.server.http.access import AccessError, text_in
 from btlang.support.gc_pause import gc_paused
 from btlang.support.record import Record
@@ -75,7 +73,7 @@ def film(path: str) -> bytes:
 
 
 def comparison(one: str, other: str) -> bytes:
-    """See btlang.recording.side_by_side, as JSON; runs nothing."""
+    """See btlang.recording.film, as JSON; runs nothing."""
     return _write_film(partial(_comparison, one, other))
 
 

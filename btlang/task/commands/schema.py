@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.run.field_types import field_type
+from btlang.support.field_types import field_type
 from btlang.task.messages import COMMANDS, Command
 
 TYPE_CHECKING = False

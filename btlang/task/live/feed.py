@@ -15,9 +15,8 @@ from btlang.passes.scripts import is_prepared
 from btlang.run.bus import INLINE
 from btlang.run.events import LOGGED, Arrived, DoorMoved, Ended, Event, PeriodPassed, StatusesChanged, Stopped
 from btlang.run.json_log import as_json
-from btlang.run.known_nodes import KnownNodes, text_and_places
 from btlang.run.robot_state import RobotState, asked, rounded_scan
-from btlang.run.snapshot import Doing
+from btlang.run.snapshot import Doing, KnownNodes, text_and_places
 from btlang.session import Run
 from btlang.task.live.robot_now import BodyNow, MapNow
 from btlang.task.store.database import StoreError

@@ -24,8 +24,7 @@ from btlang.run.live.frame import (
 )
 from btlang.run.live.view import usual_keys
 from btlang.run.robot_state import RobotState
-from btlang.run.shape import Shape
-from btlang.run.snapshot import HALTED, SUSPENDED, Doing, State
+from btlang.run.snapshot import HALTED, SUSPENDED, Doing, Shape, State
 from btlang.text.source import Source, Span
 from btlang.tree.node import Node
 

@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.run.shape import Shape
-from btlang.run.snapshot import HALTED, SUSPENDED, State
+from btlang.run.snapshot import HALTED, SUSPENDED, Shape, State
 from btlang.tree.node import Node
 
 from .trees import Run

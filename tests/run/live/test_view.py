@@ -18,8 +18,8 @@ import btlang
 from btlang.api import Mission
 from btlang.engine.status import SUCCESS
 from btlang.robots.mission_vocabulary import world_vocabulary
-from btlang.run.live.capture import Capture
 from btlang.run.live.keys import Keys
+from btlang.run.live.screen import Capture
 from btlang.run.live.view import LiveView
 from btlang.tree.node import Node, Tree
 from tests.profiles import amount

@@ -12,8 +12,7 @@ from btlang.engine.engine import Engine
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.run.events import StatusesChanged
-from btlang.run.shape import Shape
-from btlang.run.snapshot import State
+from btlang.run.snapshot import Shape, State
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
