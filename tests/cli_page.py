@@ -6,8 +6,8 @@ import argparse
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
+from btlang.cli.options import Verb
 from btlang.cli.parser import verb_parser
-from btlang.cli.verb import Verb
 from btlang.cli.verbs import VERBS
 
 PAGE = Path(__file__).parent.parent / "docs" / "cli.md"

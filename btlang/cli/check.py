@@ -15,7 +15,7 @@ from btlang.diagnostics.reading import has_mark, read_source
 from btlang.frontends.table import frontend_of
 from btlang.passes.lint.and_means_then import and_means_then_now
 from btlang.robots.mission_vocabulary import world_vocabulary
-from btlang.testing.names import is_test_file
+from btlang.support.test_files import is_test_file
 from btlang.text.output import show
 from btlang.text.source import Source
 

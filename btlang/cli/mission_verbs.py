@@ -12,7 +12,7 @@ from btlang.cli.missions import hinting, mission_of, parsed_mission, typed_sourc
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.robots.mission_vocabulary import world_vocabulary
-from btlang.testing.names import is_test_file
+from btlang.support.test_files import is_test_file
 from btlang.text.output import listing_width, pass_on, show
 from btlang.text.source import Source
 

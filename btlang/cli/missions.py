@@ -13,7 +13,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.robots.platforms import ROBOTS
-from btlang.testing.names import is_test_file
+from btlang.support.test_files import is_test_file
 from btlang.text.source import Source, Span
 from btlang.vocabulary.shipped import shipped
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from importlib import import_module
 from itertools import takewhile
 
-from btlang.cli.verb import OneOf, Option, Verb
+from btlang.cli.options import OneOf, Option, Verb
 from btlang.cli.verbs import VERBS
 from btlang.frontends.mission.reader import DEFAULT_PARSER
 from btlang.text.output import WIDEST, columns, show

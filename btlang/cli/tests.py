@@ -16,7 +16,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.support.record import Record
-from btlang.testing.names import ENDING
+from btlang.support.test_files import ENDING
 from btlang.testing.observations import covered
 from btlang.testing.runner import Result, brief_time, run_chaos, run_test
 from btlang.testing.test import MissionTest

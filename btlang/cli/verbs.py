@@ -35,6 +35,10 @@ from btlang.cli.options import (
     TEXT,
     WORDS,
     WORLD,
+    Act,
+    OneOf,
+    Option,
+    Verb,
     body_options,
     namespace_option,
 )
@@ -53,7 +57,6 @@ from btlang.cli.values import (
     ros_name,
     size,
 )
-from btlang.cli.verb import Act, OneOf, Option, Verb
 
 RUN, WRITE, KEEP_UP = "run and see", "write and check", "keep a robot up"
 BUILD, SHARE, ROS, OWN = "build", "share", "ROS 2", "this command"

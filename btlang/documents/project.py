@@ -19,7 +19,7 @@ from btlang.frontends.btcpp.spelling import MAIN_TREE
 from btlang.frontends.table import frontend_of
 from btlang.projects.files import begins_as_tree, files_below, named_files, nothing_in
 from btlang.support.record import Record
-from btlang.testing.names import is_test_file
+from btlang.support.test_files import is_test_file
 from btlang.text.source import Source
 from btlang.tree.catalogue import CATALOGUE, KEY, SCRIPT, SUBTREE, held
 from btlang.tree.model import NodeModel

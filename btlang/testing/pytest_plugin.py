@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.testing.names import is_test_file
+from btlang.support.test_files import is_test_file
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -25,11 +25,11 @@ from btlang.server.accounts.accounts import Accounts
 from btlang.server.http.access import AccessError, JsonResponse, json_object, text_in
 from btlang.server.page.local_page import LocalApi, LocalRobots, check_page, local_page, say_where
 from btlang.server.page.processes import MOST_CHARACTERS
+from btlang.support.test_files import ENDING, is_test_file
 from btlang.task.commands.answers import differences
 from btlang.task.commands.checks import refused
 from btlang.task.messages import Answer
 from btlang.task.store.records import is_whole
-from btlang.testing.names import ENDING, is_test_file
 from btlang.text.escaping import one_line
 from btlang.text.output import show
 from btlang.text.source import Source, Span
