@@ -31,8 +31,8 @@ from btlang.run.failure_history import FailureHistory, failure_report
 from btlang.run.limits import RATES, SLOWEST
 from btlang.run.outcome import Outcome
 from btlang.run.recent import RecentEvents
-from btlang.run.runner import Runner, traced_engine
-from btlang.run.snapshot import Follower, Snapshot
+from btlang.run.runner import Runner, trace_engine
+from btlang.run.snapshot import RunFollower, Snapshot
 from btlang.run.statuses import Status
 from btlang.text.escaping import RED
 from btlang.text.source import NOWHERE, Source
@@ -270,7 +270,7 @@ class Run:
         self._under_way = False
         self._engine = self._bound(connection, sinks, values, hooks, timed=speed < math.inf)
         self._story = FailureHistory(self._engine)
-        self.follower = Follower(self._engine)
+        self.follower = RunFollower(self._engine)
         """The statuses of all nodes, for any thread."""
         self._recent = RecentEvents()
         self._choices = RunChoices()
@@ -478,7 +478,7 @@ class Run:
         connection.begin(self.bus)
         bind = cache(partial(_bind, mission.vocabulary, connection, awaited(mission.tree)))
         try:
-            return traced_engine(
+            return trace_engine(
                 mission.tree, bind, bus=self.bus, services={"robot": connection.robot}, proxies={"robot": RobotProxy},
                 blackboard=values, stopwatch=Stopwatch() if timed else None, hooks=hooks,
             )  # fmt: skip

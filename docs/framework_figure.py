@@ -9,11 +9,11 @@ CLIENTS = ("page", "HTTP, WebSocket", "programs", "ROS 2")
 LAYERS = (
     (
         "Representative server", "who may say what to which robot",
-        ("server/app.py", "server/access.py", "server/roles.py", "server/clients.py"), "commands",
+        ("server/accounts", "server/http", "server/live", "server/fleet"), "commands",
     ),
     (
         "Task layer", "which mission is due, which one waits",
-        ("task/handler.py", "task/manager.py", "task/executor.py", "task/store.py"), "one run at a time",
+        ("task/commands", "task/execution", "task/schedule", "task/store"), "one run at a time",
     ),
     (
         "Behavior trees", "sentences, a tree, ticks",
@@ -29,7 +29,7 @@ LAYERS = (
     ),
 )  # fmt: skip
 """From top to bottom: what each is, what it decides, its modules below btlang, and what goes to the next one."""
-STOP = ("task/socket_server.py", "task/emergency.py", "run/controls.py", "robots/latch.py")
+STOP = ("task/commands", "task/execution", "run/controls.py", "robots/latch.py")
 """The modules on the way of the emergency stop."""
 _FILL, _EDGE, _ALARM, _PALE = "#f8faf8", "#4f7d62", "#c0440c", "#fde4da"
 

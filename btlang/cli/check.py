@@ -8,7 +8,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from btlang.cli.missions import hinting, mission_of, parsed_mission, typed_source
+from btlang.cli.missions import hint_at_text, mission_of, parse_mission, read_typed
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import has_mark, read_source
@@ -24,7 +24,7 @@ _SUCCESS, _BAD_INPUT = 0, 2
 
 def check_files(options: argparse.Namespace) -> int:
     """Check what the options name; return the exit code: 2 if any of the files has an error."""
-    check = _Check(options)
+    check = _FileCheck(options)
     check.read()
     if options.fix:
         check.mend()
@@ -34,7 +34,7 @@ def check_files(options: argparse.Namespace) -> int:
     return _BAD_INPUT if check.failed else _SUCCESS
 
 
-class _Check:
+class _FileCheck:
     """A check of some files. What it finds goes to the report; `failed`: there are errors."""
 
     def __init__(self, options: argparse.Namespace) -> None:
@@ -46,13 +46,13 @@ class _Check:
     def read(self) -> None:
         """Read the files; what isn't a tree in XML is checked alone."""
         if self._options.text is not None:
-            self._add(typed_source(self._options))
+            self._add(read_typed(self._options))
             return
-        from btlang.projects.files import named_files
+        from btlang.projects.files import find_named_files
 
         with self._reporting():
-            for path in named_files(self._options.file):
-                with self._reporting(), hinting(path, "check"):
+            for path in find_named_files(self._options.file):
+                with self._reporting(), hint_at_text(path, "check"):
                     self._add(read_source(path, self._options.include_root))
 
     def _add(self, source: Source) -> None:
@@ -104,7 +104,7 @@ class _Check:
                 self.failed |= any(problem.is_error for problem in problems)
         for source in self._trees if robot and not self.failed else ():
             with self._reporting():
-                parsed_mission(source, self._options).check(robot)
+                parse_mission(source, self._options).check(robot)
 
     @contextmanager
     def _reporting(self) -> Iterator[None]:
@@ -121,7 +121,7 @@ class _Check:
                 from btlang.testing.test_file import check_tests  # most files are missions
 
                 return check_tests(source)
-            return parsed_mission(source, self._options).warnings
+            return parse_mission(source, self._options).warnings
         except MissionError as error:
             return error.diagnostics
 

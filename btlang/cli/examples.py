@@ -50,7 +50,7 @@ def all_examples() -> list[Example]:
     return [*examples(), *(_folder(name) for name in names if os.path.isfile(shipped("examples", name, _README)))]
 
 
-def found(names: Iterable[str]) -> list[Example]:
+def find_examples(names: Iterable[str]) -> list[Example]:
     """The missions of these names, with or without `.txt`. Raises MissionError (BT008)."""
     known = {example.name: example for example in all_examples()}
     wanted = [name.removesuffix(".txt") for name in names]
@@ -66,7 +66,7 @@ def path_of(name: str) -> str:
     return path if os.path.isfile(path) else ""
 
 
-def listing(width: int = 80) -> list[str]:
+def list_examples(width: int = 80) -> list[str]:
     """Each mission with what it does, in a line; then the folders."""
     listed = all_examples()
     column = max(len(example.name) for example in listed) + 4
@@ -83,7 +83,7 @@ def listing(width: int = 80) -> list[str]:
     ]  # fmt: skip
 
 
-def beginnings(folder: str, chosen: Sequence[Example]) -> list[str]:
+def describe_start(folder: str, chosen: Sequence[Example]) -> list[str]:
     """How to begin with what was copied to a folder, in lines."""
     readmes = [os.path.join(folder, example.file) for example in chosen if example.file.endswith(_README)]
     lines = [f"To begin, read {readme}" for readme in readmes]
@@ -92,7 +92,7 @@ def beginnings(folder: str, chosen: Sequence[Example]) -> list[str]:
     return lines
 
 
-def copied(folder: str, chosen: Sequence[Example]) -> list[str]:
+def copy_examples(folder: str, chosen: Sequence[Example]) -> list[str]:
     """Copies missions to a folder, with their worlds, parts and tests in its `worlds`, `parts` and `tests`.
 
     Returns the paths written.

@@ -14,7 +14,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.gestures.checking import check_file
 from btlang.gestures.recording import record
-from btlang.pictures.files import MOVING, STILL, check_picture, ending
+from btlang.pictures.files import MOVING, STILL, check_picture, picture_ending
 from btlang.robots.body import Body
 from btlang.robots.gesture import Gesture
 from btlang.robots.gesture_file import TARGET, phrase_forms
@@ -127,7 +127,7 @@ def _robot_above(path: str) -> str | None:
 def _draw(path: str, body: Body, gesture: Gesture) -> int:
     from btlang.pictures.figure import draw_gesture
 
-    kind = ending(path, STILL + MOVING)
+    kind = picture_ending(path, STILL + MOVING)
     check_picture(path)
     rehearsal = rehearse(body, gesture)
     if rehearsal.problem:

@@ -8,7 +8,7 @@ import sys
 from functools import partial
 
 from btlang.api import Mission, format_mission
-from btlang.cli.missions import hinting, mission_of, parsed_mission, typed_source
+from btlang.cli.missions import hint_at_text, mission_of, parse_mission, read_typed
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.robots.mission_vocabulary import world_vocabulary
@@ -49,7 +49,7 @@ def explain(options: argparse.Namespace) -> int:
     if options.text is not None or (subject is not None and not is_code(subject) and _is_file(subject)):
         show(mission_of(options).explain(listing_width(100)))
     elif subject is not None:
-        with hinting(subject, "explain"):
+        with hint_at_text(subject, "explain"):
             show(explain_code(subject))
     else:
         show(all_codes())
@@ -66,7 +66,7 @@ def format_files(options: argparse.Namespace) -> int:
     """Format files in place; standard input and a text of the command line go to standard output."""
     sources = [partial(read_source, path, options.include_root) for path in options.file]
     if options.text is not None:
-        sources = [partial(typed_source, options)]
+        sources = [partial(read_typed, options)]
     code = _SUCCESS
     for read in sources:
         try:
@@ -139,7 +139,7 @@ def _write_pages(options: argparse.Namespace) -> None:
     from btlang.documents.project import read_documents
 
     vocabulary = world_vocabulary(options.keywords, options.world, options.language)
-    project = read_documents(options.file, vocabulary, partial(parsed_mission, options=options))
+    project = read_documents(options.file, vocabulary, partial(parse_mission, options=options))
     if not write_pages(project, options.file, options.out):
         options.refuse("several files become several pages; name a folder for them with -o FOLDER")
 
@@ -191,14 +191,14 @@ def show_examples(options: argparse.Namespace) -> int:
     """List, print or copy the example missions."""
     from btlang.cli import examples
 
-    chosen = examples.found(options.name) if options.name else examples.all_examples()
+    chosen = examples.find_examples(options.name) if options.name else examples.all_examples()
     if options.copy is not None:
-        written = examples.copied(options.copy, chosen)
-        show("\n".join((*written, *examples.beginnings(options.copy, chosen))))
+        written = examples.copy_examples(options.copy, chosen)
+        show("\n".join((*written, *examples.describe_start(options.copy, chosen))))
     elif options.name:
         show("\n\n".join(example.text.rstrip("\n") for example in chosen))
     else:
-        show("\n".join(examples.listing(listing_width())))
+        show("\n".join(examples.list_examples(listing_width())))
     return _SUCCESS
 
 

@@ -20,7 +20,7 @@ from btlang.vocabulary.shipped import shipped
 _OWN_ROBOT = ("robot", "gesture")  # these verbs read the robot themselves
 
 
-def typed_source(options: argparse.Namespace) -> Source:
+def read_typed(options: argparse.Namespace) -> Source:
     """Return the text of the option -c, whose folder is the current one."""
     roots = None if options.include_root is None else ("", options.include_root)
     return Source(options.text, "<command line>", roots=roots, may_load=True)
@@ -40,17 +40,17 @@ def add_robot_files(options: argparse.Namespace) -> None:
 
 def mission_of(options: argparse.Namespace, source: Source | None = None) -> Mission:
     """Compile what the options name; warnings go to the report. Raises MissionError."""
-    mission = parsed_mission(source_of(options) if source is None else source, options)
+    mission = parse_mission(source_of(options) if source is None else source, options)
     options.report.add(mission.warnings)
     return mission
 
 
 def source_of(options: argparse.Namespace) -> Source:
     """Read the text of the file, or that of the option -c. Raises MissionError."""
-    return typed_source(options) if options.text is not None else _read_file(options)
+    return read_typed(options) if options.text is not None else _read_file(options)
 
 
-def parsed_mission(source: Source, options: argparse.Namespace) -> Mission:
+def parse_mission(source: Source, options: argparse.Namespace) -> Mission:
     """Compile a text with these options. Raises MissionError."""
     if is_test_file(source.name):
         raise MissionError([diagnostic("BT183", Span(source, 0, 0), file=source.name)])
@@ -100,7 +100,7 @@ def _advice_on_world(error: MissionError, source: Source, options: argparse.Name
 
 def _read_file(options: argparse.Namespace) -> Source:
     """Read the file, or the example of this name. The error may say how to give a mission as text."""
-    with hinting(options.file, options.verb):
+    with hint_at_text(options.file, options.verb):
         return read_source(_example(options.file) or options.file, options.include_root)
 
 
@@ -114,7 +114,7 @@ def _example(name: str) -> str:
 
 
 @contextmanager
-def hinting(subject: str, verb: str) -> Iterator[None]:
+def hint_at_text(subject: str, verb: str) -> Iterator[None]:
     """Add to errors about a subject that isn't a file, but reads as a mission, how to give it as text."""
     try:
         yield

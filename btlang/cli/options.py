@@ -47,7 +47,7 @@ class OneOf:
         self.required = required
 
 
-class Act(Record):
+class VerbAct(Record):
     """One of the things that a verb does: `add` of `btc task`.
 
     `options` are the destinations of the options that it takes, beside `name`, and `words` the most arguments. Where
@@ -73,7 +73,7 @@ class Verb(Record):
     handler: str
     options: tuple[Option | OneOf, ...] = ()
     examples: tuple[tuple[str, str], ...] = ()
-    acts: Mapping[str, Act] = {}  # never changed
+    acts: Mapping[str, VerbAct] = {}  # never changed
     usual_act: str = ""
     mixed: bool = False
     usage: str | None = None

@@ -15,15 +15,15 @@ from btlang.cli.run import pictures_of
 from btlang.pictures.terminal_map import TerminalMap
 from btlang.recording.bundle import ROBOT
 from btlang.recording.diff import first_difference
-from btlang.recording.open import opened
+from btlang.recording.open import open_recording
 from btlang.recording.reader import RecordedNodes, Recording
-from btlang.recording.replay import Player, Timeline, drawn
+from btlang.recording.replay import Player, ReplayTimeline, adapt_picture
 from btlang.recording.story import Story
 from btlang.robots.body_file import shipped_bodies
 from btlang.robots.world_problem import read_world
 from btlang.run.controls import Controls
 from btlang.run.events import Event
-from btlang.run.lines import Lines
+from btlang.run.lines import PlainLines
 from btlang.run.live.keys import LEFT, RIGHT
 from btlang.run.terminal import live_view
 from btlang.session import Session
@@ -41,16 +41,16 @@ _MOVE = 10.0  # seconds of the mission that an arrow key goes on or back
 
 def replay(options: argparse.Namespace) -> int:
     """Show a recorded run as it was, or run its mission again; return the exit code."""
-    with opened(options.file, options.keywords if options.as_mission else None) as (recording, mission, nodes):
+    with open_recording(options.file, options.keywords if options.as_mission else None) as (recording, mission, nodes):
         if options.as_mission:
             return _run_again(recording, mission, nodes)
         if options.to is not None:
             return _write_log(options.to, recording, mission, nodes)
         controls = Controls()
         sinks: list[Sink] = []
-        timeline = Timeline(list(recording.events(nodes)), nodes)
+        timeline = ReplayTimeline(list(recording.events(nodes)), nodes)
         player = Player(timeline, sinks, controls)
-        lines = Lines(mission.label, mission.is_action, show)
+        lines = PlainLines(mission.label, mission.is_action, show)
         view = None if options.lines else live_view(mission, controls, keys=partial(_keys, player, controls))
         if view is not None and "simulated" in (recording.about.get("robot"), recording.about.get("over")):
             view.show_map(TerminalMap(read_world(mission.world), view.unicode))
@@ -69,7 +69,7 @@ def replay(options: argparse.Namespace) -> int:
         with pictures_of(mission, options.picture, options.tree_picture, quiet=False) as pictures:
             for event in timeline.events:
                 for picture in pictures:
-                    drawn(picture)(event)
+                    adapt_picture(picture)(event)
         if options.why:
             show("\n".join(Story(mission, nodes, recording.about).take(timeline.events).lines()))
     return 0
@@ -109,7 +109,7 @@ def _write_log(path: str, recording: Recording, mission: Mission, nodes: Recorde
 
 def explain_run(options: argparse.Namespace) -> int:
     """Print what happened in a recorded run; return the exit code."""
-    with opened(options.file, options.keywords if options.as_mission else None) as (recording, mission, nodes):
+    with open_recording(options.file, options.keywords if options.as_mission else None) as (recording, mission, nodes):
         story = Story(mission, nodes, recording.about).take(recording.events(nodes))
         show("\n".join(story.lines()))
     return 0

@@ -20,15 +20,15 @@ from btlang.robots.answers_file import read_answers
 from btlang.robots.registry import connector, runs_in_real_time
 from btlang.run.controls import emergency_signal
 from btlang.task import messages
-from btlang.task.commands.client import USUAL_NAME, Client, data_folder, emergency_stop
+from btlang.task.commands.client import USUAL_NAME, RobotClient, data_folder, emergency_stop
 from btlang.task.commands.companion import companions, require_companions
 from btlang.task.commands.socket_server import SocketServer
-from btlang.task.commands.store_handlers import kept_text
+from btlang.task.commands.store_handlers import latest_text
 from btlang.task.execution.manager import DAY
 from btlang.task.execution.missions import MissionReader
-from btlang.task.layer import KEPT, TaskLayer, furnished_layer, keep_ticks_in_time
+from btlang.task.layer import KEPT, TaskLayer, keep_ticks_in_time, make_robot_layer
 from btlang.task.store.backup import restore_backup
-from btlang.task.store.records import Kind
+from btlang.task.store.records import LibraryKind
 from btlang.task.store.task_store import open_store
 from btlang.text.escaping import one_line
 from btlang.text.output import pass_on, show
@@ -91,7 +91,10 @@ def run_act(options: argparse.Namespace) -> int:
     if act == "stop":
         for line in emergency_stop(options.name, options.reason):
             show(line)
-        with suppress(MissionError), Client(options.name) as client:  # the robot stands already; this is for the trail
+        with (
+            suppress(MissionError),
+            RobotClient(options.name) as client,
+        ):  # the robot stands already; this is for the trail
             client.send(messages.EmergencyStop(options.reason))
         return 0
     if act == "say" and not options.item:
@@ -101,7 +104,7 @@ def run_act(options: argparse.Namespace) -> int:
         "release": messages.Release, "pause": messages.Pause, "resume": messages.Resume,
         "step": messages.Step, "say": partial(messages.Say, " ".join(options.item)), "visitor": messages.InviteVisitor,
     }  # fmt: skip
-    with Client(options.name) as client:
+    with RobotClient(options.name) as client:
         return print_answer(client.send(commands[act]()), options.json)
 
 
@@ -142,7 +145,7 @@ def _up(options: argparse.Namespace) -> int:
             allowed_keywords=options.allow_keywords,
         )
         trouble, down = (lambda text: show(one_line(text), sys.stderr)), ended.set
-        layer = furnished_layer(robot, reader, **kept, speed=options.speed, trouble=trouble, down=down)
+        layer = make_robot_layer(robot, reader, **kept, speed=options.speed, trouble=trouble, down=down)
     except BaseException:
         door.close()
         raise
@@ -179,9 +182,13 @@ def _from_library(options: argparse.Namespace, kept: Mapping[str, Any]) -> tuple
     if any(each is not None and each.startswith(_LIBRARY) for each in (robot, world)):
         os.makedirs(kept["folder"], mode=0o700, exist_ok=True)
         with open_store(kept["store"]) as store:
-            robot = kept_text(store, robot.removeprefix(_LIBRARY), Kind.ROBOT) if robot.startswith(_LIBRARY) else robot
+            robot = (
+                latest_text(store, robot.removeprefix(_LIBRARY), LibraryKind.ROBOT)
+                if robot.startswith(_LIBRARY)
+                else robot
+            )
             if world is not None and world.startswith(_LIBRARY):
-                world = kept_text(store, world.removeprefix(_LIBRARY), Kind.WORLD)
+                world = latest_text(store, world.removeprefix(_LIBRARY), LibraryKind.WORLD)
     chosen = connector(robot, over, **named)
     return chosen, world or chosen.body.world or None
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from btlang.vocabulary.lexicon import Lexicon
 
 
-def chosen_robot(options: Namespace) -> Connector:
+def choose_robot(options: Namespace) -> Connector:
     """Make the connector that `btlang.Session` takes. Ends with a usage error if options don't go together.
 
     Raises MissionError.
@@ -55,7 +55,7 @@ def platform_of(options: Namespace) -> str:
 def print_preflight(tree: Tree, vocabulary: Lexicon, world: World, robot: Any) -> bool:
     """Print what a tree needs of the robot, a line each; return whether all of it is there. Raises MissionError.
 
-    `robot` is what `chosen_robot` gives for a ROS 2 robot.
+    `robot` is what `choose_robot` gives for a ROS 2 robot.
     """
     with closing(robot(world)) as connection:
         found = connection.survey(tree, vocabulary)

@@ -166,12 +166,12 @@ def _spin_actions(connection: Connection, ids: Sequence[str], vocabulary: Lexico
     from btlang.ros.serving import server
     from btlang.ros.serving.goal_executor import GoalExecutor
     from btlang.run.bus import Bus
-    from btlang.run.lines import Lines
+    from btlang.run.lines import PlainLines
     from btlang.run.runner import Runner
     from btlang.run.terminal import STILL_MOVING, warn_of_motion
 
     bus = Bus("actions", queued=True)
-    bus.add(Lines(lambda node: phrase_of(node, vocabulary), lambda node: True, show))
+    bus.add(PlainLines(lambda node: phrase_of(node, vocabulary), lambda node: True, show))
     connection.begin(bus)
     controls = Controls()
     executor = GoalExecutor(connection, vocabulary)

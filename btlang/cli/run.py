@@ -13,7 +13,7 @@ from functools import partial
 
 from btlang.api import Mission
 from btlang.cli.missions import mission_of
-from btlang.cli.robots import chosen_robot, print_preflight
+from btlang.cli.robots import choose_robot, print_preflight
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
 from btlang.pictures.files import check_picture
@@ -36,7 +36,7 @@ _SUCCESS, _FAILED = 0, 1
 
 def run(options: argparse.Namespace) -> int:
     """Run a mission as the options say; return the exit code."""
-    robot = chosen_robot(options)
+    robot = choose_robot(options)
     mission = mission_of(options)
     if options.preflight:
         ready = print_preflight(mission.tree, mission.vocabulary, read_world(mission.world, robot.body), robot)
@@ -45,10 +45,10 @@ def run(options: argparse.Namespace) -> int:
         _note_robots_up()
     if not options.watch:
         return _run_shown(options, mission, robot)
-    from btlang.server.page.watching import watched
+    from btlang.server.page.watching import open_monitor
 
     name = "mission" if options.text is not None or options.file == "-" else os.path.basename(options.file)
-    with watched(mission, name, robot.body, robot.over == "simulated", options.browser) as monitor:
+    with open_monitor(mission, name, robot.body, robot.over == "simulated", options.browser) as monitor:
         return monitor.stay(_run_shown(options, mission, robot, monitor.opened))
 
 
@@ -56,7 +56,7 @@ def _run_shown(options: argparse.Namespace, mission: Mission, robot: Connector, 
     """Run a mission with its pictures and its recording; `monitors` show it elsewhere."""
     with (
         pictures_of(mission, options.picture, options.tree_picture, options.quiet) as sinks,
-        recorded(mission, options) as recorders,
+        record_run(mission, options) as recorders,
         voice_track(options.voice, robot.body) as voices,
     ):
         return run_mission(
@@ -139,7 +139,7 @@ def pictures_of(mission: Mission, run: str | None, tree: str | None, quiet: bool
 
 
 @contextmanager
-def recorded(mission: Mission, options: argparse.Namespace) -> Iterator[list[Sink]]:
+def record_run(mission: Mission, options: argparse.Namespace) -> Iterator[list[Sink]]:
     """Give the sinks that record a run, none if the options ask for no recording. A recorded run has a seed.
 
     Raises MissionError (BT009).

@@ -56,7 +56,7 @@ def serve(options: argparse.Namespace) -> int:
     from btlang.ros.available import require_package
     from btlang.server.accounts.accounts import Accounts
     from btlang.server.http.app import Api
-    from btlang.server.http.listener import kept_key, listening
+    from btlang.server.http.listener import load_key, open_listener
     from btlang.server.http.listener import serve as serve_door
 
     if (options.cert is None) != (options.key is None):
@@ -72,7 +72,7 @@ def serve(options: argparse.Namespace) -> int:
         reason = f"there are no users yet; make one first: btc user add {_ADMINISTRATOR} --role administrator"
         raise _refused(options, reason)
     certificate = None if options.no_tls else _certificate(options)
-    door = listening(options.host, options.port)
+    door = open_listener(options.host, options.port)
     password = _first_password(accounts)
     port = door.getsockname()[1]
     _keep_door(certificate, port)
@@ -90,7 +90,7 @@ def serve(options: argparse.Namespace) -> int:
     if options.until_eof:
         threading.Thread(target=_end_at_eof, daemon=True).start()
     try:
-        serve_door(Api(accounts, kept_key(server_folder()), ros=options.ros), door, certificate, control_path(), ready)
+        serve_door(Api(accounts, load_key(server_folder()), ros=options.ros), door, certificate, control_path(), ready)
     except (OSError, ssl.SSLError) as error:
         raise _refused(options, reason_of(error)) from None
     finally:
@@ -111,12 +111,12 @@ def _is_loopback(host: str) -> bool:
 
 
 def _certificate(options: argparse.Namespace) -> Certificate:
-    from btlang.server.accounts.certificate import Certificate, fingerprint_of, own_certificate
+    from btlang.server.accounts.certificate import Certificate, fingerprint_of, load_certificate
     from btlang.server.http.listener import tls
 
     try:
         if options.cert is None:
-            return own_certificate(server_folder(), options.host)
+            return load_certificate(server_folder(), options.host)
         given = Certificate(options.cert, options.key, fingerprint_of(options.cert))
         tls(given)
         return given
@@ -144,13 +144,13 @@ def _keep_door(certificate: Certificate | None, port: int) -> None:
 
 def _first_password(accounts: Accounts) -> str:
     """Add an administrator if there is no user, and return the password; return "" if there is one."""
-    from btlang.server.accounts.accounts import Role
-    from btlang.server.accounts.passwords import hashed, random_password
+    from btlang.server.accounts.accounts import UserRole
+    from btlang.server.accounts.passwords import hash_password, random_password
 
     if accounts.users():
         return ""
     password = random_password()
-    accounts.add(_ADMINISTRATOR, Role.ADMINISTRATOR, hashed(password))
+    accounts.add(_ADMINISTRATOR, UserRole.ADMINISTRATOR, hash_password(password))
     return password
 
 

@@ -13,9 +13,9 @@ from btlang.cli.parser import check_act, check_count
 from btlang.cli.verbs import VERBS
 from btlang.diagnostics.reading import read_source
 from btlang.task import messages
-from btlang.task.commands.client import Client
+from btlang.task.commands.client import RobotClient
 from btlang.task.messages import Answer, Command, wrong
-from btlang.task.store.records import State
+from btlang.task.store.records import TaskState
 from btlang.text.escaping import one_line
 from btlang.text.output import pass_on, show
 
@@ -32,7 +32,7 @@ def run_act(options: argparse.Namespace) -> int:
     """Do what the act says; return the exit code: 1 if the robot refuses. Raises MissionError."""
     _check_words(options)
     command = _command(options)
-    with Client(options.name) as client:
+    with RobotClient(options.name) as client:
         if options.live:
             return _live(client, command)
         return print_answer(client.send(command), options.json)
@@ -43,7 +43,7 @@ def change_components(options: argparse.Namespace) -> int:
     if (options.act == "list") == bool(options.item):
         raise wrong(options.act, "it takes no name" if options.item else "it needs the name of a component")
     command = messages.Components() if options.act == "list" else messages.ChangeComponent(options.item, options.act)
-    with Client(options.name) as client:
+    with RobotClient(options.name) as client:
         return print_answer(client.send(command), options.json)
 
 
@@ -73,11 +73,11 @@ def print_answer(answer: Answer, as_json: bool) -> int:
     return 0 if answer.ok else 1
 
 
-def _live(client: Client, command: Command) -> int:
+def _live(client: RobotClient, command: Command) -> int:
     """Show the list until Ctrl-C. Where it isn't a terminal, it's printed again when it has changed."""
-    from btlang.run.live.screen import Screen
+    from btlang.run.live.screen import LiveScreen
 
-    screen, before = Screen(sys.stdout, shutil.get_terminal_size), ""
+    screen, before = LiveScreen(sys.stdout, shutil.get_terminal_size), ""
     is_terminal = sys.stdout.isatty()
     try:
         if is_terminal:
@@ -129,7 +129,7 @@ def _command(options: argparse.Namespace) -> Command:
 
 
 def _list(options: argparse.Namespace) -> Command:
-    wanted: dict[str, Any] = {"states": tuple(State) if options.all else ()}
+    wanted: dict[str, Any] = {"states": tuple(TaskState) if options.all else ()}
     if options.limit is not None or (options.all and not options.live):  # a live list is asked for again and again
         wanted["limit"] = options.limit
     return messages.List(**wanted, label=options.label[0] if options.label else "")

@@ -17,7 +17,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.support.record import Record
 from btlang.support.test_files import ENDING
-from btlang.testing.observations import covered
+from btlang.testing.observations import measure_coverage
 from btlang.testing.runner import Result, brief_time, run_chaos, run_test
 from btlang.testing.test import MissionTest
 from btlang.testing.test_file import read_tests
@@ -42,7 +42,7 @@ class Summary(Record):
         return [result for result in self.results if not result.passed]
 
 
-def lines(summary: Summary, *, has_seeds: bool) -> Iterable[str]:
+def format_summary(summary: Summary, *, has_seeds: bool) -> Iterable[str]:
     """What is shown of a test: a line, and of one that failed why."""
     first, failures = summary.results[0], summary.failures
     seconds = sum(result.seconds for result in summary.results)
@@ -60,7 +60,7 @@ def lines(summary: Summary, *, has_seeds: bool) -> Iterable[str]:
         yield f"  recorded in {summary.recording}"
 
 
-def ending(summaries: Sequence[Summary]) -> str:
+def format_ending(summaries: Sequence[Summary]) -> str:
     """The last line."""
     failed = sum(bool(summary.failures) for summary in summaries)
     mission_time = sum(result.seconds for summary in summaries for result in summary.results)
@@ -110,15 +110,15 @@ def run_tests(options: argparse.Namespace) -> int:
     for summary in _results(tests, seeds, options):
         summaries.append(summary)
         if not options.quiet or summary.failures:
-            show("\n".join(lines(summary, has_seeds=len(seeds) > 1)))
+            show("\n".join(format_summary(summary, has_seeds=len(seeds) > 1)))
     if options.coverage:
         runs = zip(tests, summaries, strict=True)
         seen = ((test, result.seen) for (_, _, test), summary in runs for result in summary.results)
-        for name, coverage in covered(seen).items():
+        for name, coverage in measure_coverage(seen).items():
             show("\n".join(["", *coverage.lines(name)]))
     if options.junit is not None:
         write_file(options.junit, junit(summaries))
-    show(ending(summaries))
+    show(format_ending(summaries))
     return 1 if any(summary.failures for summary in summaries) else 0
 
 

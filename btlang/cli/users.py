@@ -9,8 +9,8 @@ import sys
 import time
 
 from btlang.cli.server import door_path, notify_changes, server_folder
-from btlang.task.commands.checks import refused
-from btlang.task.commands.client import checked_name, names_up
+from btlang.task.commands.checks import refusal_error
+from btlang.task.commands.client import check_name, names_up
 from btlang.task.commands.companion import require_server
 from btlang.task.messages import wrong
 from btlang.task.schedule.calendar import format_moment
@@ -21,7 +21,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     import argparse
 
-    from btlang.server.accounts.accounts import Accounts, Role
+    from btlang.server.accounts.accounts import Accounts, UserRole
     from btlang.server.fleet.fleet import Fleet
 
 
@@ -80,15 +80,15 @@ def _copy(options: argparse.Namespace, accounts: Accounts) -> None:
 
 def _changed(options: argparse.Namespace, accounts: Accounts) -> str:
     """Do what changes something; return what to say."""
-    from btlang.server.accounts.passwords import hashed
+    from btlang.server.accounts.passwords import hash_password
 
     act, name, item = options.act, options.name, options.item
     if act == "add":
         _check_name(name)
-        accounts.add(name, _role(options.role, act), hashed(_asked_password(name)))
+        accounts.add(name, _role(options.role, act), hash_password(_asked_password(name)))
         return f"'{one_line(name)}' may come in as {options.role}."
     if act == "passwd":
-        accounts.set_password(name, hashed(_asked_password(name)))
+        accounts.set_password(name, hash_password(_asked_password(name)))
         return f"'{one_line(name)}' has another password, and is logged out everywhere."
     if act == "role":
         accounts.set_role(name, _role(item or options.role, act))
@@ -112,11 +112,11 @@ def _check_name(name: str) -> None:
         raise wrong("add", "a name must have up to 64 characters that can be shown")
 
 
-def _role(role: str, act: str) -> Role:
-    from btlang.server.accounts.accounts import Role
-    from btlang.task.commands.checks import choice
+def _role(role: str, act: str) -> UserRole:
+    from btlang.server.accounts.accounts import UserRole
+    from btlang.task.commands.checks import choose_member
 
-    return choice(Role, role, "role", act)
+    return choose_member(UserRole, role, "role", act)
 
 
 def _asked_password(name: str) -> str:
@@ -155,7 +155,7 @@ def _invite(options: argparse.Namespace, fleet: Fleet) -> None:
         return
     if not options.item:
         raise wrong(options.act, "it needs a name for the robot")
-    name = checked_name(options.item[0])
+    name = check_name(options.item[0])
     if options.act == "revoke":
         fleet.revoke(name)
         show(f"'{name}' may no longer join.")
@@ -187,4 +187,4 @@ def _door() -> tuple[bytes, int]:
             return bytes.fromhex(kept["pin"]), int(kept["port"])
     except (OSError, ValueError, KeyError, TypeError):
         reason = "has no certificate by which robots could know it; start btc serve first, without --no-tls"
-        raise refused("The server", reason) from None
+        raise refusal_error("The server", reason) from None

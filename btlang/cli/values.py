@@ -121,10 +121,10 @@ def picture(*endings: str) -> Callable[[str], str]:
     """Make a reader of paths with one of these endings."""
 
     def path(text: str) -> str:
-        from btlang.pictures.files import ending
+        from btlang.pictures.files import picture_ending
 
         try:
-            ending(text, endings)
+            picture_ending(text, endings)
         except ValueError as problem:
             raise argparse.ArgumentTypeError(str(problem)) from None
         return text
@@ -155,10 +155,10 @@ def server_address(text: str) -> str:
 def robot_name(text: str) -> str:
     """Read the name of a robot that is up, or ""."""
     from btlang.diagnostics.errors import MissionError
-    from btlang.task.commands.client import checked_name
+    from btlang.task.commands.client import check_name
 
     try:
-        return text and checked_name(text)
+        return text and check_name(text)
     except MissionError:
         raise argparse.ArgumentTypeError(f"expected up to 32 letters, digits, '-' and '_', not '{text}'") from None
 

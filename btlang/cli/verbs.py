@@ -35,10 +35,10 @@ from btlang.cli.options import (
     TEXT,
     WORDS,
     WORLD,
-    Act,
     OneOf,
     Option,
     Verb,
+    VerbAct,
     body_options,
     namespace_option,
 )
@@ -350,32 +350,32 @@ _TABLE = (
             ),
         ),
         acts={
-            "up": Act("brings a robot up: btc robot up --robot museum.toml", _UP, 0),
-            "down": Act("ends the process of the robot", ("json",), 0),
-            "status": Act("shows what the robot is doing, or why it can't work", ("json",), 0),
-            "report": Act(
+            "up": VerbAct("brings a robot up: btc robot up --robot museum.toml", _UP, 0),
+            "down": VerbAct("ends the process of the robot", ("json",), 0),
+            "status": VerbAct("shows what the robot is doing, or why it can't work", ("json",), 0),
+            "report": VerbAct(
                 'reports what was done, and why something wasn\'t: btc robot report --since "2 hours ago"',
                 ("since", "json"), 0,
             ),
-            "stop": Act("emergency stop: stops the robot at once", ("reason", "json"), inf),
-            "release": Act("lets the robot move again after a stop", ("json",), 0),
-            "pause": Act("brings the robot to rest in the middle of a task", ("json",), 0),
-            "resume": Act("continues after a pause", ("json",), 0),
-            "step": Act("advances a paused robot by one tick", ("json",), 0),
-            "say": Act(
+            "stop": VerbAct("emergency stop: stops the robot at once", ("reason", "json"), inf),
+            "release": VerbAct("lets the robot move again after a stop", ("json",), 0),
+            "pause": VerbAct("brings the robot to rest in the middle of a task", ("json",), 0),
+            "resume": VerbAct("continues after a pause", ("json",), 0),
+            "step": VerbAct("advances a paused robot by one tick", ("json",), 0),
+            "say": VerbAct(
                 "says a text, whatever else the robot is doing: btc robot say we close in ten minutes", ("json",), inf
             ),
-            "visitor": Act("lets a visitor come, in a simulated world", ("json",), 0),
-            "unit": Act("prints a systemd unit that brings the robot up", _UP, 0),
-            "check": Act("checks a robot file: btc robot check museum.toml", ()),
-            "show": Act("shows the body of a robot: btc robot show museum.toml", ()),
-            "urdf": Act("prints the body of a robot as URDF: btc robot urdf museum.toml", ()),
-            "import": Act("converts a URDF to a robot file: btc robot import museum.urdf", ()),
-            "backup": Act("copies the store into a file: btc robot backup monday.db", ("store",)),
-            "restore": Act("fills an empty store from a backup: btc robot restore monday.db", ("store",)),
-            "invite": Act("lets a robot on another computer join a server here: btc robot invite lobby", ()),
-            "revoke": Act("revokes an invitation, and disconnects the robot: btc robot revoke lobby", ()),
-            "invited": Act("lists the invitations", ("json",), 0),
+            "visitor": VerbAct("lets a visitor come, in a simulated world", ("json",), 0),
+            "unit": VerbAct("prints a systemd unit that brings the robot up", _UP, 0),
+            "check": VerbAct("checks a robot file: btc robot check museum.toml", ()),
+            "show": VerbAct("shows the body of a robot: btc robot show museum.toml", ()),
+            "urdf": VerbAct("prints the body of a robot as URDF: btc robot urdf museum.toml", ()),
+            "import": VerbAct("converts a URDF to a robot file: btc robot import museum.urdf", ()),
+            "backup": VerbAct("copies the store into a file: btc robot backup monday.db", ("store",)),
+            "restore": VerbAct("fills an empty store from a backup: btc robot restore monday.db", ("store",)),
+            "invite": VerbAct("lets a robot on another computer join a server here: btc robot invite lobby", ()),
+            "revoke": VerbAct("revokes an invitation, and disconnects the robot: btc robot revoke lobby", ()),
+            "invited": VerbAct("lists the invitations", ("json",), 0),
         },
         mixed=True,
     ),
@@ -436,43 +436,46 @@ _TABLE = (
             ),
         ),
         acts={
-            "add": Act(
+            "add": VerbAct(
                 'gives the robot a task: btc task add patrol.txt, btc task add -c "go to the lab"',
                 (*_ADD, "at", "by"),
             ),
-            "list": Act(
+            "list": VerbAct(
                 "lists the tasks that aren't over, the next one first: btc task list --live",
                 ("all", "live", "limit", "label", "json"), 0,
             ),
-            "show": Act("shows everything about a task: btc task show 3", ("json",)),
-            "cancel": Act("ends a task, and halts its commands: btc task cancel 3", ("reason", "json")),
-            "kill": Act("ends a task at once, like an emergency stop: btc task kill 3", ("reason", "json")),
-            "interrupt": Act(
+            "show": VerbAct("shows everything about a task: btc task show 3", ("json",)),
+            "cancel": VerbAct("ends a task, and halts its commands: btc task cancel 3", ("reason", "json")),
+            "kill": VerbAct("ends a task at once, like an emergency stop: btc task kill 3", ("reason", "json")),
+            "interrupt": VerbAct(
                 "halts a task, which can continue later: btc task interrupt 3 --reason lunch", ("reason", "json")
             ),
-            "resume": Act("ends an interruption: btc task resume 3 --token 1f2e", ("token", "json")),
-            "skip": Act("skips a task that hasn't begun: btc task skip 3", ("reason", "json")),
-            "move": Act(
+            "resume": VerbAct("ends an interruption: btc task resume 3 --token 1f2e", ("token", "json")),
+            "skip": VerbAct("skips a task that hasn't begun: btc task skip 3", ("reason", "json")),
+            "move": VerbAct(
                 "gives a task another place in the queue: btc task move 3 --before 1", ("priority", "before", "json")
             ),
-            "again": Act("adds a copy of an earlier task: btc task again 3", ("json",)),
-            "schedule": Act(
+            "again": VerbAct("adds a copy of an earlier task: btc task again 3", ("json",)),
+            "schedule": VerbAct(
                 'adds a schedule: btc task schedule patrol.txt --every "every day at 9:00"',
                 (*_ADD, "every", "zone", "overlap", "missed", "within"),
             ),
-            "schedules": Act("lists the schedules", ("json",), 0),
-            "unschedule": Act("removes a schedule, but not the tasks that it added: btc task unschedule 2", ("json",)),
-            "put": Act(
-                "saves a file in the library under a name: btc task put tour tour.txt", ("code", "kind", "json"), 2
+            "schedules": VerbAct("lists the schedules", ("json",), 0),
+            "unschedule": VerbAct(
+                "removes a schedule, but not the tasks that it added: btc task unschedule 2", ("json",)
             ),
-            "delete": Act("removes an item from the library: btc task delete tour", ("kind", "json")),
-            "library": Act(
+            "put": VerbAct(
+                "saves a file in the library under a name: btc task put tour tour.txt",
+                ("code", "kind", "json"), 2,
+            ),
+            "delete": VerbAct("removes an item from the library: btc task delete tour", ("kind", "json")),
+            "library": VerbAct(
                 "lists the library, or the revisions of one item: btc task library tour", ("kind", "json")
             ),
-            "trail": Act(
+            "trail": VerbAct(
                 "lists the latest commands, and who gave them: btc task trail --limit 10", ("limit", "json"), 0
             ),
-            "answer": Act("answers a question of the robot: btc task answer yes", ("json",), inf),
+            "answer": VerbAct("answers a question of the robot: btc task answer yes", ("json",), inf),
         },
         mixed=True,
     ),
@@ -481,10 +484,10 @@ _TABLE = (
         "btlang.cli.task:change_components",
         (_NAME, JSON, Option("item", nargs="?", default="", metavar="NAME", help="name of a component")),
         acts={
-            "list": Act("lists the components and devices with their states"),
-            "restart": Act("restarts a component: btc components restart camera"),
-            "load": Act("loads a component: btc components load camera"),
-            "unload": Act("unloads a component: btc components unload camera"),
+            "list": VerbAct("lists the components and devices with their states"),
+            "restart": VerbAct("restarts a component: btc components restart camera"),
+            "load": VerbAct("loads a component: btc components load camera"),
+            "unload": VerbAct("unloads a component: btc components unload camera"),
         },
         usual_act="list",
     ),
@@ -518,18 +521,18 @@ _TABLE = (
             Option("item", nargs="?", default="", metavar="WHAT", help="name of a token; for role: a role"),
         ),
         acts={
-            "list": Act("lists the users"),
-            "add": Act("adds a user, and asks for a password: btc user add ana --role operator"),
-            "passwd": Act("changes a password: btc user passwd ana"),
-            "role": Act("changes the role of a user: btc user role ana editor"),
-            "remove": Act("removes a user: btc user remove ana"),
-            "token": Act("creates a token for a program: btc user token ana dashboard"),
-            "tokens": Act("lists the tokens of a user: btc user tokens ana"),
-            "revoke": Act("revokes a token: btc user revoke ana dashboard"),
-            "logout": Act("ends all sessions of a user: btc user logout ana"),
-            "trail": Act("lists the latest log-ins, and refused requests"),
-            "backup": Act("copies the accounts into a file: btc user backup users.json"),
-            "restore": Act("restores the accounts on a server without users: btc user restore users.json"),
+            "list": VerbAct("lists the users"),
+            "add": VerbAct("adds a user, and asks for a password: btc user add ana --role operator"),
+            "passwd": VerbAct("changes a password: btc user passwd ana"),
+            "role": VerbAct("changes the role of a user: btc user role ana editor"),
+            "remove": VerbAct("removes a user: btc user remove ana"),
+            "token": VerbAct("creates a token for a program: btc user token ana dashboard"),
+            "tokens": VerbAct("lists the tokens of a user: btc user tokens ana"),
+            "revoke": VerbAct("revokes a token: btc user revoke ana dashboard"),
+            "logout": VerbAct("ends all sessions of a user: btc user logout ana"),
+            "trail": VerbAct("lists the latest log-ins, and refused requests"),
+            "backup": VerbAct("copies the accounts into a file: btc user backup users.json"),
+            "restore": VerbAct("restores the accounts on a server without users: btc user restore users.json"),
         },
     ),
     Verb(
@@ -588,10 +591,10 @@ _TABLE = (
             Option("--world", metavar="FILE", help="world file (default: that of the robot)"),
         ),
         acts={
-            "play": Act("plays a gesture: btc gesture play wave --robot museum.toml"),
-            "check": Act("checks gesture files: btc gesture check wave.toml"),
-            "picture": Act("draws a gesture: btc gesture picture wave -o wave.gif --robot museum.toml"),
-            "record": Act(
+            "play": VerbAct("plays a gesture: btc gesture play wave --robot museum.toml"),
+            "check": VerbAct("checks gesture files: btc gesture check wave.toml"),
+            "picture": VerbAct("draws a gesture: btc gesture picture wave -o wave.gif --robot museum.toml"),
+            "record": VerbAct(
                 "records a gesture, pose by pose, moved by hand or typed: "
                 "btc gesture record wave -o wave.toml --robot museum.toml"
             ),

@@ -33,7 +33,7 @@ _LINKS = re.compile(r"(?i)(?<=:)(?=//)|(?<=mailto)(?=:)|(?<=xmpp)(?=:)|(?<=www)(
 _BLOCKS = re.compile(r"^(?:[-+=]|\d+(?=[.)]))")
 
 
-def escaped(text: str) -> str:
+def escape_markdown(text: str) -> str:
     """A text on one line that is shown as it is."""
     line = _LINKS.sub(_BREAK, one_line(" ".join(text.split())))
     line = _MARKS.sub(r"\\\g<0>", line)
@@ -92,7 +92,7 @@ class PageWriter:
     def page(self, file: str, *, pictures: bool = True) -> str:
         """The page of a file."""
         chapters = [chapter for chapter in self._project.chapters if chapter.file == file]
-        lines = [MADE, "", f"# {escaped(file)}", ""]
+        lines = [MADE, "", f"# {escape_markdown(file)}", ""]
         if len(chapters) > 1:
             lines += [*(f"- {self._link(chapter, file)}{_about(chapter)}" for chapter in chapters), ""]
         for chapter in chapters:
@@ -111,34 +111,44 @@ class PageWriter:
         project = self._project
         lines = [MADE, "", "# Trees", ""]
         ordered = sorted(project.chapters, key=lambda one: (one.name.casefold(), one.name, one.file))
-        rows = [(self._link(one), self._page_link(one.file), str(len(project.users(one))), escaped(one.description))
-                for one in ordered]  # fmt: skip
+        rows = [
+            (
+                self._link(one), self._page_link(one.file), str(len(project.users(one))),
+                escape_markdown(one.description),
+            )
+            for one in ordered
+        ]  # fmt: skip
         lines += [*table(("tree", "file", "used by", "what it does"), rows), ""]
         unused = [one for one in project.chapters if not one.runs_first and not project.users(one)]
         if unused:
             lines += ["## Trees that nobody uses", "", "No tree uses these, and no file starts with them.", ""]
-            lines += [*(f"- {self._link(one)} in {escaped(one.file)}" for one in unused), ""]
+            lines += [*(f"- {self._link(one)} in {escape_markdown(one.file)}" for one in unused), ""]
         lines += ["## Files", "", *(f"- {self._page_link(name)}" for name in project.files), ""]
         if project.left_out:
-            lines += ["## Files that are no missions", "", *(f"- {escaped(name)}" for name in project.left_out)]
+            lines += ["## Files that are no missions", "", *(f"- {escape_markdown(name)}" for name in project.left_out)]
         return "\n".join(lines).rstrip("\n") + "\n"
 
     def _chapter(self, chapter: TreeChapter, *, pictures: bool) -> Iterator[str]:
-        yield from (f'<a id="{self._place(chapter)}"></a>', "", f"## {escaped(chapter.name)}", "")
+        yield from (f'<a id="{self._place(chapter)}"></a>', "", f"## {escape_markdown(chapter.name)}", "")
         if chapter.description:
-            yield from (escaped(chapter.description), "")
+            yield from (escape_markdown(chapter.description), "")
         if chapter.runs_first and sum(one.file == chapter.file for one in self._project.chapters) > 1:
             yield from ("The file starts with this tree.", "")
         yield from (*self._english(chapter), "")
         if pictures:
-            yield from (f"![The tree {escaped(chapter.name)}]({self._pictures[chapter.file, chapter.name]})", "")
+            yield from (
+                f"![The tree {escape_markdown(chapter.name)}]({self._pictures[chapter.file, chapter.name]})",
+                "",
+            )
         yield from _part(
             "Ports and keys", table(("name", "use", "type", "default", "what it is"), self._ports(chapter))
         )
         yield from _part("Nodes", table(("node", "kind", "times", "what it does"), self._nodes(chapter)))
         yield from _part("Uses", (f"- {self._use(name, chapter.file)}" for name in chapter.uses))
         users = self._project.users(chapter)
-        yield from _part("Used by", (f"- {self._link(one, chapter.file)} in {escaped(one.file)}" for one in users))
+        yield from _part(
+            "Used by", (f"- {self._link(one, chapter.file)} in {escape_markdown(one.file)}" for one in users)
+        )
 
     def _english(self, chapter: TreeChapter) -> Iterator[str]:
         text = chapter.text
@@ -146,7 +156,7 @@ class PageWriter:
             try:
                 text = to_english(chapter.tree, chapter.vocabulary)
             except MissionError as error:
-                yield escaped(error.diagnostics[0].message)
+                yield escape_markdown(error.diagnostics[0].message)
                 return
         yield from block("\n".join(line for line in text.split("\n") if not line.startswith(KEPT)))
 
@@ -163,7 +173,7 @@ class PageWriter:
             port = ports.get(name) or PortModel(name, "")
             use = ", ".join(([port.direction] if port.direction else []) + sorted(keys.get(name, ())))
             default = "" if port.default is None else code(port.default)
-            yield code(name), use, code(port.type) if port.type else "", default, escaped(port.text)
+            yield code(name), use, code(port.type) if port.type else "", default, escape_markdown(port.text)
 
     def _nodes(self, chapter: TreeChapter) -> Iterator[tuple[str, ...]]:
         """All but those of BehaviorTree.CPP itself."""
@@ -177,7 +187,7 @@ class PageWriter:
             sorts = [model.kind if model else "", kind.kind if kind else "", entry.sort.title() if entry else ""]
             texts = [model.text if model else "", entry.help if entry else ""]
             sort, about = (next(filter(None, candidates), "") for candidates in (sorts, texts))
-            yield code(id), sort, str(len(found[id])), escaped(about)
+            yield code(id), sort, str(len(found[id])), escape_markdown(about)
 
     def _models(self, file: str) -> Iterator[str]:
         """The nodes that a file describes."""
@@ -187,14 +197,14 @@ class PageWriter:
     def _link(self, chapter: TreeChapter, page: str = "") -> str:
         """To a chapter, from the page of a file."""
         target = "" if page == chapter.file else self.pages[chapter.file]
-        return f"[{escaped(chapter.name)}]({target}#{self._place(chapter)})"
+        return f"[{escape_markdown(chapter.name)}]({target}#{self._place(chapter)})"
 
     def _use(self, name: str, file: str) -> str:
         used = self._project.used(name, file)
-        return self._link(used, file) if used is not None else f"{escaped(name)} (in no file here)"
+        return self._link(used, file) if used is not None else f"{escape_markdown(name)} (in no file here)"
 
     def _page_link(self, file: str) -> str:
-        return f"[{escaped(file)}]({self.pages[file]})"
+        return f"[{escape_markdown(file)}]({self.pages[file]})"
 
     def _place(self, chapter: TreeChapter) -> str:
         return f"tree-{self._pictures[chapter.file, chapter.name].removesuffix('.svg')}"
@@ -209,11 +219,11 @@ def to_markdown(tree: Tree, vocabulary: Lexicon) -> str:
 
 
 def _described(model: NodeModel) -> tuple[str, ...]:
-    return code(model.id), model.kind, ", ".join(code(port.name) for port in model.ports), escaped(model.text)
+    return code(model.id), model.kind, ", ".join(code(port.name) for port in model.ports), escape_markdown(model.text)
 
 
 def _about(chapter: TreeChapter) -> str:
-    return f": {escaped(chapter.description)}" if chapter.description else ""
+    return f": {escape_markdown(chapter.description)}" if chapter.description else ""
 
 
 def _part(title: str, lines: Iterator[str]) -> Iterator[str]:

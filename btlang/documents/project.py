@@ -17,7 +17,7 @@ from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.btcpp.reader import MAIN
 from btlang.frontends.btcpp.spelling import MAIN_TREE
 from btlang.frontends.table import frontend_of
-from btlang.projects.files import begins_as_tree, files_below, named_files, nothing_in
+from btlang.projects.files import begins_as_tree, empty_folder_error, find_files_below, find_named_files
 from btlang.support.record import Record
 from btlang.support.test_files import is_test_file
 from btlang.text.source import Source
@@ -121,7 +121,7 @@ def read_documents(
     trees: list[tuple[str, Source]] = []
     chapters: list[TreeChapter] = []
     names, left_out = list[str](), list[str]()
-    for path in named_files(paths, _below):
+    for path in find_named_files(paths, _below):
         name = os.path.relpath(path, base).replace(os.sep, "/") if path != "-" else "-"
         source = read_source(path)
         if frontend_of(source) == "xml":
@@ -137,7 +137,7 @@ def read_documents(
                 raise
             left_out.append(name)
     if not names:
-        raise nothing_in(paths[0], "there are no trees in XML and no missions in it that can be read")
+        raise empty_folder_error(paths[0], "there are no trees in XML and no missions in it that can be read")
     read = read_files(source for _, source in trees)
     models, described = read.models, dict[str, tuple[NodeModel, ...]]()
     for (name, _), file in zip(trees, read.files, strict=True):
@@ -148,7 +148,7 @@ def read_documents(
 
 
 def _below(folder: str) -> Iterator[str]:
-    return (file for file in files_below(folder, _ENDINGS) if not is_test_file(file))
+    return (file for file in find_files_below(folder, _ENDINGS) if not is_test_file(file))
 
 
 def _common_folder(paths: Sequence[str]) -> str:

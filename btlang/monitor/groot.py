@@ -20,7 +20,7 @@ from btlang.monitor.groot_tree import GrootTree, models_of
 from btlang.run.bus import INLINE
 from btlang.run.controls import Controls
 from btlang.run.events import Event, Sampled, StatusesChanged
-from btlang.run.snapshot import HALTED, Follower
+from btlang.run.snapshot import HALTED, RunFollower
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.api import Mission
-    from btlang.run.snapshot import State, WatchedNodes
+    from btlang.run.snapshot import RunState, WatchedNodes
     from btlang.session import Run
 
 
@@ -72,7 +72,7 @@ class GrootServer:
         self._tree_id = os.urandom(16)
         self._tree: GrootTree | None = None
         self._make: Callable[[], GrootTree] | None = None
-        self._follower: Follower | None = None
+        self._follower: RunFollower | None = None
         self._values: Callable[[int], Mapping[str, Any]] = lambda index: {}
         self._reached_nodes: deque[int] = deque()
         self._recording = False
@@ -84,7 +84,7 @@ class GrootServer:
         self._thread.start()
 
     def watch(
-        self, follower: Follower, tree: Callable[[], GrootTree], values: Callable[[int], Mapping[str, Any]]
+        self, follower: RunFollower, tree: Callable[[], GrootTree], values: Callable[[int], Mapping[str, Any]]
     ) -> None:
         """A run begins; `follower` knows its statuses."""
         self._follower, self._make, self._values = follower, tree, values
@@ -216,7 +216,7 @@ _CODES = {
     code: protocol.CODES.get(code, protocol.CODES[RUNNING] + protocol.RESET if code >= HALTED else protocol.CODES[IDLE])
     for code in range(HALTED + 2)
 }
-"""The codes of Groot2 for those of btlang.run.snapshot.State."""
+"""The codes of Groot2 for those of btlang.run.snapshot.RunState."""
 
 
 def _plain(values: Mapping[str, Any]) -> dict[str, Any]:
@@ -270,7 +270,7 @@ class ReplayMonitor:
     def __init__(self, server: GrootServer, nodes: WatchedNodes, mission: Mission) -> None:
         self._server = server
         self._values: dict[str, Any] = {}
-        self._follower = Follower(nodes)
+        self._follower = RunFollower(nodes)
         server.watch(self._follower, partial(groot_tree, nodes, mission), self._values_of)
 
     def __call__(self, event: Event) -> None:
@@ -281,7 +281,7 @@ class ReplayMonitor:
         self._follower(event)
         self._server(event)
 
-    def jump(self, state: State) -> None:
+    def jump(self, state: RunState) -> None:
         """Go on from another place of the recording."""
         self._follower.jump(state)
 

@@ -27,21 +27,21 @@ _STATUS = struct.Struct("<HB")
 _TRANSITION = struct.Struct("<IHHB")  # the time has 6 bytes
 
 
-class Request(Record):
+class GrootRequest(Record):
     """The head of a request: a letter, and a number that the reply repeats."""
 
     letter: bytes
     number: int
 
 
-def read_request(head: bytes) -> Request:
+def read_request(head: bytes) -> GrootRequest:
     """Raises ValueError for what is no head of a request."""
     if len(head) != _HEADER.size:
         raise ValueError("wrong request header")
     protocol, letter, number = _HEADER.unpack(head)
     if protocol != PROTOCOL:
         raise ValueError(f"protocol {protocol} instead of {PROTOCOL}")
-    return Request(letter, number)
+    return GrootRequest(letter, number)
 
 
 def head(letter: bytes, number: int, tree_id: bytes = b"") -> bytes:

@@ -8,7 +8,7 @@ from math import ceil
 
 from btlang.pictures import letters
 from btlang.pictures.canvas import Canvas
-from btlang.pictures.run_record import Mark, RunRecord, Sample, outcome
+from btlang.pictures.run_record import PathSample, PictureMark, RunRecord, outcome
 from btlang.pictures.surface import BUBBLES, INK, SMALL, SOFT, TITLE
 from btlang.pictures.track import END, PERSON, WALKED, draw_body, draw_standing, place_of, sighting_at, way
 from btlang.pictures.world_map import DOOR_COLOUR, OBJECT, Area, Placer, WorldMap, along, draw_door, draw_route
@@ -32,7 +32,7 @@ _BLUE = "#2a6fb0"
 _SPOKEN = 10  # frames that a text is shown, at least
 
 
-def animated(world: World, record: RunRecord, title: str) -> bytes:
+def animate(world: World, record: RunRecord, title: str) -> bytes:
     """The bytes of a GIF of at most 140 frames that runs for ever."""
     from PIL.Image import Dither
 
@@ -80,7 +80,7 @@ class _Film:
         self._map = WorldMap(still, _ROOM, extent)
         area = self._map.area
         self._canvas = Canvas(max(area.width, 300.0) + 2 * _MARGIN, area.y + area.height + _MARGIN, title)
-        text = letters.clipped(title, self._canvas.width - 2 * _MARGIN - 4, SMALL)
+        text = letters.clip_text(title, self._canvas.width - 2 * _MARGIN - 4, SMALL)
         self._canvas.text(_MARGIN + 2, 12, text, size=SMALL, colour=SOFT)
         self._map.draw(self._canvas)
         for person in world.people:
@@ -143,7 +143,7 @@ class _Film:
             radius = max(self._things[name].radius * self._map.scale, 2.6)
             self._canvas.circle(x, y, radius, fill=OBJECT, edge="white", line=0.6, z=7)
             if place is not None:
-                text = letters.clipped(letters.shown(name), 100, SMALL)
+                text = letters.clip_text(letters.make_printable(name), 100, SMALL)
                 self._canvas.text(x + radius + 2, y, text, size=SMALL, colour=OBJECT, halo=True, z=5)
 
     def _surroundings_at(self, now: float) -> None:
@@ -155,7 +155,7 @@ class _Film:
             is_open = {name: opened for t, name, opened in self._record.doors if t <= now}.get(door.name, door.open)
             draw_door(self._canvas, door.replace(open=is_open), self._map.at, self._map.area.middle)
             x, y = self._map.at(*door.middle)
-            text = letters.clipped(letters.shown(door.name), 100, SMALL)
+            text = letters.clip_text(letters.make_printable(door.name), 100, SMALL)
             self._canvas.text(x + 5, y, text, size=SMALL, colour=DOOR_COLOUR, halo=True, z=3)
 
     def _speech(self, now: float, pose: Pose, least: float) -> None:
@@ -171,14 +171,14 @@ class _Film:
             speaker = place_of(self._world, self._record, mark.who, now)
             self._bubble(mark, speaker or (pose.x, pose.y), -self._record.radius if speaker is None else PERSON_RADIUS)
 
-    def _latest(self, kinds: tuple[str, ...], now: float, least: float) -> Mark | None:
+    def _latest(self, kinds: tuple[str, ...], now: float, least: float) -> PictureMark | None:
         """What was said last, as long as it is shown."""
         said = [mark for mark in self._record.marks if mark.kind in kinds and mark.text and mark.t <= now]
         return said[-1] if said and now <= said[-1].t + max(least, 0.35 + 0.06 * len(said[-1].text)) else None
 
-    def _bubble(self, mark: Mark, place: Point, radius: float) -> None:
+    def _bubble(self, mark: PictureMark, place: Point, radius: float) -> None:
         """Above a place, or below it where there is no room, or for a negative radius."""
-        text = letters.clipped(letters.shown(mark.text), 180, SMALL)
+        text = letters.clip_text(letters.make_printable(mark.text), 180, SMALL)
         fill, edge = BUBBLES.get(mark.kind, BUBBLES["say"])
         width = letters.width(text, SMALL) + 12
         x, y = self._map.at(*place)
@@ -191,7 +191,7 @@ class _Film:
         self._canvas.box(left, top, width, 15, round=5, fill=fill, edge=edge, line=0.8, z=8)
         self._canvas.text(left + 6, top + 7.5, text, size=SMALL, z=8)
 
-    def _headline(self, before: float, now: float, sample: Sample, last: bool) -> None:
+    def _headline(self, before: float, now: float, sample: PathSample, last: bool) -> None:
         right = self._canvas.width - _MARGIN
         clock = f"{now:.1f} s   ·   battery {sample.battery:.0f} %"
         self._canvas.text(right, _LINE, clock, size=SMALL, colour=SOFT, align="right", z=9)
@@ -200,14 +200,14 @@ class _Film:
         if last:
             look, words = outcome(self._record)
             colour, title = look.strong, f"{look.sign} {words}"
-        title = letters.clipped(letters.shown(title), room, TITLE, True)
+        title = letters.clip_text(letters.make_printable(title), room, TITLE, True)
         self._canvas.text(_MARGIN + 2, _LINE, title, size=TITLE, bold=True, colour=colour, z=9)
 
     def _title(self, before: float, now: float) -> str:
         under_way = [c.text for c in self._record.commands if c.start.t <= now and (c.end > now or c.start.t > before)]
         return "  and  ".join(dict.fromkeys(under_way))
 
-    def _sample(self, t: float) -> Sample:
+    def _sample(self, t: float) -> PathSample:
         """Where the robot was, between two samples too."""
         track = self._record.track
         after = bisect_right(self._times, t)
@@ -218,4 +218,4 @@ class _Film:
         p, q = a.pose, b.pose
         heading = p.heading + wrap(q.heading - p.heading) * share
         pose = Pose(p.x + (q.x - p.x) * share, p.y + (q.y - p.y) * share, heading)
-        return Sample(t, pose, a.battery + (b.battery - a.battery) * share)
+        return PathSample(t, pose, a.battery + (b.battery - a.battery) * share)

@@ -10,7 +10,7 @@ from functools import cache
 from itertools import pairwise
 from math import sqrt
 
-from btlang.pictures.files import missing
+from btlang.pictures.files import matplotlib_error
 from btlang.pictures.letters import CAP_HEIGHT, FAMILY, UNKNOWN, width
 from btlang.pictures.surface import INK, PAPER, TEXT
 
@@ -55,7 +55,7 @@ def with_matplotlib(path: str) -> Iterator[None]:
         try:
             from matplotlib import font_manager, style
         except ImportError:
-            raise missing(path) from None
+            raise matplotlib_error(path) from None
         assert font_manager.fontManager
         with style.context({"path.simplify": False}, after_reset=True):
             yield

@@ -59,7 +59,7 @@ class SvgSurface:
         )  # fmt: skip
 
     def polygon(self, points: Points, *, fill: str = "none", edge: str = "none", line: float = 1, z: float = 0) -> None:
-        self._add(z, "polygon", points=joined(points), fill=fill, **_stroke(edge, line), stroke_linejoin="round")
+        self._add(z, "polygon", points=write_points(points), fill=fill, **_stroke(edge, line), stroke_linejoin="round")
 
     def circle(
         self, x: float, y: float, radius: float, *,
@@ -75,7 +75,7 @@ class SvgSurface:
         colour: str = INK, line: float = 1, dashed: bool = False, round: bool = True, z: float = 0,
     ) -> None:  # fmt: skip
         self._add(
-            z, "polyline", points=joined(points), fill="none", **_stroke(colour, line), stroke_linejoin="round",
+            z, "polyline", points=write_points(points), fill="none", **_stroke(colour, line), stroke_linejoin="round",
             stroke_linecap="round" if round else None,
             stroke_dasharray=f"{_number(2 * line)} {_number(2 * line)}" if dashed else None,
         )  # fmt: skip
@@ -110,7 +110,7 @@ def _stroke(colour: str, line: float = 1) -> dict[str, str | float | None]:
     return {} if colour == "none" else {"stroke": colour, "stroke_width": line if line != 1 else None}
 
 
-def joined(points: Points) -> str:
+def write_points(points: Points) -> str:
     """Return points as an attribute has them."""
     return " ".join(f"{_number(x)},{_number(y)}" for x, y in points)
 
@@ -120,7 +120,7 @@ def _number(value: float) -> str:
 
 
 @contextmanager
-def drawing(path: str, kind: str) -> Iterator[Callable[[float, float, str], Surface]]:
+def open_drawing(path: str, kind: str) -> Iterator[Callable[[float, float, str], Surface]]:
     """Give what makes the sheet for a file of a kind: ".svg", or ".png" or ".gif", which matplotlib draws.
 
     Raises MissionError (BT081) where that is needed and missing.

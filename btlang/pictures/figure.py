@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from btlang.pictures.canvas import Canvas
-from btlang.pictures.drawing import drawing
+from btlang.pictures.drawing import open_drawing
 from btlang.robots.body import Body
 from btlang.robots.gesture import Gesture
 from btlang.robots.joint_tables import BASE
@@ -31,7 +31,7 @@ _PAUSE = 0.8  # seconds that its last one stays
 
 def draw_gesture(body: Body, gesture: Gesture, rehearsal: Rehearsal, path: str, kind: str) -> bytes:
     """The bytes of a file of a kind, ".svg", ".png" or ".gif". Raises MissionError (BT081)."""
-    with drawing(path, kind) as sheet:
+    with open_drawing(path, kind) as sheet:
         if kind == ".gif":
             return _film(body, gesture, rehearsal)
         times = _moments(gesture, rehearsal)

@@ -15,7 +15,7 @@ STILL = (".svg", ".png")
 MOVING = (".gif",)
 
 
-def ending(path: str, allowed: tuple[str, ...]) -> str:
+def picture_ending(path: str, allowed: tuple[str, ...]) -> str:
     """The ending of a file in small letters. Raises ValueError where it is not one of those allowed."""
     found = os.path.splitext(path)[1].lower()
     if found not in allowed:
@@ -25,8 +25,8 @@ def ending(path: str, allowed: tuple[str, ...]) -> str:
 
 def check_picture(path: str) -> None:
     """Raises MissionError where the picture cannot be drawn (BT081) or the file cannot be written (BT009)."""
-    if ending(path, STILL + MOVING) != ".svg" and find_spec("matplotlib") is None:
-        raise missing(path)
+    if picture_ending(path, STILL + MOVING) != ".svg" and find_spec("matplotlib") is None:
+        raise matplotlib_error(path)
     is_new = not os.path.lexists(path)
     try:
         open(path, "ab").close()
@@ -36,6 +36,6 @@ def check_picture(path: str) -> None:
         raise MissionError([unwritable(path, error)]) from None
 
 
-def missing(path: str) -> MissionError:
+def matplotlib_error(path: str) -> MissionError:
     """What to raise where matplotlib is not there."""
     return MissionError([diagnostic("BT081", Span(Source("", path), 0, 0))])

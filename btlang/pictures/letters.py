@@ -35,13 +35,13 @@ _BY_CATEGORY = {"Mn": 0, "Me": 0, "Cf": 0, "Ll": 70, "Lu": 80, "So": 130}  # of 
 _FULL_WIDTH = 103  # of the rest: a Chinese character, or the mark for one that a font does not have
 
 
-def shown(text: str) -> str:
+def make_printable(text: str) -> str:
     """The text in one line, with a mark for each character that cannot be printed."""
     return "".join(c if c.isprintable() or c in _JOINERS else UNKNOWN for c in " ".join(text[:_LONGEST].split()))
 
 
 def width(text: str, size: float, bold: bool = False) -> float:
-    """Points, of a text that `shown` made: exact for English, Greek and Russian, elsewhere rather too much."""
+    """Points, of a text that `make_printable` made: exact for English, Greek and Russian, elsewhere rather too much."""
     return sum(_advance(c, bold) for c in text) * size / 100
 
 
@@ -55,7 +55,7 @@ def _advance(character: str, bold: bool) -> int:
     return _BY_CATEGORY.get(category(plain), _FULL_WIDTH)
 
 
-def wrapped(text: str, room: float, most: int, size: float, bold: bool) -> list[str]:
+def wrap_text(text: str, room: float, most: int, size: float, bold: bool) -> list[str]:
     """At most so many lines, none wider than `room`; what does not fit ends in an ellipsis."""
     lines: list[str] = []
     words = text[:_BROKEN].split()
@@ -63,12 +63,12 @@ def wrapped(text: str, room: float, most: int, size: float, bold: bool) -> list[
         line, words = _first_line(words, room, size, bold)
         lines.append(line)
         if len(lines) == most and words:
-            lines[-1] = clipped(f"{line} {' '.join(words)}", room, size, bold)
+            lines[-1] = clip_text(f"{line} {' '.join(words)}", room, size, bold)
             break
     return lines or [""]
 
 
-def clipped(text: str, room: float, size: float, bold: bool = False) -> str:
+def clip_text(text: str, room: float, size: float, bold: bool = False) -> str:
     """The text, or as much of it as fits with an ellipsis."""
     if width(text, size, bold) <= room:
         return text

@@ -31,7 +31,7 @@ from btlang.run.events import (
     Stuck,
 )
 from btlang.run.lines import is_asked_wait
-from btlang.run.robot_state import Movements, Whereabouts, asked
+from btlang.run.robot_state import Movements, Whereabouts, ask_sensor
 from btlang.support.record import Record
 from btlang.tree.node import Node
 
@@ -47,7 +47,7 @@ _MOVED, _TURNED, _WAITED = 0.02, 4.0, 1.0  # metres, degrees and seconds: what i
 _STEP = 0.2  # metres between two sightings
 
 
-class Sample(Record):
+class PathSample(Record):
     """Where the robot was at a time, with percent of its battery."""
 
     t: float
@@ -55,10 +55,10 @@ class Sample(Record):
     battery: float
 
 
-class Command:
+class RecordedCommand:
     """A command that ran: where and when it began, and how it ended. `status` is RUNNING until then."""
 
-    def __init__(self, number: int, text: str, start: Sample) -> None:
+    def __init__(self, number: int, text: str, start: PathSample) -> None:
         self.number = number
         self.text = text
         self.start = start
@@ -75,7 +75,7 @@ class Sighting(Record):
     seen: bool
 
 
-class Mark(Record):
+class PictureMark(Record):
     """What happened to the robot: kind say, print, ask, hear, call, bump, stuck, grasp, release, give or drop.
 
     `who` is the person who was asked or heard, "" for any.
@@ -101,11 +101,11 @@ class RunRecord:
     def __init__(self, label: Callable[[Node], str], is_action: Callable[[Node], bool]) -> None:
         self._label = label
         self._is_action = is_action
-        self._running: dict[str, Command] = {}
+        self._running: dict[str, RecordedCommand] = {}
         self._put_down: list[str] = []
-        self.track: list[Sample] = []
-        self.commands: list[Command] = []
-        self.marks: list[Mark] = []
+        self.track: list[PathSample] = []
+        self.commands: list[RecordedCommand] = []
+        self.marks: list[PictureMark] = []
         self.moved: dict[str, Point | None] = {}
         self.moves: list[tuple[float, str, Point | None]] = []
         self.sightings: dict[str, list[Sighting]] = {}
@@ -133,7 +133,7 @@ class RunRecord:
 
     def _see(self, t: float, robot: Any) -> None:
         try:
-            sample = Sample(t, robot.pose, robot.battery)
+            sample = PathSample(t, robot.pose, robot.battery)
         except ActionFailed:
             return  # a sensor is silent
         self.radius = robot.radius
@@ -142,7 +142,7 @@ class RunRecord:
         else:
             self.track.append(sample)
         for name in self._put_down:
-            self._moved(t, name, asked(partial(robot.locate, name)) or robot.pose.ahead(robot.radius))
+            self._moved(t, name, ask_sensor(partial(robot.locate, name)) or robot.pose.ahead(robot.radius))
         self._put_down.clear()
 
     def _sight(self, t: float, things: list[Whereabouts]) -> None:
@@ -174,7 +174,7 @@ class RunRecord:
             self._put_down.append(event.name)
 
     def _mark(self, event: Event, text: str, who: str = "") -> None:
-        self.marks.append(Mark(event.t, event.tag, text, self.track[-1].pose, who))
+        self.marks.append(PictureMark(event.t, event.tag, text, self.track[-1].pose, who))
 
     def _moved(self, t: float, name: str, place: Point | None) -> None:
         self.moved[name] = place
@@ -191,7 +191,7 @@ class RunRecord:
             if event.status in (IDLE, SKIPPED):
                 return
             start = self.track[-1].replace(t=event.t)
-            command = Command(len(self.commands) + 1, self._label(node), start)
+            command = RecordedCommand(len(self.commands) + 1, self._label(node), start)
             self.commands.append(command)
         if event.status == RUNNING:
             self._running[event.path] = command
@@ -205,7 +205,7 @@ def _stays(before: Sighting, now: Sighting) -> bool:
     return dist(before.point, now.point) < _STEP
 
 
-def _same(a: Sample, b: Sample) -> bool:
+def _same(a: PathSample, b: PathSample) -> bool:
     turned = abs((a.pose.heading - b.pose.heading + 180) % 360 - 180)
     moved = a.pose.distance_to((b.pose.x, b.pose.y))
     return moved < _MOVED and turned < _TURNED and b.t - a.t < _WAITED
@@ -218,7 +218,7 @@ _LEFT, _RIGHT = 42.0, 46.0  # room for number and sign, and for the time
 _ENDINGS = {SUCCESS: "Succeeded", FAILURE: "Failed", IDLE: "Stopped", RUNNING: "Stopped", SKIPPED: "Nothing to do"}
 
 
-def listed(commands: Sequence[Command]) -> list[Command]:
+def select_commands(commands: Sequence[RecordedCommand]) -> list[RecordedCommand]:
     """Those that the legend names: all, or the first and the last of them."""
     return list(commands) if len(commands) <= FIRST + LAST else [*commands[:FIRST], *commands[-LAST:]]
 
@@ -234,7 +234,7 @@ class Legend:
 
     def __init__(self, record: RunRecord) -> None:
         self._record = record
-        self._rows = [(command, *_lines(command)) for command in listed(record.commands)]
+        self._rows = [(command, *_lines(command)) for command in select_commands(record.commands)]
         self._hidden = len(record.commands) - len(self._rows)
         self.height = 62.0 + sum(_height(text, why) for _, text, why in self._rows) + (_ROW if self._hidden else 0)
 
@@ -260,7 +260,9 @@ class Legend:
             self._row(canvas, x, y, command, text, why)
             y += _height(text, why)
 
-    def _row(self, canvas: Surface, x: float, y: float, command: Command, text: list[str], why: list[str]) -> None:
+    def _row(
+        self, canvas: Surface, x: float, y: float, command: RecordedCommand, text: list[str], why: list[str]
+    ) -> None:
         look, y = LOOKS[command.status], y + _ROW / 2
         canvas.text(x + 22, y, str(command.number), bold=True, align="right")
         canvas.text(x + 32, y, look.sign, bold=True, colour=look.strong, align="center")
@@ -282,11 +284,11 @@ class Legend:
         return "   ·   ".join(parts)
 
 
-def _lines(command: Command) -> tuple[list[str], list[str]]:
+def _lines(command: RecordedCommand) -> tuple[list[str], list[str]]:
     room = WIDTH - _LEFT - _RIGHT
-    text = letters.wrapped(letters.shown(command.text), room, 2, TEXT, False)
+    text = letters.wrap_text(letters.make_printable(command.text), room, 2, TEXT, False)
     reason = command.reason or ("halted before its end" if LOOKS[command.status] is HALTED else "")
-    why = letters.wrapped(letters.shown(reason), room, 2, SMALL, False) if reason else []
+    why = letters.wrap_text(letters.make_printable(reason), room, 2, SMALL, False) if reason else []
     return text, why
 
 

@@ -144,7 +144,7 @@ def name_walks(canvas: Surface, map: WorldMap, record: RunRecord, world: World, 
     for name, sightings in record.sightings.items():
         walked = [] if name in world.names.objects else ways(sightings)
         if walked:
-            text = letters.clipped(letters.shown(name), _LONGEST_NAME, SMALL)
+            text = letters.clip_text(letters.make_printable(name), _LONGEST_NAME, SMALL)
             at = map.at(*walked[-1][-1])
             area, _ = placer.place(*at, letters.width(text, SMALL), SMALL + 1, PERSON_RADIUS * map.scale + 1.5)
             canvas.text(*area.middle, text, size=SMALL, colour=WALKED, align="center", halo=True, z=3)
@@ -159,5 +159,5 @@ def draw_standing(canvas: Surface, map: WorldMap, world: World, name: str, sight
     x, y = map.at(*sighting.point)
     radius = max(known.get(name, PERSON_RADIUS) * map.scale, 2.6)
     canvas.circle(x, y, radius, fill=colours[0] if sighting.seen else "white", edge=colours[1], line=1.2, z=5)
-    text = letters.clipped(letters.shown(name), _LONGEST_NAME, SMALL)
+    text = letters.clip_text(letters.make_printable(name), _LONGEST_NAME, SMALL)
     canvas.text(x + radius + 3, y, text, size=SMALL, colour=colours[1], halo=True, z=5)

@@ -9,7 +9,7 @@ from math import ceil, sqrt
 
 from btlang.engine.status import FAILURE
 from btlang.passes.scripts import is_prepared
-from btlang.pictures.letters import shown, width, wrapped
+from btlang.pictures.letters import make_printable, width, wrap_text
 from btlang.pictures.statuses import LastStatuses, by_definition
 from btlang.pictures.surface import SMALL, TEXT
 from btlang.printer.phrase import MARKUP, seconds
@@ -24,7 +24,7 @@ DEEPEST = 60
 _TIMES = "\N{MULTIPLICATION SIGN}"
 
 
-class Box(Record):
+class TreeBox(Record):
     """A node. `shape` is control, decorator, action, condition, frame (a subtree in place), subtree (a name) or more.
 
     `parent` is the index of the box that it hangs on, -1 for none; `role` says what it is to its parent.
@@ -43,7 +43,7 @@ class Sheet(Record):
     """A tree that is drawn in one piece; parents come before their children, children in order. "" is the main tree."""
 
     name: str
-    boxes: tuple[Box, ...]
+    boxes: tuple[TreeBox, ...]
 
 
 def title_of(tree: Tree) -> str:
@@ -51,11 +51,11 @@ def title_of(tree: Tree) -> str:
     span = next((node.span for node in tree.walk() if node.span is not None), None)
     given = tree.name or "mission"
     if span is None:
-        return shown(given)
+        return make_printable(given)
     if span.source.name != "-" and not span.source.name.startswith("<"):
-        return shown(os.path.basename(span.source.name))
+        return make_printable(os.path.basename(span.source.name))
     first = span.text.partition("\n")[0]
-    return shown(given if first.startswith(MARKUP) or not first.strip() else first)
+    return make_printable(given if first.startswith(MARKUP) or not first.strip() else first)
 
 
 class Maker:
@@ -101,7 +101,7 @@ class Maker:
         self, name: str, root: Node, statuses: Mapping[str, int], most: int, *, apart: bool = False, whole: bool = False
     ) -> Sheet | None:
         """None where it must be `whole` and is larger than `most`."""
-        boxes: list[Box] = []
+        boxes: list[TreeBox] = []
         nodes = {} if name else self._nodes  # a definition is drawn for all its uses
         cut: dict[int, int] = {}  # nodes left out, by the box that they would hang on
         stack = [(root, -1, "/", "", 0)]
@@ -124,20 +124,24 @@ class Maker:
             for i in range(len(children) - 1, -1, -1):
                 below = f"{path.rstrip('/')}/{i}"
                 stack.append((children[i], index, below, roles[i] if i < len(roles) else "", depth + 1))
-        boxes += [Box("more", f"… and {count} more", parent=parent) for parent, count in cut.items()]
+        boxes += [TreeBox("more", f"… and {count} more", parent=parent) for parent, count in cut.items()]
         return Sheet(name, tuple(boxes))
 
-    def _box(self, node: Node, has_children: bool, parent: int, role: str, status: int | None) -> Box:
+    def _box(self, node: Node, has_children: bool, parent: int, role: str, status: int | None) -> TreeBox:
         if node.id == SUBTREE:
             shape = "frame" if has_children else "subtree"
-            return Box(shape, shown(self._label(node)), "", parent, role, status)
+            return TreeBox(shape, make_printable(self._label(node)), "", parent, role, status)
         kind = CATALOGUE.get(node.id)
         if has_children:
             shape = "decorator" if kind is not None and kind.most == 1 else "control"
-            return Box(shape, shown(_named(node)), kind.symbol if kind is not None else "", parent, role, status)
+            return TreeBox(
+                shape, make_printable(_named(node)), kind.symbol if kind is not None else "", parent, role, status
+            )
         shape = "action" if kind is not None or self._is_action(node) else "condition"
         skipped = " (skipped)" if node.port("_skipIf") == "true" else ""
-        return Box(shape, shown(self._label(node.replace(ports=_plain(node))) + skipped), "", parent, role, status)
+        return TreeBox(
+            shape, make_printable(self._label(node.replace(ports=_plain(node))) + skipped), "", parent, role, status
+        )
 
 
 def _command(node: Node, path: str, statuses: Mapping[str, int]) -> tuple[Node, str]:
@@ -195,7 +199,7 @@ _HIGH = 1100.0  # points; what is higher is put in columns
 _FLAT = 1.25  # how much wider than high a picture with columns may be
 
 
-def side(box: Box) -> float:
+def side(box: TreeBox) -> float:
     """Room between the left edge of a box and its text."""
     return 11.0 if box.shape in ("decorator", "condition", "subtree") else 7.0
 
@@ -207,12 +211,12 @@ class Block:
     first column. `width` and `height` are those of the box itself.
     """
 
-    def __init__(self, box: Box, signs: bool) -> None:
+    def __init__(self, box: TreeBox, signs: bool) -> None:
         self.box = box
         self.is_frame = box.shape == "frame"
         bold = box.shape in ("control", "decorator", "frame", "subtree")
         widest = _WIDEST_LEAF if box.shape in ("action", "condition") else _WIDEST
-        lines = wrapped(box.text, widest, 1 if self.is_frame else _LINES, TEXT, bold)
+        lines = wrap_text(box.text, widest, 1 if self.is_frame else _LINES, TEXT, bold)
         self.lines = tuple(lines)
         self.width = max(width(line, TEXT, bold) for line in lines) + 2 * side(box)
         self.width += (SIGN if signs and box.shape != "more" else 0) + (SYMBOL if box.symbol else 0)
@@ -294,7 +298,7 @@ def _columns(blocks: Sequence[Block]) -> list[list[Block]]:
 class Spot(Record):
     """A box on the sheet: its upper left corner, its size, and its lines of text. A frame holds the boxes below it."""
 
-    box: Box
+    box: TreeBox
     x: float
     y: float
     width: float
@@ -302,23 +306,23 @@ class Spot(Record):
     lines: tuple[str, ...]
 
 
-class Link(Record):
+class BoxLink(Record):
     """The line from a parent's right side to a child's left; `role` is written at its end."""
 
     points: tuple[tuple[float, float], ...]
     role: str
 
 
-class Layout(Record):
+class TreeLayout(Record):
     """Spots are in the order of the boxes, so that a frame comes before what it holds."""
 
     spots: tuple[Spot, ...]
-    links: tuple[Link, ...]
+    links: tuple[BoxLink, ...]
     width: float
     height: float
 
 
-def laid_out(boxes: Sequence[Box], signs: bool = False) -> Layout:
+def lay_out(boxes: Sequence[TreeBox], signs: bool = False) -> TreeLayout:
     """Places the boxes; with `signs`, each has room for one. No two overlap, but a frame and what is in it.
 
     Where many branches make the tree very high, they stand in columns, to be read one column after the other.
@@ -334,7 +338,7 @@ def laid_out(boxes: Sequence[Box], signs: bool = False) -> Layout:
     for index in range(len(boxes) - 1, -1, -1):  # children come after their parents
         blocks[index].enclose([blocks[child] for child in children[index]], in_columns=index == trunk)
     spots: list[Spot] = []
-    links: list[Link] = []
+    links: list[BoxLink] = []
     at = [(0.0, 0.0)] * len(boxes)
     for index, block in enumerate(blocks):
         left, top = at[index]
@@ -343,10 +347,10 @@ def laid_out(boxes: Sequence[Box], signs: bool = False) -> Layout:
         for child, (dx, dy) in zip(children[index], block.places, strict=True):
             at[child] = (left + dx, top + dy)
             links.append(_link(block, (left, top), (dx, dy + blocks[child].anchor), blocks[child].box.role))
-    return Layout(tuple(spots), tuple(links), blocks[0].whole_width, blocks[0].whole_height)
+    return TreeLayout(tuple(spots), tuple(links), blocks[0].whole_width, blocks[0].whole_height)
 
 
-def _link(block: Block, corner: tuple[float, float], to: tuple[float, float], role: str) -> Link:
+def _link(block: Block, corner: tuple[float, float], to: tuple[float, float], role: str) -> BoxLink:
     """`to` is where it ends, from the corner of the block."""
     dx, dy = to
     right = 0.0 if block.is_frame else block.width
@@ -358,4 +362,4 @@ def _link(block: Block, corner: tuple[float, float], to: tuple[float, float], ro
         else:
             points.append((right + STUB, dy))
     points.append((dx, dy))
-    return Link(tuple((corner[0] + x, corner[1] + y) for x, y in points), role)
+    return BoxLink(tuple((corner[0] + x, corner[1] + y) for x, y in points), role)

@@ -125,7 +125,7 @@ def draw_zones(canvas: Surface, world: World, at: At) -> None:
         corners = [at(*point) for point in zone.points]
         if zone.is_closed:
             canvas.polygon(corners, fill="#fbdccb", edge=_CLOSED_ZONE, line=0.9)
-            for line in hatching(corners, _HATCH):
+            for line in hatch(corners, _HATCH):
                 canvas.line(line, colour=_CLOSED_ZONE, line=0.5, round=False)
         else:
             canvas.polygon(corners, fill="#fff3c4", edge=_SLOW_ZONE, line=0.9)
@@ -142,7 +142,7 @@ def middle_of(zone: Zone) -> Point:
     return sum(xs) / len(xs), sum(ys) / len(ys)
 
 
-def hatching(corners: Sequence[Point], step: float) -> list[list[Point]]:
+def hatch(corners: Sequence[Point], step: float) -> list[list[Point]]:
     """Lines that rise to the right, so far apart, where they are in a polygon."""
     found = []
     sums = [x + y for x, y in corners]
@@ -252,7 +252,7 @@ class WorldMap:
         """Marks and names of what is in the world; `moved` says where objects lie in the end."""
         for zone in self._world.zones:
             x, y = self.at(*middle_of(zone))
-            text = letters.clipped(letters.shown(zone.name), _LONGEST_NAME, SMALL)
+            text = letters.clip_text(letters.make_printable(zone.name), _LONGEST_NAME, SMALL)
             canvas.text(x, y, text, size=SMALL, colour=zone_colour(zone), align="center", halo=True, z=1.5)
             width = letters.width(text, SMALL)
             placer.taken.append(Area(x - width / 2, y - SMALL / 2, width, SMALL))
@@ -295,7 +295,7 @@ class WorldMap:
     def _name(
         self, canvas: Surface, placer: Placer, name: str, at: tuple[float, float], colour: str, gap: float
     ) -> None:
-        text = letters.clipped(letters.shown(name), _LONGEST_NAME, SMALL)
+        text = letters.clip_text(letters.make_printable(name), _LONGEST_NAME, SMALL)
         area, _ = placer.place(*at, letters.width(text, SMALL), SMALL + 1, gap)
         x, y = area.middle
         canvas.text(x, y, text, size=SMALL, colour=colour, align="center", halo=True, z=3)

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 
 from btlang.diagnostics.reading import read_bytes
-from btlang.projects.files import files_below
+from btlang.projects.files import find_files_below
 from btlang.text.source import Source, Span
 from btlang.tree.model import NodeModel, PortModel
 
@@ -121,7 +121,7 @@ class CppSources:
 
     def _sources(self) -> Iterator[Source]:
         for folder in self._folders:
-            for path in files_below(folder, _ENDINGS):
+            for path in find_files_below(folder, _ENDINGS):
                 try:
                     data = read_bytes(path)
                 except OSError:

@@ -15,20 +15,20 @@ from btlang.text.source import Source, Span
 _ROOT = re.compile(r"\s*(?:<\?.*?\?>\s*|<!--.*?-->\s*|<!DOCTYPE[^>]*>\s*)*<root[\s/>]", re.DOTALL)
 
 
-def tree_files(folder: str) -> list[str]:
+def find_tree_files(folder: str) -> list[str]:
     """The files of trees and models in a folder and below it, without hidden ones. Raises MissionError (BT001)."""
-    found = [path for path in files_below(folder, XML_ENDINGS) if _may_have_trees(path)]
+    found = [path for path in find_files_below(folder, XML_ENDINGS) if _may_have_trees(path)]
     if not found:
-        raise nothing_in(folder, "there are no trees in XML in this folder")
+        raise empty_folder_error(folder, "there are no trees in XML in this folder")
     return found
 
 
-def nothing_in(folder: str, reason: str) -> MissionError:
+def empty_folder_error(folder: str, reason: str) -> MissionError:
     """For a folder in which nothing of what is wanted is (BT001)."""
     return MissionError([diagnostic("BT001", Span(Source("", folder), 0, 0), file=folder, reason=reason)])
 
 
-def named_files(paths: Sequence[str], inside: Callable[[str], Iterable[str]] = tree_files) -> Iterator[str]:
+def find_named_files(paths: Sequence[str], inside: Callable[[str], Iterable[str]] = find_tree_files) -> Iterator[str]:
     """The files, each once, with those inside folders in their place. Raises what `inside` raises."""
     done: set[str] = set()
     for path in paths:
@@ -39,7 +39,7 @@ def named_files(paths: Sequence[str], inside: Callable[[str], Iterable[str]] = t
                 yield file
 
 
-def files_below(folder: str, endings: tuple[str, ...]) -> Iterator[str]:
+def find_files_below(folder: str, endings: tuple[str, ...]) -> Iterator[str]:
     """The files with these endings in a folder and below it, without hidden ones."""
     for inside, folders, files in os.walk(folder):
         folders[:] = sorted(name for name in folders if name[:1] != ".")

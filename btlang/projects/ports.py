@@ -60,7 +60,7 @@ _BOOL = frozenset(("0", "1", "true", "True", "TRUE", "false", "False", "FALSE"))
 _ENUM = re.compile(r"(?:enum\b[\w ]*)?[({\[]?\s*(\w+(?:\s*[|,;]\s*\w+)+)\s*[)}\]]?")
 
 
-def wanted(text: str, type: str) -> str:
+def describe_type(text: str, type: str) -> str:
     """What a value of the type is, where the text is none; "" where it is one, or nothing is known of the type."""
     if text[:5] == "json:":
         return ""
@@ -125,7 +125,7 @@ def port_problems(uses: DescribedUses) -> Iterator[Diagnostic]:
             if name in ports or name in lacking or _is_no_port(name):
                 continue
             near = _near(name, own, ports)
-            fix = respelling(attribute_name(node, name), near)
+            fix = suggest_name(attribute_name(node, name), near)
             missing = [port for port in missing if fix is None or port != fix[1]]
             help = f"Similar: {', '.join(near)}" if near else f"It has {', '.join(ports) or 'none'}."
             yield diagnostic("BT232", attribute_name(node, name), (), fix, port=name, id=node.id, help=help)
@@ -185,7 +185,7 @@ def _wrong_values(node: Node, ports: Sequence[PortModel]) -> Iterator[Diagnostic
         described = [port for port in ports if port.name == name]
         if not described or not text.strip() or "{" in text or described[0].direction == "output":
             continue
-        if all(expected := [wanted(text.strip(), port.type) for port in described]):
+        if all(expected := [describe_type(text.strip(), port.type) for port in described]):
             yield diagnostic("BT233", attribute_value(node, name), text=text, port=name, id=node.id, wanted=expected[0])
 
 
@@ -204,7 +204,7 @@ def _more(nodes: Sequence[Node]) -> str:
     return f", and {len(nodes) - 1} more times" if len(nodes) > _SEVERAL else " and once more" if len(nodes) > 1 else ""
 
 
-def respelling(span: Span, near: list[str]) -> tuple[Span, str] | None:
+def suggest_name(span: Span, near: list[str]) -> tuple[Span, str] | None:
     """The change of a misspelt name to the one name that is near; None where that isn't certain."""
     certain = len(near) == 1 and is_misspelling(span.text, near[0], ())
     return (span, near[0]) if certain else None

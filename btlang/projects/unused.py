@@ -11,7 +11,7 @@ from btlang.engine.script.names import READS, SETS, uses_of_names
 from btlang.frontends.btcpp.dialect import ONLY_IN_3
 from btlang.frontends.btcpp.project import XmlProject
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
-from btlang.projects.ports import attribute_value, id_place, respelling
+from btlang.projects.ports import attribute_value, id_place, suggest_name
 from btlang.text.spelling import misspelt
 from btlang.tree.catalogue import KEY, SCRIPT, SUBTREE, held
 from btlang.tree.node import Node, Tree
@@ -121,7 +121,7 @@ def unknown_nodes(
             continue
         near, words_near = misspelt(node_id, described), misspelt(node_id, words)
         # a tag with an end tag can't be changed alone
-        fix = None if first.children and place.text == node_id else respelling(place, near)
+        fix = None if first.children and place.text == node_id else suggest_name(place, near)
         times = {1: "once", 2: "twice"}.get(len(found), f"{len(found)} times")
         help = f"Similar: {', '.join(near or words_near)}" if near or words_near else ""
         yield diagnostic("BT231", place, (), fix, id=node_id, times=times, help=help)

@@ -38,7 +38,7 @@ def files_of(mission: Mission, keywords: Sequence[str], robot: str = "") -> dict
 
 
 @contextmanager
-def recorded_mission(
+def open_mission(
     files: Mapping[str, bytes], name: str, language: str, keywords: Sequence[str] | None = None
 ) -> Iterator[Mission]:
     """The mission that a recording keeps, in a folder of its own for as long as it is used; `name` is that in messages.

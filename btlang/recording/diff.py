@@ -12,7 +12,7 @@ from btlang.api import Mission, parse_file
 from btlang.backends.tree_diff import differences
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.status import NAMES
-from btlang.recording.open import is_recording, opened
+from btlang.recording.open import is_recording, open_recording
 from btlang.recording.story import Story
 from btlang.run.events import Event, StatusesChanged
 from btlang.text.output import show
@@ -69,7 +69,7 @@ def describe_step(step: Step | None, node: Callable[[int], Node], label: Callabl
     return f"at {t:.2f} s  {label(node(index))}: {NAMES[status]}{f' ({reason})' if reason else ''}"
 
 
-def ended_differently(one: Iterable[Event], other: Iterable[Event]) -> list[int]:
+def compare_endings(one: Iterable[Event], other: Iterable[Event]) -> list[int]:
     """The numbers of the nodes whose last status isn't the same; one that never began has none."""
     last = [{index: status for _, index, status, _ in steps(events)} for events in (one, other)]
     return sorted(index for index in last[0].keys() | last[1].keys() if last[0].get(index) != last[1].get(index))
@@ -141,6 +141,6 @@ def words_of(mission: Mission) -> Callable[[Node], str]:
 
 def _of_runs(options: argparse.Namespace) -> Iterator[str]:
     with ExitStack() as stack:
-        sides = [stack.enter_context(opened(path)) for path in (options.old, options.new)]
+        sides = [stack.enter_context(open_recording(path)) for path in (options.old, options.new)]
         stories = [Story(mission, nodes, {}).take(recording.events(nodes)) for recording, mission, nodes in sides]
         yield from run_differences(*(story.body() for story in stories))

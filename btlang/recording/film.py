@@ -11,16 +11,16 @@ from btlang.diagnostics.errors import MissionError
 from btlang.engine.compile import outline
 from btlang.engine.status import NAMES
 from btlang.passes.scripts import is_prepared
-from btlang.recording.diff import describe_step, ended_differently, first_pair, mission_differences, run_differences
-from btlang.recording.open import opened
+from btlang.recording.diff import compare_endings, describe_step, first_pair, mission_differences, run_differences
+from btlang.recording.open import open_recording
 from btlang.recording.reader import RecordedNodes
 from btlang.recording.story import Story
 from btlang.robots.world_problem import read_world
 from btlang.run.bus import BLOCK
 from btlang.run.events import LOGGED, Event, PeriodPassed, Sampled, StatusesChanged
 from btlang.run.json_log import as_json
-from btlang.run.robot_state import Movements, rounded_scan
-from btlang.run.snapshot import KnownNodes, Shape, State, text_and_places
+from btlang.run.robot_state import Movements, round_scan
+from btlang.run.snapshot import KnownNodes, RunState, Shape, text_and_places
 from btlang.session import Session
 from btlang.text.source import NOWHERE
 
@@ -53,7 +53,9 @@ class Film:
         self._nodes = RecordedNodes(*outline(mission.tree))
         self._story = Story(mission, self._nodes, self._about)
         indices = range(self._nodes.size)
-        self._state = State(Shape([self._nodes.parent(at) for at in indices]), [self._nodes.node(at) for at in indices])
+        self._state = RunState(
+            Shape([self._nodes.parent(at) for at in indices]), [self._nodes.node(at) for at in indices]
+        )
         self._known = KnownNodes(self._nodes.size)
         self._statuses: list[list[float | int]] = []
         self._words: list[list[Any]] = []
@@ -95,7 +97,7 @@ class Film:
                 self._take_things(event)
             self._latest = event
         elif isinstance(event, Sampled) and event.scan:
-            self._scans.append([round(event.t, 3), rounded_scan(event.scan)])
+            self._scans.append([round(event.t, 3), round_scan(event.scan)])
         elif isinstance(event, LOGGED):
             self._events.append(as_json(event, self._mission.label))
             doing = [*self._state.doing.as_dict().values()]
@@ -176,7 +178,7 @@ def side_by_side(one: str, other: str) -> dict[str, Any]:
     - `ended`: the numbers of the nodes whose last status isn't the same.
     """
     with ExitStack() as stack:
-        sides = [stack.enter_context(opened(path, ())) for path in (one, other)]
+        sides = [stack.enter_context(open_recording(path, ())) for path in (one, other)]
         films = [Film(mission, dict(recording.about)) for recording, mission, _ in sides]
         events = [list(recording.events(nodes)) for recording, _, nodes in sides]
         stories = [
@@ -197,7 +199,7 @@ def side_by_side(one: str, other: str) -> dict[str, Any]:
             "stories": list(run_differences(*(story.body() for story in stories))),
             "missions": missions,
             "first": first,
-            "ended": [] if missions else ended_differently(*events),
+            "ended": [] if missions else compare_endings(*events),
         }
 
 
@@ -210,7 +212,7 @@ OURS = "btlang.actions."
 """The prefix of modules whose functions do nothing but command the robot that they are given."""
 
 
-def simulated(
+def simulate(
     mission: Mission,
     sink: Sink,
     seconds: float,
@@ -249,7 +251,9 @@ def check_words(tree: Tree, vocabulary: Lexicon, label: Callable[[Node], str], f
             raise MissionError([diagnostic("BT221", node.span or NOWHERE, words=label(node), file=entry.file)])
 
 
-def tried(mission: Mission, seconds: float = 600.0, patience: float = 6.0, seed: int | None = None) -> dict[str, Any]:
+def try_mission(
+    mission: Mission, seconds: float = 600.0, patience: float = 6.0, seed: int | None = None
+) -> dict[str, Any]:
     """The film of a run (see Film.data) of at most so many seconds of the mission and `patience` seconds of real time,
     and what `stopped` it: "" if it ended by itself.
 
@@ -258,5 +262,5 @@ def tried(mission: Mission, seconds: float = 600.0, patience: float = 6.0, seed:
     """
     check_words(mission.tree, mission.vocabulary, mission.label)
     film = Film(mission)
-    _, stopped = simulated(mission, film, seconds, patience, seed=seed)
+    _, stopped = simulate(mission, film, seconds, patience, seed=seed)
     return {**film.data(), "stopped": stopped}

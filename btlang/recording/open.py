@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from btlang.api import Mission
 from btlang.engine.compile import outline
-from btlang.recording.bundle import recorded_mission
+from btlang.recording.bundle import open_mission
 from btlang.recording.reader import RecordedNodes, Recording, read_recording
 
 _MAGIC = b"\x89MCAP0\r\n"
@@ -23,9 +23,11 @@ def is_recording(path: str) -> bool:
 
 
 @contextmanager
-def opened(path: str, keywords: Sequence[str] | None = None) -> Iterator[tuple[Recording, Mission, RecordedNodes]]:
+def open_recording(
+    path: str, keywords: Sequence[str] | None = None
+) -> Iterator[tuple[Recording, Mission, RecordedNodes]]:
     """A recording, its mission and the nodes of that; with `keywords` the mission may be run. Raises MissionError."""
     recording = read_recording(path)
     name, language = recording.about.get("mission", "a mission"), recording.about.get("language", "en")
-    with recorded_mission(recording.files, name, language, keywords) as mission:
+    with open_mission(recording.files, name, language, keywords) as mission:
         yield recording, mission, RecordedNodes(*outline(mission.tree))

@@ -13,7 +13,7 @@ from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
 from btlang.recording.bundle import files_of
-from btlang.recording.channels import Channel, messages
+from btlang.recording.channels import RecordingChannel, messages
 from btlang.run.bus import BLOCK
 from btlang.run.events import Ended, Event, PeriodPassed
 from btlang.run.robot_state import Movements
@@ -119,14 +119,14 @@ class Recorder:
             self._writer.add_attachment(now, now, name, _media_type(name), data)
         self._file.flush()
 
-    def _new_id(self, channel: Channel) -> int:
+    def _new_id(self, channel: RecordingChannel) -> int:
         schema = self._writer.register_schema(channel.schema, "jsonschema", _schema(channel).encode())
         number: int = self._writer.register_channel(channel.topic, "json", schema)
         self._channels[channel.topic] = number
         return number
 
 
-def _schema(channel: Channel) -> str:
+def _schema(channel: RecordingChannel) -> str:
     fields: dict[str, Any] = {"title": channel.schema, **channel.described, "type": "object"}
     return json.dumps(fields)
 

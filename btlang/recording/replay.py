@@ -16,7 +16,7 @@ from btlang.robots.geometry import Point, Pose
 from btlang.run.controls import Controls
 from btlang.run.events import Event, PeriodPassed, StatusesChanged
 from btlang.run.robot_state import RobotState
-from btlang.run.snapshot import Shape, State
+from btlang.run.snapshot import RunState, Shape
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class RecordedRobot:
         return self.pose.ahead(_IN_FRONT)
 
 
-def drawn(picture: Sink) -> Callable[[Event], object]:
+def adapt_picture(picture: Sink) -> Callable[[Event], object]:
     """The same sink for events of a recording."""
 
     def take(event: Event) -> None:
@@ -69,7 +69,7 @@ def drawn(picture: Sink) -> Callable[[Event], object]:
 _KEPT = 2_000  # changes of statuses between two states that are kept: a jump takes so many, some milliseconds
 
 
-class Timeline:
+class ReplayTimeline:
     """The events of a run by their times, and the state of the run after any of them."""
 
     def __init__(self, events: Sequence[Event], nodes: RecordedNodes) -> None:
@@ -77,7 +77,7 @@ class Timeline:
         self._times = [event.t for event in events]
         self._nodes = [nodes.node(index) for index in range(nodes.size)]
         self._shape = Shape([nodes.parent(index) for index in range(nodes.size)])
-        self._kept: list[tuple[int, State]] = []  # how many events each has taken
+        self._kept: list[tuple[int, RunState]] = []  # how many events each has taken
 
     def count_before(self, t: float) -> int:
         """How many events there are up to a time, in seconds of the mission."""
@@ -92,7 +92,7 @@ class Timeline:
                 found[event.t] = None
         return list(found)
 
-    def state(self, count: int) -> State:
+    def state(self, count: int) -> RunState:
         """The state after so many events; the caller may change it."""
         if not self._kept:
             self._keep()
@@ -105,7 +105,7 @@ class Timeline:
 
     def _keep(self) -> None:
         """One pass over all events; the states are as far apart as a tree is large, or they would fill the memory."""
-        state, changes = State(self._shape, self._nodes), 0
+        state, changes = RunState(self._shape, self._nodes), 0
         self._kept.append((0, state.copy()))
         apart = max(_KEPT, len(self._shape))
         for count, event in enumerate(self.events):
@@ -122,7 +122,9 @@ class Player:
     A sink with a method `jump` gets the state of the run after a jump; others get what was left out, if it was forward.
     """
 
-    def __init__(self, timeline: Timeline, sinks: Sequence[Callable[[Event], object]], controls: Controls) -> None:
+    def __init__(
+        self, timeline: ReplayTimeline, sinks: Sequence[Callable[[Event], object]], controls: Controls
+    ) -> None:
         self._timeline, self._sinks, self._controls = timeline, sinks, controls
         self._count = 0  # events that have been played
         self._wanted: float | None = None  # where to go on, in seconds of the mission

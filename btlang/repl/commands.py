@@ -11,8 +11,8 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, unwritable
 from btlang.frontends.mission.symbols.definitions import find_definitions
 from btlang.frontends.mission.symbols.phrases import Phrases
-from btlang.repl.draft import Entry, MissionDraft
-from btlang.repl.store import Store
+from btlang.repl.draft import DraftEntry, MissionDraft
+from btlang.repl.store import DraftStore
 from btlang.robots.robot import Robot, RobotError
 from btlang.robots.world import said
 from btlang.support.record import Record
@@ -53,7 +53,7 @@ class Leave(Exception):
     """The user wants to leave the REPL."""
 
 
-class Command(Record):
+class ReplCommand(Record):
     """One word of the REPL; `topic`, `arguments` and `help` are for people, `aliases` mean the same."""
 
     topic: str
@@ -64,22 +64,22 @@ class Command(Record):
 
 
 COMMANDS = (
-    Command("mission", "show", "[NAME|tree]", "shows the mission, one definition, or the tree of all"),
-    Command("mission", "names", "", "lists what is defined"),
-    Command("mission", "run", "", "runs the whole mission from where the robot is; `reset` first for a new world"),
-    Command("mission", "undo", "", "takes back the last line"),
-    Command("mission", "redo", "", "takes back an undo"),
-    Command("mission", "new", "", "starts an empty mission; `undo` brings the current one back"),
-    Command("files", "save", "[over] FILE", "writes the mission to a file; `over` replaces another file"),
-    Command("files", "load", "FILE", "continues with the mission in a file; `undo` brings the current one back"),
-    Command("files", "restore", "", "brings back the last session"),
-    Command("robot", "world", "[FILE]", "shows the world and the robot in it, or changes the world"),
-    Command("robot", "reset", "", "resets the world"),
-    Command("robot", "speed", "[real|max|FACTOR]", "how fast time passes when the robot moves"),
-    Command("prompt", "help", "[PHRASE]", "explains a phrase or word, or the prompt itself"),
-    Command("prompt", "words", "[TOPIC|WORD|--all]", "lists what you can say: the topics, one topic, or a word"),
-    Command("prompt", "clear", "", "clears the screen; the mission stays"),
-    Command("prompt", "quit", "", "leaves, like Ctrl-D twice", ("exit", "bye")),
+    ReplCommand("mission", "show", "[NAME|tree]", "shows the mission, one definition, or the tree of all"),
+    ReplCommand("mission", "names", "", "lists what is defined"),
+    ReplCommand("mission", "run", "", "runs the whole mission from where the robot is; `reset` first for a new world"),
+    ReplCommand("mission", "undo", "", "takes back the last line"),
+    ReplCommand("mission", "redo", "", "takes back an undo"),
+    ReplCommand("mission", "new", "", "starts an empty mission; `undo` brings the current one back"),
+    ReplCommand("files", "save", "[over] FILE", "writes the mission to a file; `over` replaces another file"),
+    ReplCommand("files", "load", "FILE", "continues with the mission in a file; `undo` brings the current one back"),
+    ReplCommand("files", "restore", "", "brings back the last session"),
+    ReplCommand("robot", "world", "[FILE]", "shows the world and the robot in it, or changes the world"),
+    ReplCommand("robot", "reset", "", "resets the world"),
+    ReplCommand("robot", "speed", "[real|max|FACTOR]", "how fast time passes when the robot moves"),
+    ReplCommand("prompt", "help", "[PHRASE]", "explains a phrase or word, or the prompt itself"),
+    ReplCommand("prompt", "words", "[TOPIC|WORD|--all]", "lists what you can say: the topics, one topic, or a word"),
+    ReplCommand("prompt", "clear", "", "clears the screen; the mission stays"),
+    ReplCommand("prompt", "quit", "", "leaves, like Ctrl-D twice", ("exit", "bye")),
 )
 _NAMES = {name: command for command in COMMANDS for name in (command.name, *command.aliases)}
 _TOPICS = tuple(dict.fromkeys(command.topic for command in COMMANDS))
@@ -125,11 +125,15 @@ def is_begun(text: str) -> bool:
     return any(name.startswith(text.lower()) for name in _NAMES)
 
 
-class Commands:
+class ReplCommands:
     """Does what the words of the REPL say; `write` gets what `show` takes, `run` runs the whole mission."""
 
     def __init__(
-        self, draft: MissionDraft, write: Callable[[Any], object], run: Callable[[], object], store: Store | None = None
+        self,
+        draft: MissionDraft,
+        write: Callable[[Any], object],
+        run: Callable[[], object],
+        store: DraftStore | None = None,
     ) -> None:
         self._draft = draft
         self._write = write
@@ -220,7 +224,7 @@ class Commands:
             return
         self._write_change(before, "")
 
-    def _write_change(self, before: tuple[Entry, ...], note: str) -> None:
+    def _write_change(self, before: tuple[DraftEntry, ...], note: str) -> None:
         now = self._draft.entries
         gone = [entry.text for entry in before if entry not in now]
         come = [entry.text for entry in now if entry not in before]
@@ -353,7 +357,7 @@ def _robot_line(robot: Robot) -> str:
     return ", ".join(parts)
 
 
-def _usage(command: Command) -> str:
+def _usage(command: ReplCommand) -> str:
     return f"{', '.join((command.name, *command.aliases))} {command.arguments}".rstrip()
 
 

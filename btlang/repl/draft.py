@@ -31,7 +31,7 @@ ENTRY = "prompt"
 """What messages call the source of an entry."""
 
 
-class Entry(Record):
+class DraftEntry(Record):
     """One statement as it was typed, maybe of several lines, and the texts of the definitions in it by name."""
 
     text: str
@@ -42,7 +42,7 @@ class Entry(Record):
 class Compiled(Record):
     """An entry, and its mission with the subtrees that it defines and uses; without a command its tree does nothing."""
 
-    entry: Entry
+    entry: DraftEntry
     mission: Mission
 
     def outline(self) -> Outline:
@@ -73,9 +73,9 @@ class MissionDraft:
         self.language = language
         self._include_root = include_root
         self._parser = parser
-        self._undone: list[tuple[Entry, ...]] = []
-        self._before: list[tuple[Entry, ...]] = []
-        self.entries: tuple[Entry, ...] = ()
+        self._undone: list[tuple[DraftEntry, ...]] = []
+        self._before: list[tuple[DraftEntry, ...]] = []
+        self.entries: tuple[DraftEntry, ...] = ()
         self._known_of: tuple[str, Mapping[str, Known]] = "", {}
         self._blackboard = Blackboard()
         self.use_world(world)
@@ -161,7 +161,7 @@ class MissionDraft:
         own = [d for d in named if d.span.start < len(text)]
         compilation = Compilation(self.vocabulary, mission, needs_command=False, grows=True, warnings=reading.warnings)
         tree = run_passes(compilation).tree
-        entry = Entry(text, tuple((d.name, d.span.text) for d in own), reading.mission.body is not None)
+        entry = DraftEntry(text, tuple((d.name, d.span.text) for d in own), reading.mission.body is not None)
         shown = Tree(tree.root, used_subtrees(tree, [name for name, _ in entry.definitions]))
         own_warnings = [warning for warning in compilation.warnings if warning.span.start < len(text)]
         return Compiled(entry, self._mission(shown, mission, own_warnings))
@@ -198,13 +198,13 @@ class MissionDraft:
         tree = compile_mission(reading.mission, self.vocabulary)
         return self._mission(tree, reading.mission, reading.warnings)
 
-    def add(self, entry: Entry) -> None:
+    def add(self, entry: DraftEntry) -> None:
         """A definition takes the place of an older one of the same name."""
         names = {name for name, _ in entry.definitions}
         kept = [old for old in self.entries if old.has_command or not {name for name, _ in old.definitions} <= names]
         self.change((*(kept if names else self.entries), entry))
 
-    def change(self, entries: Sequence[Entry]) -> None:
+    def change(self, entries: Sequence[DraftEntry]) -> None:
         """Other entries; `undo` brings the present ones back."""
         self._before.append(self.entries)
         self._undone.clear()
@@ -218,14 +218,14 @@ class MissionDraft:
         """Takes back the latest undo; False if there is none."""
         return self._swap(self._undone, self._before)
 
-    def _swap(self, source: list[tuple[Entry, ...]], target: list[tuple[Entry, ...]]) -> bool:
+    def _swap(self, source: list[tuple[DraftEntry, ...]], target: list[tuple[DraftEntry, ...]]) -> bool:
         if not source:
             return False
         target.append(self.entries)
         self.entries = source.pop()
         return True
 
-    def entries_of(self, text: str, name: str = ENTRY) -> list[Entry]:
+    def entries_of(self, text: str, name: str = ENTRY) -> list[DraftEntry]:
         """The statements of a whole mission, each with the comments above it. Raises MissionError."""
         source = Source(text, name)
         mission = read_mission(source, self.vocabulary, self._parser, errors_of=errors_of).mission
@@ -252,7 +252,7 @@ class MissionDraft:
             below = source.position(group[-1].span.end)[0] + 1
             end = source.offset(below) if group is not groups[-1] else len(text)
             own = tuple((d.name, d.span.text) for d in group if isinstance(d, Definition | Fact | Include))
-            entries.append(Entry(text[begin:end].strip("\n"), own, len(own) < len(group)))
+            entries.append(DraftEntry(text[begin:end].strip("\n"), own, len(own) < len(group)))
             begin = end
         return entries
 

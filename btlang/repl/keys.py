@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from btlang.repl.draft import MissionDraft
 
-    class Editor(Protocol):
+    class LineEditor(Protocol):
         """What the keys act on; see screen.py."""
 
         buffer: Buffer
@@ -80,7 +80,7 @@ def _goes_on(line: str, vocabulary: Lexicon) -> bool:
 _INDENT = "  "
 
 
-def key_bindings(screen: Editor) -> KeyBindings:
+def key_bindings(screen: LineEditor) -> KeyBindings:
     """Enter, Tab, Ctrl-F, 1 and 2 where there is a choice, Ctrl-C, Ctrl-D and Backspace."""
     keys = KeyBindings()
     buffer = screen.buffer

@@ -36,7 +36,7 @@ from btlang.repl.commands import command_of, is_begun, near_command, robot_line
 from btlang.repl.draft import MissionDraft
 from btlang.repl.keys import key_bindings
 from btlang.repl.preview import Offers, Preview, continuations, preview
-from btlang.repl.store import Store
+from btlang.repl.store import DraftStore
 from btlang.text.drawing import lines
 from btlang.text.output import has_colour
 
@@ -58,14 +58,14 @@ _STYLE = Style.from_dict({
 })  # fmt: skip
 
 
-class Screen:
+class ReplScreen:
     """Asks for entries. `ask` returns a text that compiles, or a line for the REPL itself.
 
     `input` and `output` are those of the terminal where none are given.
     """
 
     def __init__(
-        self, draft: MissionDraft, store: Store, input: Input | None = None, output: Output | None = None
+        self, draft: MissionDraft, store: DraftStore, input: Input | None = None, output: Output | None = None
     ) -> None:
         self.draft = draft
         self._store = store

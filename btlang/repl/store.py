@@ -19,7 +19,7 @@ except ImportError:  # not on Windows, where sessions of running processes are o
 _MOST_KEPT = 20  # sessions; older ones are deleted
 
 
-class Kept(Record):
+class SavedDraft(Record):
     """A draft of a process that is gone: its entries, what was being typed, and the world that it was for."""
 
     entries: tuple[str, ...]
@@ -33,7 +33,7 @@ def state_folder() -> Path:
     return Path(user_dir("state"))
 
 
-class Store:
+class DraftStore:
     """A folder with the file `history` and a file for each draft; None keeps nothing.
 
     A folder that cannot be written to is no error: `problem` says why nothing is kept.
@@ -84,7 +84,7 @@ class Store:
         if not self.problem:
             _delete(self._own)
 
-    def left(self) -> Kept | None:
+    def left(self) -> SavedDraft | None:
         """The latest draft that was left with something in it."""
         kept = []
         for path in self._files():
@@ -105,19 +105,19 @@ class Store:
         except OSError:
             return []
 
-    def done_with(self, kept: Kept) -> None:
+    def done_with(self, kept: SavedDraft) -> None:
         """A draft that was taken up again is no longer kept by itself."""
         _delete(kept.path)
 
 
-def _read(path: Path) -> Kept | None:
+def _read(path: Path) -> SavedDraft | None:
     """None where the draft is empty or not readable."""
     try:
         state = json.loads(path.read_text(encoding="ascii"))
         entries, draft, world = tuple(map(str, state["entries"])), str(state["draft"]), state.get("world")
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
-    return Kept(entries, draft, world and str(world), path) if entries or draft.strip() else None
+    return SavedDraft(entries, draft, world and str(world), path) if entries or draft.strip() else None
 
 
 def _delete(path: Path) -> None:

@@ -52,7 +52,7 @@ class Attempts(Record):
 _NONE = Attempts()
 
 
-def together(parts: Iterable[Attempts]) -> Attempts:
+def combine_attempts(parts: Iterable[Attempts]) -> Attempts:
     """All attempts, as far as they are kept."""
     parts = [part for part in parts if part.kept]
     if len(parts) == 1:
@@ -132,12 +132,12 @@ class FailureHistory:
         failed = self._failed.get(index)
         kind = self._kind(index)
         if not failed:
-            attempts = together((tried, Attempts((Attempt(index, reason, t, t, t),))))
+            attempts = combine_attempts((tried, Attempts((Attempt(index, reason, t, t, t),))))
         elif kind is not None and kind.again == ON_FAILURE:
             attempts = tried
         else:
             needs_all = kind is not None and (kind.goes_on == ON_FAILURE or kind.at_once)
-            attempts = together(failed.values()) if needs_all else next(reversed(failed.values()))
+            attempts = combine_attempts(failed.values()) if needs_all else next(reversed(failed.values()))
         now = self._stopped if t == self._stopped_at else []
         halted = tuple(leaf for leaf in now if leaf[0] > index)  # what is below comes later
         if halted and attempts.kept:
@@ -153,7 +153,7 @@ class FailureHistory:
 
     def _add(self, index: int, tried: Attempts) -> None:
         if tried.kept and index >= 0:
-            self._tried[index] = together((self._tried.get(index, _NONE), tried))
+            self._tried[index] = combine_attempts((self._tried.get(index, _NONE), tried))
 
     def _recovers(self, index: int) -> bool:
         """Whether what a node does beside its first child is to help that one."""

@@ -1,4 +1,4 @@
-"""A log for programs: one line of JSON for each event. `described` gives the schema of one."""
+"""A log for programs: one line of JSON for each event. `describe_event` gives the schema of one."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def as_json(event: Event, label: Callable[[Node], str]) -> dict[str, Any]:
     return {name: round(value, 6) if isinstance(value, float) else value for name, value in written.items()}
 
 
-def described(kind: type[Event]) -> dict[str, Any]:
+def describe_event(kind: type[Event]) -> dict[str, Any]:
     """The JSON schema of one class of events."""
     properties: dict[str, Any] = {"event": {"const": kind.tag}} if kind.tag else {}
     required = list(properties)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _WORDS = {IDLE: "halted", RUNNING: "start", FAILURE: "failed", SKIPPED: "skipped"}
 
 
-class Lines:
+class PlainLines:
     """A sink that writes a line at the start and at the end of each action, and what the robot says or bumps into.
 
     A leaf that takes too long for a tick is reported the first time only.

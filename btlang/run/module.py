@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from contextlib import AbstractContextManager
 
-    from btlang.run.terminal import Mission, Session
+    from btlang.run.terminal import RunnableMission, RunnerSession
 
 
 def run_module(
-    mission: Mission,
-    open_session: Callable[[], AbstractContextManager[Session]],
+    mission: RunnableMission,
+    open_session: Callable[[], AbstractContextManager[RunnerSession]],
     arguments: Sequence[str] | None = None,
 ) -> int:
     """Runs the mission in a session as `btc run` does, with its option --speed; returns its exit code."""

@@ -58,12 +58,12 @@ def read_robot(robot: Any) -> RobotState | None:
     """The state of a robot, None where there is no robot. For the thread of the run."""
     if robot is None:
         return None
-    hands = (asked(lambda: robot.holding("left")), asked(lambda: robot.holding("right")))
-    things = asked(lambda: robot.things) or ()
-    return RobotState(asked(lambda: robot.pose), asked(lambda: robot.battery), *hands, things)
+    hands = (ask_sensor(lambda: robot.holding("left")), ask_sensor(lambda: robot.holding("right")))
+    things = ask_sensor(lambda: robot.things) or ()
+    return RobotState(ask_sensor(lambda: robot.pose), ask_sensor(lambda: robot.battery), *hands, things)
 
 
-def asked(ask: Callable[[], Any]) -> Any:
+def ask_sensor(ask: Callable[[], Any]) -> Any:
     """What a sensor says; None where the robot has no such one, or it is silent."""
     try:
         return ask()
@@ -71,6 +71,6 @@ def asked(ask: Callable[[], Any]) -> Any:
         return None
 
 
-def rounded_scan(ranges: Iterable[float]) -> list[float | None]:
+def round_scan(ranges: Iterable[float]) -> list[float | None]:
     """Metres for those who watch, counter-clockwise from straight ahead; None where nothing is."""
     return [round(distance, 2) if isfinite(distance) else None for distance in ranges]

@@ -56,7 +56,7 @@ _REST = 2.0  # seconds of the mission that a robot gets to come to rest
 _PATIENCE = 2.0  # seconds of real time that background leaves get to end after the last halt
 
 
-def traced_engine(
+def trace_engine(
     tree: Tree,
     bind: Callable[[str], LeafBinding | None],
     *,

@@ -119,7 +119,7 @@ class Doing(Record):
         return self
 
 
-class State:
+class RunState:
     """Follows the status changes of a run. `statuses` holds one number for each node, in preorder.
 
     A node that is started again keeps nothing of its earlier round: what it has not reached yet is IDLE again. Where
@@ -144,9 +144,9 @@ class State:
         self._sweep = 1
         self._halted: list[int] = []  # by the halts that come in a row
 
-    def copy(self) -> State:
+    def copy(self) -> RunState:
         """Another one, which goes on from here by itself."""
-        other = State.__new__(State)
+        other = RunState.__new__(RunState)
         for name, value in vars(self).items():
             shared = name in ("shape", "_nodes") or not isinstance(value, bytearray | dict | list)
             setattr(other, name, value if shared else value.copy())
@@ -240,7 +240,7 @@ class State:
         return self.shape.ends[index] > index + 1
 
 
-class Follower:
+class RunFollower:
     """A sink that follows a run, and gives snapshots of it to any thread."""
 
     policy = INLINE
@@ -248,7 +248,7 @@ class Follower:
     def __init__(self, engine: WatchedNodes) -> None:
         self._engine = engine
         self._lock = Lock()
-        self._state: State | None = None
+        self._state: RunState | None = None
         self._latest: Event | None = None
         self._nodes: Sequence[Node] = ()
 
@@ -257,11 +257,11 @@ class Follower:
             if self._state is None:
                 count = self._engine.size
                 self._nodes = [self._engine.node(index) for index in range(count)]
-                self._state = State(Shape([self._engine.parent(index) for index in range(count)]), self._nodes)
+                self._state = RunState(Shape([self._engine.parent(index) for index in range(count)]), self._nodes)
             self._state.take(event)
             self._latest = event
 
-    def jump(self, state: State) -> None:
+    def jump(self, state: RunState) -> None:
         """Goes on from another state of the same tree."""
         with self._lock:
             self._state = state

@@ -15,7 +15,7 @@ from btlang.engine.blackboard import Blackboard
 from btlang.engine.status import FAILURE
 from btlang.run.controls import PATIENCE, Controls, emergency_signal
 from btlang.run.json_log import JsonLog
-from btlang.run.lines import Lines, brief
+from btlang.run.lines import PlainLines, brief
 from btlang.run.outcome import Outcome, Standstill
 from btlang.run.pace import are_many
 from btlang.run.sampler import Sampler
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from btlang.run.live.board import Map
     from btlang.run.live.view import LiveView, ViewKey
 
-    class Run(Protocol):
+    class PreparedRun(Protocol):
         """See btlang.session.Run."""
 
         @property
@@ -43,13 +43,13 @@ if TYPE_CHECKING:
 
         def execute(self) -> Outcome: ...
 
-    class Session(Protocol):
+    class RunnerSession(Protocol):
         """See btlang.session.Session."""
 
         def map(self, unicode: bool) -> Map | None: ...
 
         @property
-        def prepare(self) -> Callable[..., Run]: ...
+        def prepare(self) -> Callable[..., PreparedRun]: ...
 
     class Monitor(Protocol):
         """See btlang.monitor.groot.GrootMonitor."""
@@ -58,7 +58,7 @@ if TYPE_CHECKING:
 
         def watch_run(self, run: Any, mission: Any) -> None: ...
 
-    class Mission(Protocol):
+    class RunnableMission(Protocol):
         """What can be run from the command line; see btlang.api.Mission."""
 
         @property
@@ -79,8 +79,8 @@ _LEAST_SIZE = os.terminal_size((30, 10))  # of a terminal in which the live view
 
 
 def run_mission(
-    mission: Mission,
-    open_session: Callable[[], AbstractContextManager[Session]],
+    mission: RunnableMission,
+    open_session: Callable[[], AbstractContextManager[RunnerSession]],
     *,
     speed: float | str,
     rate: float,
@@ -108,7 +108,9 @@ def run_mission(
     """
     controls, world_input = Controls(), WorldInput(answers)
     view = None if quiet or lines else live_view(mission, controls, type_ahead, tree_stays, world_input=world_input)
-    shown: list[Sink] = [view] if view is not None else [] if quiet else [Lines(mission.label, mission.is_action, show)]
+    shown: list[Sink] = (
+        [view] if view is not None else [] if quiet else [PlainLines(mission.label, mission.is_action, show)]
+    )
     sinks = [*shown, world_input, *sinks]
     values = Blackboard() if values is None else values
     options = {"speed": speed, "rate": rate, "time_limit": time_limit, "values": values, "controls": controls}
@@ -187,7 +189,7 @@ def interrupted_by_signals() -> Iterator[list[int]]:
 
 
 def live_view(
-    mission: Mission,
+    mission: RunnableMission,
     controls: Controls,
     type_ahead: list[str] | None = None,
     tree_stays: bool = True,

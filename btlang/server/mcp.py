@@ -17,9 +17,9 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError, in_order
 from btlang.diagnostics.reading import MOST_BYTES
 from btlang.editing.partial import partial_reading
-from btlang.recording.film import simulated
+from btlang.recording.film import simulate
 from btlang.robots.mission_vocabulary import world_vocabulary
-from btlang.run.lines import Lines
+from btlang.run.lines import PlainLines
 from btlang.text.source import Source, Span
 from btlang.vocabulary.listing import listing, overview
 
@@ -106,8 +106,8 @@ class Tools:
         """
         mission = self._mission(text)
         lines: list[str] = []
-        sink = Lines(mission.label, mission.is_action, lines.append)
-        outcome, stopped = simulated(mission, sink, seconds, _PATIENCE, ticks)
+        sink = PlainLines(mission.label, mission.is_action, lines.append)
+        outcome, stopped = simulate(mission, sink, seconds, _PATIENCE, ticks)
         if outcome is None:
             return {"ok": False, "stopped": "a command never returns", "lines": lines[:_MOST_LINES], "messages": []}
         return {

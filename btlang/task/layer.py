@@ -22,10 +22,10 @@ from btlang.run.world_input import WorldInput
 from btlang.session import Run, Session
 from btlang.task.commands.handler import Handler
 from btlang.task.commands.robot_handlers import component_data, takes_talk, takes_visitors
-from btlang.task.execution.emergency import EmergencyStop, latch_path
+from btlang.task.execution.emergency import EmergencyLatch, latch_path
 from btlang.task.execution.executor import Executor
-from btlang.task.execution.manager import DAY, Manager
-from btlang.task.execution.missions import HouseRules, MissionReader, house_rules, no_house_rules
+from btlang.task.execution.manager import DAY, TaskManager
+from btlang.task.execution.missions import HouseRules, MissionReader, no_house_rules, read_house_rules
 from btlang.task.execution.run_sinks import Recordings
 from btlang.task.live.feed import Feed
 from btlang.task.messages import AddSchedule, Answer, Command, Put, RemoveSchedule, as_json, read_command
@@ -91,7 +91,7 @@ class TaskLayer:
         self.reader = reader or MissionReader()
         self.rules: HouseRules = no_house_rules()
         if rules is not None:
-            self.rules = house_rules(self.reader.read(MissionText("", file=rules)))
+            self.rules = read_house_rules(self.reader.read(MissionText("", file=rules)))
         self.store = open_store(store or os.path.join(folder, "tasks.db"), durable)
         try:
             self.store.own()
@@ -101,7 +101,7 @@ class TaskLayer:
             raise
         self._begins = time.time() if begins is None else begins
         self._real = speed == "real"
-        self.emergency = EmergencyStop(latch_path(folder), self.session.emergency_stop)
+        self.emergency = EmergencyLatch(latch_path(folder), self.session.emergency_stop)
         knows = self.reader.world is not None or not getattr(self.session.robot, "moves_by_itself", True)
         self.world_input = WorldInput(answers)
         self.feed = Feed(
@@ -110,7 +110,7 @@ class TaskLayer:
             lambda: self.world_input.question,
         )  # fmt: skip
         self.emergency.listeners.append(self.feed.wake)
-        self.manager = Manager(self.store, keeps, self._needs)
+        self.manager = TaskManager(self.store, keeps, self._needs)
         self.executor = Executor(
             self.session, self.store, self.manager, self.emergency, self.rules, self.reader.read(_IDLE),
             missions=self.reader.read, now=self.now, trouble=trouble,
@@ -246,7 +246,7 @@ def read_schedules(path: str) -> tuple[AddSchedule, ...]:
         raise as_mission_error(error) from None
 
 
-def furnished_layer(
+def make_robot_layer(
     robot: Connector, reader: MissionReader, *, rules: str | None = None, schedules: str | None = None, **options: Any
 ) -> TaskLayer:
     """The task layer of a robot, with the missions, schedules and rules of its file where none are given, and further

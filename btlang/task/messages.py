@@ -11,7 +11,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.support.field_types import field_type
 from btlang.support.record import Record
-from btlang.task.store.records import Kind, Missed, Overlap, Restart, can_be_kept
+from btlang.task.store.records import LibraryKind, Missed, Overlap, Restart, is_storable
 from btlang.text.source import NOWHERE
 from btlang.text.spelling import nearest
 
@@ -164,7 +164,7 @@ class Put(Command):
     name: str
     text: str
     revision: int | None = None
-    kind: str = Kind.MISSION.value
+    kind: str = LibraryKind.MISSION.value
 
 
 class Delete(Command):
@@ -174,7 +174,7 @@ class Delete(Command):
 
     tag = "delete"
     name: str
-    kind: str = Kind.MISSION.value
+    kind: str = LibraryKind.MISSION.value
 
 
 class Library(Command):
@@ -185,7 +185,7 @@ class Library(Command):
     tag = "library"
     changes = False
     name: str = ""
-    kind: str = Kind.MISSION.value
+    kind: str = LibraryKind.MISSION.value
     revision: int | None = None
 
 
@@ -385,7 +385,7 @@ def _checked(kind: type[Command], field: str, value: Any) -> Any:
     fits = isinstance(value, expected) and not isinstance(value, bool)
     if not fits or (texts and not all(isinstance(each, str) for each in value)) or value != value:
         raise wrong(kind.tag, f"'{field}' must be of the type {described['type']}")
-    if not can_be_kept(value):
+    if not is_storable(value):
         raise wrong(kind.tag, f"'{field}' has a NUL or half a character (a lone surrogate), or a number without end")
     return tuple(value) if texts else value
 

@@ -23,7 +23,7 @@ from btlang.run.events import (
     StatusesChanged,
 )
 from btlang.run.outcome import Outcome
-from btlang.testing.test import Command, MissionTest
+from btlang.testing.test import MissionTest, TestedCommand
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.dump import outline
 from btlang.tree.node import Node, Tree
@@ -35,7 +35,7 @@ class Observations:
 
     policy = INLINE
 
-    def __init__(self, commands: Mapping[str, Command]) -> None:
+    def __init__(self, commands: Mapping[str, TestedCommand]) -> None:
         self.now = 0.0
         """Seconds of mission time."""
         self.outcome: Outcome | None = None
@@ -196,7 +196,7 @@ def _possible(tree: Tree) -> dict[int, Ends]:
     return found
 
 
-def covered(tests: Iterable[tuple[MissionTest, Sequence[int]]]) -> dict[str, Coverage]:
+def measure_coverage(tests: Iterable[tuple[MissionTest, Sequence[int]]]) -> dict[str, Coverage]:
     """The coverage of each mission by the name of its file; one that stands in a test has the place of the test."""
     found: dict[str, Coverage] = {}
     for test, seen in tests:

@@ -7,7 +7,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import lexed, read_mission
 from btlang.passes import compile_mission
-from btlang.testing.statements import Statement
+from btlang.testing.statements import TestStatement
 from btlang.testing.test import (
     ALWAYS,
     BEFORE,
@@ -19,7 +19,7 @@ from btlang.testing.test import (
     USUAL_LIMIT,
     WITHIN,
     Fake,
-    Step,
+    TestStep,
     find_command,
 )
 from btlang.text.source import Source, Span
@@ -40,7 +40,7 @@ _OF_COMMANDS = frozenset((
 """The conditions of tests whose text is a command of the mission."""
 
 
-class Pieces:
+class MissionEnglish:
     """Gathers what the statements of one test say, in the words of tests and of its mission."""
 
     def __init__(self, text: Words, vocabulary: Lexicon, mission: Mission) -> None:
@@ -51,15 +51,15 @@ class Pieces:
         )
         self.setup: list[Tree] = []
         self.fakes: list[Fake] = []
-        self.steps: list[Step] = []
+        self.steps: list[TestStep] = []
         self.texts: list[str] = []
         """The commands of the mission that conditions ask for."""
 
-    def limit(self, run: Statement) -> tuple[float, bool]:
+    def limit(self, run: TestStatement) -> tuple[float, bool]:
         """How long the test may take, and whether it is cut then."""
         return (USUAL_LIMIT, True) if run.seconds is None else (run.seconds, run.at_most)
 
-    def add(self, one: Statement, *, before: bool) -> None:
+    def add(self, one: TestStatement, *, before: bool) -> None:
         """One more statement, which stands before that which runs the mission or not. Raises MissionError."""
         if one.kind not in _ANYWHERE and before != (one.kind in _BEFORE_RUN):
             reason = "this line must stand behind 'run'" if before else "this line must stand before 'run'"
@@ -71,21 +71,21 @@ class Pieces:
         elif one.kind not in ("run", *_BEFORE_RUN):
             self.steps.append(self._step(one))
 
-    def _step(self, one: Statement) -> Step:
+    def _step(self, one: TestStatement) -> TestStep:
         seconds = one.seconds or 0.0
         if one.kind == "before":
             other = self._condition(one.head, one.first - 1)
-            return Step(BEFORE, one.span, self._condition(one.first, one.last), other=other)
+            return TestStep(BEFORE, one.span, self._condition(one.first, one.last), other=other)
         if one.kind == "when":
             condition = self._condition(one.head, one.first - 1)
-            return Step(EVENT, one.span, condition, event=self._event(one.first, one.last))
+            return TestStep(EVENT, one.span, condition, event=self._event(one.first, one.last))
         if one.kind in _KINDS:
             condition = self._condition(one.first, one.last, is_denied=one.kind == "never")
-            return Step(_KINDS[one.kind], one.span, condition, seconds)
+            return TestStep(_KINDS[one.kind], one.span, condition, seconds)
         match = longest(self._vocabulary.trie, self._text, one.first, self._vocabulary.context)
         if match is not None and match.meaning.role == "command":
-            return Step(EVENT, one.span, None, seconds, event=self._event(one.first, one.last))
-        return Step(HOLDS, one.span, self._condition(one.first, one.last), seconds)
+            return TestStep(EVENT, one.span, None, seconds, event=self._event(one.first, one.last))
+        return TestStep(HOLDS, one.span, self._condition(one.first, one.last), seconds)
 
     def _condition(self, first: int, last: int, *, is_denied: bool = False) -> Tree:
         """A condition in these words, or its negation. Raises MissionError."""
@@ -111,7 +111,7 @@ class Pieces:
                 span = node.span or self._text.span(first, last)
                 reason = "is for the robot; a test changes only the world around it"
                 raise MissionError(
-                    [moved(diagnostic("BT182", span, words=span.text, reason=reason), self._text.source)]
+                    [move_problem(diagnostic("BT182", span, words=span.text, reason=reason), self._text.source)]
                 )
         return tree
 
@@ -128,9 +128,9 @@ class Pieces:
             read = read_mission(source, self._vocabulary, known=self._known)
             return compile_mission(read.mission, self._vocabulary)
         except MissionError as error:
-            raise MissionError([moved(problem, whole, part) for problem in error.diagnostics]) from None
+            raise MissionError([move_problem(problem, whole, part) for problem in error.diagnostics]) from None
 
-    def _fakes(self, one: Statement) -> list[Fake]:
+    def _fakes(self, one: TestStatement) -> list[Fake]:
         """`"grasp" fails twice, then succeeds`: each part stands in for the command after the one before it."""
         words = self._text.words[one.first : one.last]
         name = words[0][1:]
@@ -152,7 +152,7 @@ class Pieces:
             raise self._unread_fake(one)
         return found
 
-    def _outcome(self, one: Statement, at: int) -> tuple[bool, float, int]:
+    def _outcome(self, one: TestStatement, at: int) -> tuple[bool, float, int]:
         word, following = self._text.words[at], self._text.words[at + 1]
         if word == "is" and following in ("true", "false"):
             return following == "true", 0.0, at + 2
@@ -166,7 +166,7 @@ class Pieces:
             return word != "fails", found[0], found[2]
         return word == "succeeds", 0.0, at + 1
 
-    def _times(self, one: Statement, at: int) -> tuple[int, int]:
+    def _times(self, one: TestStatement, at: int) -> tuple[int, int]:
         word = self._text.words[at]
         if at >= one.last or word in (",", "then", "and"):
             return 0, at
@@ -177,7 +177,7 @@ class Pieces:
             raise self._unread_fake(one)
         return int(number[0]), number[1] + 1
 
-    def _unread_fake(self, one: Statement) -> MissionError:
+    def _unread_fake(self, one: TestStatement) -> MissionError:
         return MissionError(
             [diagnostic("BT180", one.span, words=one.span.text, wanted='"grasp the cup" fails twice, then succeeds')]
         )
@@ -187,7 +187,7 @@ class Pieces:
         return MissionError([diagnostic("BT182", span, words=words, reason=reason)])
 
 
-def moved(problem: Diagnostic, source: Source, part: Span | None = None) -> Diagnostic:
+def move_problem(problem: Diagnostic, source: Source, part: Span | None = None) -> Diagnostic:
     """A problem with a part of a text that was read by itself, with its places in the whole text."""
 
     def place(span: Span) -> Span:

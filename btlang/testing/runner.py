@@ -29,12 +29,12 @@ from btlang.testing.test import (
     FOR,
     HOLDS,
     NEVER,
-    Command,
     Fakes,
     MissionTest,
-    Step,
-    faked,
+    TestedCommand,
+    TestStep,
     find_command,
+    make_fake,
 )
 from btlang.text.source import Span
 from btlang.tree.node import Node, Tree
@@ -57,7 +57,7 @@ _EXACT = 1e-9  # seconds
 class Broken(Record):
     """A line that did not hold, when, and why, and the commands that were under way."""
 
-    step: Step
+    step: TestStep
     seconds: float
     reason: str
     doing: tuple[Node, ...] = ()
@@ -87,7 +87,7 @@ class Script:
         self._since = 0.0
         self._unmet = ""  # why the line that is waited for does not hold
         for tree in test.setup:
-            self._happen(Step(EVENT, test.span, event=tree), 0.0)
+            self._happen(TestStep(EVENT, test.span, event=tree), 0.0)
 
     @property
     def is_done(self) -> bool:
@@ -117,7 +117,7 @@ class Script:
         while self._at < len(self._steps) and self.broken is None and self._deal(self._steps[self._at], now):
             self._at += 1
 
-    def _deal(self, step: Step, now: float) -> bool:
+    def _deal(self, step: TestStep, now: float) -> bool:
         """Whether the line is over, and the next one begins."""
         passed = now - self._since
         due = passed >= step.seconds - _EXACT
@@ -151,23 +151,23 @@ class Script:
             if self._at >= begins and self.broken is None:
                 self._expect(step, now)
 
-    def _expect(self, step: Step, now: float) -> None:
+    def _expect(self, step: TestStep, now: float) -> None:
         assert step.condition is not None
         reason = self._ask(step.condition)
         if reason:
             self._break(step, now, reason)
 
-    def _happen(self, step: Step, now: float) -> None:
+    def _happen(self, step: TestStep, now: float) -> None:
         assert step.event is not None
         reason = self._ask(step.event)
         if reason:
             self._break(step, now, reason)
 
-    def _break(self, step: Step, now: float, reason: str) -> None:
+    def _break(self, step: TestStep, now: float, reason: str) -> None:
         self.broken = Broken(step, now, reason, tuple(self._observed.running.values()))
 
 
-def _before(watch: Step, steps: tuple[Step, ...]) -> int:
+def _before(watch: TestStep, steps: tuple[TestStep, ...]) -> int:
     """How many lines of the script a line that always holds stands behind."""
     before = steps[: next(at for at, step in enumerate(steps) if step is watch)]
     return sum(step.kind not in (ALWAYS, NEVER, FINALLY) for step in before)
@@ -240,7 +240,7 @@ class _Connect(Record):
 
         def bound(entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
             own: LeafBinding | None = bind(entry, vocabulary)
-            return faked(own, entry, vocabulary, fakes, connection.bus.clock) if fakes.has(entry.id) else own
+            return make_fake(own, entry, vocabulary, fakes, connection.bus.clock) if fakes.has(entry.id) else own
 
         connection.bind = bound
         return connection  # type: ignore[no-any-return]
@@ -316,7 +316,7 @@ def _executed(run: Run, controls: Controls) -> Outcome:
     return outcome
 
 
-def _commands(test: MissionTest) -> dict[str, Command]:
+def _commands(test: MissionTest) -> dict[str, TestedCommand]:
     found = ((text, find_command(text, test.mission)) for text in test.texts)
     return {text: command for text, command in found if command is not None}
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from btlang.vocabulary.entry import Entry
 
 
-class Command(Record):
+class TestedCommand(Record):
     """Nodes of a mission: those with one of these ids and, where the words say them, these values of ports.
 
     With `is_denied` the words say the opposite of a condition: `nobody is near`.
@@ -41,7 +41,7 @@ class Command(Record):
         return node.id in self.ids and all(node.port(name) == text for name, text in self.ports)
 
 
-def find_command(text: str, mission: Mission) -> Command | None:
+def find_command(text: str, mission: Mission) -> TestedCommand | None:
     """What the words name: a definition of the mission, a whole command, or the first words of commands.
 
     None where the mission has no such command.
@@ -54,16 +54,16 @@ def find_command(text: str, mission: Mission) -> Command | None:
     name = " ".join(wanted)
     for known, _ in mission.tree.subtrees:
         if known.lower() == name:
-            return Command(frozenset((SUBTREE,)), (("ID", known),))
+            return TestedCommand(frozenset((SUBTREE,)), (("ID", known),))
     match = longest(vocabulary.trie, words, 0, vocabulary.context)
     if match is not None and match.last == len(wanted) and match.meaning.entry is not None:
         ports = tuple((value.name, value.text) for value in match.values)
         is_denied = match.meaning.role == "negated"
-        return _if_there(Command(frozenset((match.meaning.entry.id,)), ports, is_denied), mission)
+        return _if_there(TestedCommand(frozenset((match.meaning.entry.id,)), ports, is_denied), mission)
     entries = [entry for same in vocabulary.entries.values() for entry in same]
     ids = {entry.id for entry in entries if _begins(entry.phrases, wanted, vocabulary.articles)}
     ids |= {id for id in vocabulary.entries if id.lower() == "".join(wanted)}
-    return _if_there(Command(frozenset(ids)), mission)
+    return _if_there(TestedCommand(frozenset(ids)), mission)
 
 
 def _begins(phrases: tuple[str, ...], wanted: list[str], articles: frozenset[str]) -> bool:
@@ -76,7 +76,7 @@ def _begins(phrases: tuple[str, ...], wanted: list[str], articles: frozenset[str
     return False
 
 
-def _if_there(command: Command, mission: Mission) -> Command | None:
+def _if_there(command: TestedCommand, mission: Mission) -> TestedCommand | None:
     """The values that the mission takes from its blackboard are only known while it runs."""
     for node in mission.tree.walk():
         ports = tuple((name, text) for name, text in command.ports if not node.port(name).startswith("{"))
@@ -92,7 +92,7 @@ class Fake(Record):
     """`succeeds` after `seconds`, or fails, `times` times (0: always); then comes the next fake, or the command."""
 
     words: str
-    command: Command
+    command: TestedCommand
     succeeds: bool
     seconds: float = 0.0
     times: int = 0
@@ -129,7 +129,7 @@ def _is_same(value: Any, text: str) -> bool:
     return str(value) == text
 
 
-def faked(own: LeafBinding | None, entry: Entry, vocabulary: Lexicon, fakes: Fakes, clock: Clock) -> LeafBinding:
+def make_fake(own: LeafBinding | None, entry: Entry, vocabulary: Lexicon, fakes: Fakes, clock: Clock) -> LeafBinding:
     """How a leaf is bound that fakes may stand in for. It takes the ports of the real one, which need not exist: the
     robot's `own`, or that of its `call`.
     """
@@ -238,7 +238,7 @@ EVENT, HOLDS, WITHIN, FOR, BEFORE, ALWAYS, NEVER, FINALLY = (
 )  # fmt: skip
 
 
-class Step(Record):
+class TestStep(Record):
     """A line of a test behind `run`; times count from the end of the step before it.
 
     `EVENT`: after `seconds`, and once `condition` is true, `event` happens in the world. `HOLDS`: after `seconds` the
@@ -269,7 +269,7 @@ class MissionTest(Record):
     vocabulary: Lexicon
     setup: tuple[Tree, ...] = ()
     fakes: tuple[Fake, ...] = ()
-    steps: tuple[Step, ...] = ()
+    steps: tuple[TestStep, ...] = ()
     texts: tuple[str, ...] = ()
     limit: float = USUAL_LIMIT
     is_cut: bool = True

@@ -23,9 +23,9 @@ from btlang.printer.layout import laid_out
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.robots.registry import body_of
 from btlang.support.record import Record
-from btlang.task.execution.missions import house_rules
-from btlang.testing.pieces import Pieces, moved
-from btlang.testing.statements import Statement, statements_of
+from btlang.task.execution.missions import read_house_rules
+from btlang.testing.pieces import MissionEnglish, move_problem
+from btlang.testing.statements import TestStatement, statements_of
 from btlang.testing.test import MissionTest
 from btlang.text.source import Source, Span
 from btlang.text.words import Line, Words, split
@@ -53,7 +53,7 @@ def read_tests(source: Source, given: Given = lambda name, world: None) -> tuple
     found: list[MissionTest] = []
     for block in _blocks(text, problems):
         try:
-            found.append(_Reader(text, block, vocabulary, given).test())
+            found.append(_TestFileReader(text, block, vocabulary, given).test())
         except MissionError as error:
             problems += error.diagnostics
     if not found and not problems:
@@ -100,7 +100,7 @@ def _problem(code: str, span: Span, reason: str, example: str) -> Diagnostic:
     return diagnostic(code, span, reason=reason, example=example)
 
 
-class _Reader:
+class _TestFileReader:
     """Reads one test: first its mission, whose words its other lines use."""
 
     def __init__(self, text: Words, block: _Block, vocabulary: Lexicon, given: Given) -> None:
@@ -122,16 +122,16 @@ class _Reader:
         try:
             mission = self._mission(runs[0])
             if rules := self._named_file("rules"):
-                mission = house_rules(self._parsed(read_source(rules, _root(self._source)))).around(mission)
+                mission = read_house_rules(self._parsed(read_source(rules, _root(self._source)))).around(mission)
         except MissionError as error:  # the other lines need its words
-            moved_problems = [moved(problem, self._source) for problem in error.diagnostics]
+            moved_problems = [move_problem(problem, self._source) for problem in error.diagnostics]
             raise MissionError([*self._problems, *moved_problems]) from None
         keywords = list(self._robot_words)
         if mission.syntax is not None:
             needed = [path for role, path in mission.syntax.needs if role == NEEDED_WORDS]
             keywords += [included_path(path, mission.syntax.span.source)[0] for path in needed]
         vocabulary = world_vocabulary([*keywords, WORDS], mission.world)
-        pieces = Pieces(self._text, vocabulary, mission)
+        pieces = MissionEnglish(self._text, vocabulary, mission)
         at_run = self._statements.index(runs[0])
         for number, one in enumerate(self._statements):
             try:
@@ -145,7 +145,7 @@ class _Reader:
             tuple(pieces.steps), tuple(pieces.texts), *pieces.limit(runs[0]), self._robot,
         )  # fmt: skip
 
-    def _mission(self, run: Statement) -> Mission:
+    def _mission(self, run: TestStatement) -> Mission:
         world = self._named_file("world") or None
         self._robot = self._named_file("robot")
         if self._robot:

@@ -16,7 +16,7 @@ from btlang.cli import main
 from btlang.server.http.access import AccessError
 from btlang.server.page.recordings import list_recordings, path_of
 from btlang.task.layer import TaskLayer
-from btlang.task.store.records import State
+from btlang.task.store.records import TaskState
 from tests.server.doors import Door, robot_in
 from tests.task.layers import submit, wait_for
 
@@ -39,7 +39,7 @@ def robot() -> Iterator[TaskLayer]:
 def names(door: Door, robot: TaskLayer) -> list[str]:
     """The recordings of a run and of one that failed, of one mission."""
     for _ in range(2):
-        wait_for(robot, submit(robot, TEXT), State.COMPLETED, State.FAILED)
+        wait_for(robot, submit(robot, TEXT), TaskState.COMPLETED, TaskState.FAILED)
     return list(reversed([each["name"] for each in recordings(door)]))
 
 

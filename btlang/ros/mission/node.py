@@ -17,12 +17,12 @@ from btlang.ros.mission.services import create_services
 from btlang.ros.mission.setup import Setup
 from btlang.ros.mission.topics import ERROR, OK, WARN, Topics
 from btlang.ros.mission.tree_topic import TreeTopic
-from btlang.run.lines import Lines
+from btlang.run.lines import PlainLines
 from btlang.task import messages
 from btlang.task.execution.emergency import shut_latch
-from btlang.task.live.feed import Follower
+from btlang.task.live.feed import TaskFollower
 from btlang.task.messages import Answer, Command
-from btlang.task.store.records import ACTIVE, FINAL, WAITING, Change, MissionText, State, Task
+from btlang.task.store.records import ACTIVE, FINAL, WAITING, MissionText, Task, TaskChange, TaskState
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         super().__init__(name, **options)
         self._setup, self._down = setup, down
         self._layer: TaskLayer | None = None
-        self._follower: Follower | None = None
+        self._follower: TaskFollower | None = None
         self._mission: MissionText | None = None
         self._latest: Report | None = None
         self._seconds: dict[int, float] = {}
@@ -82,7 +82,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             self._topics.complain(str(error))
             return _FAILURE
         self._end_tasks(WAITING, "its node ended before it did")
-        self._follower = Follower(self._layer.store, self._changed, self._topics.complain)
+        self._follower = TaskFollower(self._layer.store, self._changed, self._topics.complain)
         self._topics.tasks(self.answer(messages.List(limit=_MOST)))
         return _SUCCESS
 
@@ -177,7 +177,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         if self._layer is not None:
             yield from self._layer.feed.watch(*wanted)
 
-    def _end_tasks(self, states: frozenset[State], reason: str) -> None:
+    def _end_tasks(self, states: frozenset[TaskState], reason: str) -> None:
         """Those that don't outlive the node's work: of goals, and its own."""
         assert self._layer is not None
         for label in (LABEL, _OWN):
@@ -203,11 +203,11 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             self._topics.status(news)
 
         return [
-            Lines(mission.label, mission.is_action, self._topics.log),
+            PlainLines(mission.label, mission.is_action, self._topics.log),
             Progress(run.snapshot, changed, reached),
         ]
 
-    def _changed(self, changes: Sequence[Change]) -> None:
+    def _changed(self, changes: Sequence[TaskChange]) -> None:
         """In the thread of the follower."""
         layer = self._layer
         if layer is None:

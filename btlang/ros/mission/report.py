@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from btlang.support.record import Record
 from btlang.task.execution.executor import NOTHING_TO_DO
-from btlang.task.store.records import State, Task
+from btlang.task.store.records import Task, TaskState
 
-_OUTCOMES = {State.COMPLETED: "success", State.FAILED: "failure", State.ERROR: "failure"}
+_OUTCOMES = {TaskState.COMPLETED: "success", TaskState.FAILED: "failure", TaskState.ERROR: "failure"}
 _PHRASES = {"success": "succeeded", "failure": "failed", "skipped": "had nothing to do", "stopped": "was stopped"}
 
 
@@ -29,6 +29,6 @@ class Report(Record):
 
 def report_of(task: Task, seconds: float) -> Report:
     """Of a task that is over."""
-    if task.state is State.COMPLETED and task.reason == NOTHING_TO_DO:
+    if task.state is TaskState.COMPLETED and task.reason == NOTHING_TO_DO:
         return Report("skipped", "", seconds)
     return Report(_OUTCOMES.get(task.state, "stopped"), task.reason, seconds)

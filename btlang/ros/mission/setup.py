@@ -8,7 +8,7 @@ from btlang.diagnostics.reading import read_included
 from btlang.robots.registry import connector
 from btlang.support.record import Record
 from btlang.task.execution.missions import MissionReader
-from btlang.task.layer import TaskLayer, furnished_layer
+from btlang.task.layer import TaskLayer, make_robot_layer
 from btlang.task.store.records import MissionText
 from btlang.vocabulary.shipped import ENGLISH
 
@@ -59,7 +59,7 @@ class Setup(Record):
         """The robot, with further arguments for its TaskLayer. Raises MissionError."""
         named = {"sim_time": self.sim_time, "namespace": self.namespace, "name": f"{self.name}_robot"}
         robot = connector(self.robot, self.over, **named)
-        return furnished_layer(robot, reader, speed=self.speed, **self.layer, **options)
+        return make_robot_layer(robot, reader, speed=self.speed, **self.layer, **options)
 
 
 def robot_name(namespace: str, name: str) -> str:

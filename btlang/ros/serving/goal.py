@@ -11,7 +11,7 @@ from btlang.engine.status import RUNNING, SUCCESS
 from btlang.printer.phrase import phrase_of
 from btlang.robots.proxy import RobotProxy
 from btlang.ros.serving.names import WORD
-from btlang.run.runner import traced_engine
+from btlang.run.runner import trace_engine
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
@@ -68,7 +68,7 @@ class Goal:
         """Begins with the next `tick`. It is over where the leaf cannot run."""
         connection, vocabulary = self._connection, self._vocabulary
         try:
-            self.engine = traced_engine(
+            self.engine = trace_engine(
                 Tree(self._node),
                 lambda node_id: bind_leaf(node_id, vocabulary, connection.bind),
                 bus=connection.bus,

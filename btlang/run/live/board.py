@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 
 from btlang.engine.compile import outline
 from btlang.run.events import PeriodPassed
-from btlang.run.lines import Lines
+from btlang.run.lines import PlainLines
 from btlang.run.live import frame
 from btlang.run.live.selection import LEAST_HEIGHT
-from btlang.run.snapshot import Shape, State
+from btlang.run.snapshot import RunState, Shape
 from btlang.text.escaping import one_line
 
 TYPE_CHECKING = False
@@ -58,13 +58,13 @@ class Board:
         nodes, parents = outline(mission.tree)
         span = mission.tree.root.span
         self.changes = 0
-        self.state = State(Shape(parents), nodes)
+        self.state = RunState(Shape(parents), nodes)
         self._title = one_line(os.path.basename(span.source.name)) if span is not None else "mission"
         self.signs = signs
-        self._words = frame.Words(nodes, mission.label)
+        self._words = frame.ViewWords(nodes, mission.label)
         self._above: list[str] = []
-        self._lines: Callable[[Event], None] = Lines(mission.label, mission.is_action, self._above.append)
-        self._waiting: deque[Event | str | State] = deque(maxlen=_MOST_WAITING)
+        self._lines: Callable[[Event], None] = PlainLines(mission.label, mission.is_action, self._above.append)
+        self._waiting: deque[Event | str | RunState] = deque(maxlen=_MOST_WAITING)
         self._noted = self._taken = self._lost = 0  # events
         self._period: PeriodPassed | None = None
         self._begun = False
@@ -80,7 +80,7 @@ class Board:
             self._noted += 1
         self.changes += 1
 
-    def jump(self, state: State) -> None:
+    def jump(self, state: RunState) -> None:
         """The run goes on from another state; what has been noted before is still written."""
         self._waiting.append(state)
         self._noted += 1
@@ -150,11 +150,11 @@ class Board:
     def _map_size(self, width: int, height: int) -> tuple[int, int]:
         return self.map.size(width, height) if self.map is not None and not self.hides_map else (0, 0)
 
-    def _take(self, event: Event | str | State) -> None:
+    def _take(self, event: Event | str | RunState) -> None:
         if isinstance(event, str):
             self._above.append(event)
             return
-        if isinstance(event, State):
+        if isinstance(event, RunState):
             self._above.append(f"         ({event.now:.1f} s)")
             self.state, self._period = event, None
             return

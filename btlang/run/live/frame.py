@@ -12,7 +12,7 @@ from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.run.live.selection import LEAST_HEIGHT, Row, choose_rows
 from btlang.run.pace import are_many
 from btlang.run.robot_state import RobotState
-from btlang.run.snapshot import HALTED, SUSPENDED, State
+from btlang.run.snapshot import HALTED, SUSPENDED, RunState
 from btlang.support.record import Record
 from btlang.text.escaping import one_line
 from btlang.tree.catalogue import CATALOGUE
@@ -49,7 +49,7 @@ UNICODE = Signs("✗✓▶–·■‖", ("├── ", "└── ", "│   "), 
 ASCII = Signs("x+>-.!=", ("|-- ", "`-- ", "|   "), "...", " - ")
 
 
-class Words:
+class ViewWords:
     """The words for the nodes of a tree, each looked up once: id or command, and the sentence of what has children."""
 
     def __init__(self, nodes: Sequence[Node], label: Callable[[Node], str], parents: Sequence[int] = ()) -> None:
@@ -88,13 +88,13 @@ def _heads_a_block(node: Node, line: str) -> bool:
     return line.endswith(":") and not (inner is not None and outer is not None and inner.start == outer.start)
 
 
-def header(title: str, state: State, doing: str, signs: Signs) -> Line:
+def header(title: str, state: RunState, doing: str, signs: Signs) -> Line:
     """Mission file, time, and what the run is doing."""
     style = {"running": "bold cyan", "paused": "bold yellow", "emergency stop": "bold red"}.get(doing, "bold")
     return ((title, "bold"), (f"{signs.apart}{state.now:.1f} s{signs.apart}", "dim"), (doing, style))
 
 
-def tree_lines(state: State, words: Words, height: int, width: int, over: bool, signs: Signs) -> list[Line]:
+def tree_lines(state: RunState, words: ViewWords, height: int, width: int, over: bool, signs: Signs) -> list[Line]:
     """At most `height` lines, but at least 3, none wider than `width`. `over` says that the run has ended."""
     rows = choose_rows(state.shape, state.statuses, max(height, LEAST_HEIGHT))
     step = 4 if min(state.shape.depth, height) * 4 <= width // 2 else 2  # the same throughout a run
@@ -107,7 +107,7 @@ def tree_lines(state: State, words: Words, height: int, width: int, over: bool, 
             head = signs.more + head[len(head) - width // 2 + len(signs.more) :]
         if row.node < 0:
             counts = f"{signs.more} " + ", ".join(f"{count} {kind}" for kind, count in row.left_out)
-            lines.append(((head, "dim"), (fitted(counts, width - len(head), signs), "dim italic")))
+            lines.append(((head, "dim"), (fit_text(counts, width - len(head), signs), "dim italic")))
             continue
         sentence = words.of(row.node)[1]
         shown = sentence if sentence not in sentences else ""
@@ -127,7 +127,7 @@ def side_by_side(left: Sequence[Line], right: Sequence[Line], column: int) -> li
     return lines
 
 
-def robot_line(state: State, signs: Signs) -> Line:
+def robot_line(state: RunState, signs: Signs) -> Line:
     """Pose, battery, what it holds, its last words."""
     robot = state.robot or RobotState()
     parts: list[str] = []
@@ -144,7 +144,7 @@ def robot_line(state: State, signs: Signs) -> Line:
     return (("robot ", "dim"), (signs.apart.join(parts) or "-", ""))
 
 
-def counts_line(state: State, signs: Signs) -> Line:
+def counts_line(state: RunState, signs: Signs) -> Line:
     """Ticks, and overruns if there are many."""
     ticks = (("ticks ", "dim"), (str(state.ticks), ""))
     if not are_many(state.overruns, state.ticks):
@@ -176,12 +176,12 @@ def keys_line(paused: bool, keys: Sequence[tuple[str, str]], signs: Signs) -> Li
 def prompt_line(question: str, typed: str, width: int, signs: Signs) -> Line:
     """What the robot asks, and the answer so far."""
     answer = f" {typed}_"
-    asked = fitted(one_line(question), max(8, width - len(answer) - 1), signs)
+    asked = fit_text(one_line(question), max(8, width - len(answer) - 1), signs)
     return ((asked, "bold yellow"), (answer[-width:], "bold"))
 
 
 def _node(
-    state: State, words: Words, row: Row, sentence: str, width: int, over: bool, signs: Signs
+    state: RunState, words: ViewWords, row: Row, sentence: str, width: int, over: bool, signs: Signs
 ) -> list[tuple[str, str]]:
     node = row.node
     status = state.statuses[node]
@@ -191,9 +191,9 @@ def _node(
     end = _seconds(state, node, status) + (f"  ({row.inside} node{'s' * (row.inside > 1)})" if row.inside else "")
     note, note_style = _note(state, row, words, status)
     room = width - 2 - cell_len(end) - min(cell_len(note), width // 2)
-    name = fitted(name, room, signs)
-    sentence = fitted(f"  {sentence}", room - cell_len(name), signs) if sentence else ""
-    note = fitted(note, width - 2 - cell_len(name + sentence + end), signs)
+    name = fit_text(name, room, signs)
+    sentence = fit_text(f"  {sentence}", room - cell_len(name), signs) if sentence else ""
+    note = fit_text(note, width - 2 - cell_len(name + sentence + end), signs)
     is_answer = status == FAILURE and words.asked[node]
     styles = ("dim", "dim") if is_answer else (_STYLES[status], _LABELS.get(status, ""))
     pieces = [(signs.statuses[status] + " ", styles[0]), (name, styles[1])]
@@ -201,7 +201,7 @@ def _node(
     return pieces
 
 
-def _note(state: State, row: Row, words: Words, status: int) -> tuple[str, str]:
+def _note(state: RunState, row: Row, words: ViewWords, status: int) -> tuple[str, str]:
     """What is to be said of the end of a node, with its style."""
     if status == FAILURE:
         reason = one_line(_reason(state, row, words))
@@ -210,7 +210,7 @@ def _note(state: State, row: Row, words: Words, status: int) -> tuple[str, str]:
     return ("  halted" if status == HALTED and is_leaf else ""), "yellow"
 
 
-def _seconds(state: State, node: int, status: int) -> str:
+def _seconds(state: RunState, node: int, status: int) -> str:
     """The time in a status that lasts, or the time that the node took."""
     began = state.started.get(node)
     if began is None or status in (IDLE, SKIPPED):
@@ -219,7 +219,7 @@ def _seconds(state: State, node: int, status: int) -> str:
     return f"  {until - began:.1f} s" if status == RUNNING or until > began else ""
 
 
-def _reason(state: State, row: Row, words: Words) -> str:
+def _reason(state: RunState, row: Row, words: ViewWords) -> str:
     """Why a node failed; where it is folded up, which leaf in it failed and why."""
     node, shape = row.node, state.shape
     while row.inside and (failed := [child for child in shape.children(node) if state.statuses[child] == FAILURE]):
@@ -249,7 +249,7 @@ def _heads(depths: list[int], step: int, signs: Signs) -> list[str]:
     return heads
 
 
-def fitted(text: str, width: int, signs: Signs) -> str:
+def fit_text(text: str, width: int, signs: Signs) -> str:
     """The text, its end replaced by an ellipsis where it is wider."""
     if cell_len(text) <= width:
         return text

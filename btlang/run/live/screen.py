@@ -71,7 +71,7 @@ class Capture(io.TextIOBase):
 
 
 @contextmanager
-def captured(output: TextIO, line: Callable[[str], object]) -> Iterator[None]:
+def capture_output(output: TextIO, line: Callable[[str], object]) -> Iterator[None]:
     """Standard output, and standard error where it is a terminal, go to `line`; `output` is the real output."""
     out, err = sys.stdout, sys.stderr
     captures = [Capture(output, line)]
@@ -94,7 +94,7 @@ _ERASE_LINE, _ERASE_BELOW = "\x1b[K", "\x1b[J"
 _CONTROL = re.compile("\x1b\\[[0-9;]*m")
 
 
-class Screen:
+class LiveScreen:
     """Draws frames at the end of what a terminal shows. Lines that did not change are not written again.
 
     Not by rich.live, which erases every line before it writes the frame: measured at 120 x 50, two of five reads of the

@@ -10,7 +10,7 @@ from btlang.run.snapshot import HALTED, SUSPENDED, Shape
 from btlang.support.record import Record
 
 
-def hidden_from(shape: Shape, before: int, following: int) -> int:
+def first_visible(shape: Shape, before: int, following: int) -> int:
     """The first node that needs a row of its own; what is below a folded node needs none."""
     if before < 0:
         return 0
@@ -18,7 +18,7 @@ def hidden_from(shape: Shape, before: int, following: int) -> int:
     return end if end <= following else before + 1
 
 
-class Choice:
+class NodeChoice:
     """Nodes that are shown, in preorder; it never needs more rows than there are."""
 
     def __init__(self, shape: Shape, height: int) -> None:
@@ -67,7 +67,7 @@ class Choice:
         nodes: list[int] = []
         before = -1
         for following in (*self.nodes, len(self._shape)):
-            start = hidden_from(self._shape, before, following)
+            start = first_visible(self._shape, before, following)
             if start < following and (self._shape.ends[start] == following or start + 1 == following):
                 nodes.append(start)
             nodes.append(following)
@@ -76,7 +76,7 @@ class Choice:
 
     def _gap(self, before: int, following: int) -> int:
         """The rows for what is left out between two nodes that are shown: 1 or 0."""
-        return int(hidden_from(self._shape, before, following) < following)
+        return int(first_visible(self._shape, before, following) < following)
 
 
 LEAST_HEIGHT = 3
@@ -108,7 +108,7 @@ def choose_rows(shape: Shape, statuses: bytearray, height: int) -> list[Row]:
     """
     if len(shape) <= height:
         return _rows(shape, statuses, range(len(shape)))
-    choice = Choice(shape, height)
+    choice = NodeChoice(shape, height)
     tips = focus(shape, statuses, height)
     for node in (*tips[:1], 0, *tips[1:]):
         choice.add(node)
@@ -158,7 +158,7 @@ def _upward(shape: Shape, tips: Sequence[int], most: int) -> Iterator[int]:
         yield from nodes
 
 
-def _around(shape: Shape, choice: Choice) -> Iterator[int]:
+def _around(shape: Shape, choice: NodeChoice) -> Iterator[int]:
     """The siblings of what is shown, nearer ones first, where their parent is shown."""
     rings = [(node, node) for node in reversed(choice.nodes) if node and shape.parents[node] in choice]
     while rings:
@@ -175,7 +175,7 @@ def _around(shape: Shape, choice: Choice) -> Iterator[int]:
         rings = wider
 
 
-def _unfold(shape: Shape, statuses: bytearray, choice: Choice) -> None:
+def _unfold(shape: Shape, statuses: bytearray, choice: NodeChoice) -> None:
     """Opens branches while there is room: failed ones, those to come, the others; at last a part of a long one."""
     order = {FAILURE: 0, IDLE: 1, RUNNING: 1}
     long: list[int] = []
@@ -207,7 +207,7 @@ def _rows(shape: Shape, statuses: bytearray, nodes: Sequence[int]) -> list[Row]:
     rows: list[Row] = []
     around: list[int] = []  # nodes that are shown and that the present place is below
     for at, node in enumerate((*nodes, len(shape))):
-        start = hidden_from(shape, nodes[at - 1] if at else -1, node)
+        start = first_visible(shape, nodes[at - 1] if at else -1, node)
         if start < node:
             _leave(shape, around, start)
             rows.append(Row(-1, len(around), 0, _counts(shape, statuses, start, node)))

@@ -14,7 +14,7 @@ from btlang.run.events import PeriodPassed
 from btlang.run.live import frame
 from btlang.run.live.board import Board
 from btlang.run.live.keys import GONE, Keys
-from btlang.run.live.screen import Screen, captured
+from btlang.run.live.screen import LiveScreen, capture_output
 from btlang.run.live.stopping import stoppable
 from btlang.support.record import Record
 from btlang.text.output import is_unicode
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from btlang.run.controls import Controls
     from btlang.run.events import Event
     from btlang.run.live.board import Map, Viewed
-    from btlang.run.snapshot import State
+    from btlang.run.snapshot import RunState
     from btlang.run.world_input import WorldInput
 
 
@@ -91,7 +91,7 @@ class LiveView:
         self._type_ahead = type_ahead
         self._controls = controls
         self._output = output
-        self._screen = Screen(output, lambda: os.get_terminal_size(output.fileno()))
+        self._screen = LiveScreen(output, lambda: os.get_terminal_size(output.fileno()))
         own = [ViewKey("m", _MAP, {"m": self._hide_map}), ViewKey("?", "legend", {"?": self._explain})]
         used = [*(usual_keys(controls) if keys is None else keys), *own]
         self._shown_keys = [(key.shown, key.does) for key in used]
@@ -128,7 +128,7 @@ class LiveView:
         if isinstance(event, PeriodPassed) and time.monotonic() >= self._due:
             self._wake.set()
 
-    def jump(self, state: State) -> None:
+    def jump(self, state: RunState) -> None:
         """The run goes on from another state."""
         self._board.jump(state)
         self._wake.set()
@@ -143,7 +143,7 @@ class LiveView:
             exits.callback(self._finish)
             exits.callback(sys.setswitchinterval, sys.getswitchinterval())
             sys.setswitchinterval(_SWITCH)
-            exits.enter_context(captured(self._output, self._board.note))
+            exits.enter_context(capture_output(self._output, self._board.note))
             exits.enter_context(stoppable(self._leave, self._come_back))
             self._thread.start()
             self._exits = exits.pop_all()

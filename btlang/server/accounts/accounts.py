@@ -12,7 +12,7 @@ from enum import StrEnum
 
 from btlang.support.record import Record
 from btlang.task import messages
-from btlang.task.commands.checks import refused
+from btlang.task.commands.checks import refusal_error
 from btlang.task.messages import Command
 from btlang.task.store.backup import fill_from_backup, write_backup
 from btlang.task.store.database import Mode, StoreError, store_error
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     R = TypeVar("R", bound=Record)
 
 
-class Role(StrEnum):
+class UserRole(StrEnum):
     """Each may do what those before it may."""
 
     VIEWER = "viewer"
@@ -35,9 +35,9 @@ class Role(StrEnum):
     EDITOR = "editor"
     ADMINISTRATOR = "administrator"
 
-    def covers(self, other: Role) -> bool:
+    def covers(self, other: UserRole) -> bool:
         """Whether it may do what the other one may."""
-        order = list(Role)
+        order = list(UserRole)
         return order.index(self) >= order.index(other)
 
 
@@ -55,11 +55,11 @@ _OPERATOR = (
 _EDITOR = (messages.Put, messages.Delete)
 _ADMINISTRATOR = (messages.Down, messages.ChangeComponent)
 
-NEEDED: dict[type[Command], Role] = {
-    **dict.fromkeys(_VIEWER, Role.VIEWER),
-    **dict.fromkeys(_OPERATOR, Role.OPERATOR),
-    **dict.fromkeys(_EDITOR, Role.EDITOR),
-    **dict.fromkeys(_ADMINISTRATOR, Role.ADMINISTRATOR),
+NEEDED: dict[type[Command], UserRole] = {
+    **dict.fromkeys(_VIEWER, UserRole.VIEWER),
+    **dict.fromkeys(_OPERATOR, UserRole.OPERATOR),
+    **dict.fromkeys(_EDITOR, UserRole.EDITOR),
+    **dict.fromkeys(_ADMINISTRATOR, UserRole.ADMINISTRATOR),
 }
 """The least role for each command. Everybody who is logged in may stop the robot; to let it move is another act."""
 
@@ -104,7 +104,7 @@ class User(Record):
     """`password` is a hash. `created` is in seconds since 1970."""
 
     name: str
-    role: Role
+    role: UserRole
     password: str
     created: float
 
@@ -119,7 +119,7 @@ class Login(Record):
     used: float
 
 
-class Token(Record):
+class AccessToken(Record):
     """Lets a program in. `id` is the hash of what it sends, `used` when it did so last."""
 
     id: str
@@ -129,7 +129,7 @@ class Token(Record):
     used: float | None = None
 
 
-class Entry(Record):
+class TrailEntry(Record):
     """What somebody did or tried."""
 
     time: float
@@ -143,7 +143,7 @@ class Identity(Record):
     """Who asks: `id` is that of a session or token, which ends when it is revoked."""
 
     user: str
-    role: Role
+    role: UserRole
     id: str
     is_session: bool
 
@@ -178,12 +178,12 @@ class Accounts:
         """None if there is no such user."""
         return self._one(User, "user", "name = ?", name)
 
-    def add(self, name: str, role: Role, password: str) -> User:
+    def add(self, name: str, role: UserRole, password: str) -> User:
         """A new user with the hash of a password. Raises MissionError (BT187) if there is one of that name."""
         added = User(name, role, password, self._clock())
         with self.database.transaction(Mode.ALONE) as execute:
             if execute("SELECT 1 FROM user WHERE name = ?", (name,)):
-                raise refused(f"The user '{name}'", "exists already")
+                raise refusal_error(f"The user '{name}'", "exists already")
             insert(execute, "user", added)
         return added
 
@@ -192,9 +192,9 @@ class Accounts:
         self._change(name, "UPDATE user SET password = ? WHERE name = ? RETURNING name", password)
         self.log_out(name)
 
-    def set_role(self, name: str, role: Role) -> None:
+    def set_role(self, name: str, role: UserRole) -> None:
         """Raises MissionError (BT187), also for the last administrator."""
-        if role is not Role.ADMINISTRATOR:
+        if role is not UserRole.ADMINISTRATOR:
             self._keep_an_administrator(name)
         self._change(name, "UPDATE user SET role = ? WHERE name = ? RETURNING name", role.value)
         self._changed()
@@ -212,7 +212,7 @@ class Accounts:
         secret, now = secrets.token_urlsafe(32), self._clock()
         with self.database.transaction() as execute:
             execute("DELETE FROM session WHERE used < ? OR created < ?", (now - IDLE, now - LONGEST))
-            insert(execute, "session", Login(secret_hash(secret), user, address, now, now))
+            insert(execute, "session", Login(hash_secret(secret), user, address, now, now))
         return secret
 
     def log_out(self, user: str, id: str = "") -> None:
@@ -224,30 +224,30 @@ class Accounts:
     def add_token(self, user: str, name: str) -> str:
         """Makes a token; returns what a program sends. Raises MissionError (BT187): no such user, or a name in use."""
         if self.user(user) is None:
-            raise refused(f"The user '{user}'", "isn't known")
+            raise refusal_error(f"The user '{user}'", "isn't known")
         secret = _TOKEN + secrets.token_urlsafe(32)
         with self.database.transaction(Mode.ALONE) as execute:
             if execute("SELECT 1 FROM token WHERE user = ? AND name = ?", (user, name)):
-                raise refused(f"The token '{name}' of '{user}'", "exists already")
-            insert(execute, "token", Token(secret_hash(secret), name, user, self._clock()))
+                raise refusal_error(f"The token '{name}' of '{user}'", "exists already")
+            insert(execute, "token", AccessToken(hash_secret(secret), name, user, self._clock()))
         return secret
 
-    def tokens(self, user: str) -> list[Token]:
+    def tokens(self, user: str) -> list[AccessToken]:
         """Those of a user, by name."""
-        return self._all(Token, "token", "user = ? ORDER BY name", user)
+        return self._all(AccessToken, "token", "user = ? ORDER BY name", user)
 
     def revoke(self, user: str, name: str) -> None:
         """Ends a token. Raises MissionError (BT187)."""
         with self.database.transaction() as execute:
             if not execute("DELETE FROM token WHERE user = ? AND name = ? RETURNING name", (user, name)):
-                raise refused(f"The token '{name}' of '{user}'", "isn't known")
+                raise refusal_error(f"The token '{name}' of '{user}'", "isn't known")
         self._changed()
 
     def identity(self, secret: str) -> Identity | None:
         """Who brings a secret, of a cookie or of a program; None for nobody."""
-        now, id = self._clock(), secret_hash(secret)
+        now, id = self._clock(), hash_secret(secret)
         if secret.startswith(_TOKEN):
-            token = self._one(Token, "token", "id = ?", id)
+            token = self._one(AccessToken, "token", "id = ?", id)
             if token is None:
                 return None
             if token.used is None or token.used < now - _NOTED:
@@ -270,12 +270,12 @@ class Accounts:
     def log(self, user: str, address: str, what: str, outcome: str) -> None:
         """Adds to the trail, from which the oldest entries go: who tries again and again can't fill the disk."""
         with self.database.transaction() as execute:
-            insert(execute, "entry", Entry(self._clock(), user, address, what, outcome))
+            insert(execute, "entry", TrailEntry(self._clock(), user, address, what, outcome))
             execute("DELETE FROM entry WHERE number <= (SELECT max(number) FROM entry) - ?", (MOST_ENTRIES,))
 
-    def entries(self, limit: int = 100) -> list[Entry]:
+    def entries(self, limit: int = 100) -> list[TrailEntry]:
         """The trail, the newest first."""
-        return self._all(Entry, "entry", "1 = 1 ORDER BY number DESC LIMIT ?", limit)
+        return self._all(TrailEntry, "entry", "1 = 1 ORDER BY number DESC LIMIT ?", limit)
 
     def backup(self, path: str) -> None:
         """Writes all but the sessions into a new SQLite file for its owner alone, as it is at one moment. Raises
@@ -295,14 +295,14 @@ class Accounts:
         return None if user is None else Identity(user.name, user.role, id, is_session)
 
     def _keep_an_administrator(self, name: str) -> None:
-        others = [user for user in self.users() if user.role is Role.ADMINISTRATOR and user.name != name]
+        others = [user for user in self.users() if user.role is UserRole.ADMINISTRATOR and user.name != name]
         if not others and self.user(name) is not None:
-            raise refused(f"The user '{name}'", "is the only administrator")
+            raise refusal_error(f"The user '{name}'", "is the only administrator")
 
     def _change(self, name: str, sql: str, *values: object) -> None:
         with self.database.transaction() as execute:
             if not execute(sql, (*values, name)):
-                raise refused(f"The user '{name}'", "isn't known")
+                raise refusal_error(f"The user '{name}'", "isn't known")
 
     def _note(self, table: str, id: str, now: float) -> None:
         with suppress(StoreError), self.database.transaction() as execute:  # a full disk keeps nobody from the robot
@@ -317,11 +317,11 @@ class Accounts:
             rows = execute(f"SELECT {columns_of(kind)} FROM {table} WHERE {condition}", values)
         try:
             found = [from_row(kind, row) for row in rows]
-            return [each.replace(role=Role(each.role)) if isinstance(each, User) else each for each in found]
+            return [each.replace(role=UserRole(each.role)) if isinstance(each, User) else each for each in found]
         except (ValueError, TypeError) as error:
             raise store_error(self.database.place, f"it's damaged: a {table} can't be read") from error
 
 
-def secret_hash(secret: str) -> str:
+def hash_secret(secret: str) -> str:
     """Fast, since nobody guesses 256 random bits."""
     return hashlib.sha256(secret.encode("utf-8", "surrogatepass")).hexdigest()

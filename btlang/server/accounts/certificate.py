@@ -40,7 +40,7 @@ class Certificate(Record):
     fingerprint: str
 
 
-def own_certificate(folder: str, host: str, now: datetime | None = None) -> Certificate:
+def load_certificate(folder: str, host: str, now: datetime | None = None) -> Certificate:
     """That of a folder: the one that is there, if it is for this host and not about to end. Raises OSError.
 
     The key stays the same when it is renewed, so that whoever pinned it needs nothing new.

@@ -33,10 +33,10 @@ def _hasher() -> PasswordHasher:
 @cache
 def _nobody() -> str:
     """Return the hash of a password that nobody knows."""
-    return hashed(random_password())
+    return hash_password(random_password())
 
 
-def hashed(password: str) -> str:
+def hash_password(password: str) -> str:
     """The hash to keep. Takes some hundredths of a second."""
     return _hasher().hash(password.encode("utf-8", "surrogatepass"))
 

@@ -1,7 +1,7 @@
 """What `btc robot up --join` starts: dials a server elsewhere, and does its commands on a robot of this computer.
 
-`python -m btlang.server.fleet.dialer` reads one line of JSON from standard input, the fields of `Settings`. It ends
-when its standard input does, with the process of the robot, or when the server doesn't know it (exit code 2).
+`python -m btlang.server.fleet.dialer` reads one line of JSON from standard input, the fields of `DialerSettings`. It
+ends when its standard input does, with the process of the robot, or when the server doesn't know it (exit code 2).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from btlang.diagnostics.reading import reason_of
 from btlang.server.accounts.certificate import pin, write_private
 from btlang.server.fleet.fleet import pin_in
 from btlang.server.http.access import AccessError
-from btlang.server.live.robot_connection import STREAM, LocalSockets
+from btlang.server.live.robot_connection import STREAM, LocalConnection
 from btlang.server.page.recordings import list_recordings, piece
 from btlang.support.record import Record
 from btlang.text.escaping import one_line
@@ -41,7 +41,7 @@ _PART = 65_536  # bytes of what happens that are sent at once
 _REFUSED = 2
 
 
-class Settings(Record):
+class DialerSettings(Record):
     """`robot` is the name on this computer, `kept` the path of a file for the key; `code` may be ""."""
 
     robot: str
@@ -62,7 +62,7 @@ class RefusedError(Exception):
     """Trying again won't help; the reason, in words."""
 
 
-def key_for(settings: Settings) -> Key:
+def key_for(settings: DialerSettings) -> Key:
     """The one that was kept, or a new one for a new code, kept before it is used. Raises RefusedError and OSError."""
     known = _kept(settings.kept)
     if known is not None and settings.code in ("", known.code):
@@ -86,9 +86,9 @@ def _kept(path: str) -> Key | None:
 class Dialer:
     """Keeps one connection to a server. `report` gets each change of its state, as a line."""
 
-    def __init__(self, settings: Settings, key: Key, report: Callable[[str], object]) -> None:
+    def __init__(self, settings: DialerSettings, key: Key, report: Callable[[str], object]) -> None:
         self._settings, self._key, self._report = settings, key, report
-        self._sockets = LocalSockets(settings.robot)
+        self._sockets = LocalConnection(settings.robot)
         self._instance = secrets.token_hex(8)
         self._connection: ClientConnection | None = None
         self._answers: dict[str, dict[str, Any] | None] = {}
@@ -228,7 +228,7 @@ def _tls() -> ssl.SSLContext:
 
 def main() -> int:
     """Until standard input ends; returns the exit code if the server doesn't want the robot."""
-    settings = Settings(**json.loads(sys.stdin.readline()))
+    settings = DialerSettings(**json.loads(sys.stdin.readline()))
     threading.Thread(target=_end_with_robot, daemon=True).start()
     try:
         asyncio.run(Dialer(settings, key_for(settings), show).dial())

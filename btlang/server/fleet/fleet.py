@@ -7,9 +7,9 @@ import secrets
 import time
 from collections.abc import Callable
 
-from btlang.server.accounts.accounts import secret_hash
+from btlang.server.accounts.accounts import hash_secret
 from btlang.support.record import Record
-from btlang.task.commands.checks import refused
+from btlang.task.commands.checks import refusal_error
 from btlang.task.store.database import Mode
 from btlang.task.store.rows import columns_of, from_row, insert
 
@@ -51,11 +51,11 @@ class Fleet:
         """Make a code for a robot; `pin` is the server's (accounts/certificate.py). Raises MissionError (BT187)."""
         secret = secrets.token_bytes(_SECRET)
         code = _BEGIN + base64.urlsafe_b64encode(secret + pin).decode()
-        invited = FleetRobot(name, secret_hash(code), self._clock())
+        invited = FleetRobot(name, hash_secret(code), self._clock())
         with self._database.transaction(Mode.ALONE) as execute:
             execute("DELETE FROM robot WHERE name = ? AND key = ''", (name,))  # a code that nobody used
             if execute("SELECT 1 FROM robot WHERE name = ?", (name,)):
-                raise refused(f"The robot '{name}'", "has joined already; revoke it first")
+                raise refusal_error(f"The robot '{name}'", "has joined already; revoke it first")
             insert(execute, "robot", invited)
         self._changed()
         return code
@@ -64,22 +64,22 @@ class Fleet:
         """Its key is good no longer. Raises MissionError (BT187)."""
         with self._database.transaction() as execute:
             if not execute("DELETE FROM robot WHERE name = ? RETURNING name", (name,)):
-                raise refused(f"The robot '{name}'", "isn't known")
+                raise refusal_error(f"The robot '{name}'", "isn't known")
         self._changed()
 
     def admitted(self, key: str, code: str) -> FleetRobot | None:
         """Whose key it is; that of a good code becomes known. None for nobody's. The same again is no second use, since
         the first answer may have been lost.
         """
-        known = self._found("key = ?", secret_hash(key))
+        known = self._found("key = ?", hash_secret(key))
         if known:
             return known[0]
         with self._database.transaction() as execute:
             execute(
                 "UPDATE robot SET key = ? WHERE code = ? AND key = '' AND invited > ?",
-                (secret_hash(key), secret_hash(code), self._clock() - VALID),
+                (hash_secret(key), hash_secret(code), self._clock() - VALID),
             )
-        joined = self._found("key = ?", secret_hash(key))
+        joined = self._found("key = ?", hash_secret(key))
         return joined[0] if joined else None
 
     def saw(self, name: str) -> None:

@@ -23,7 +23,7 @@ from btlang.server.accounts.passwords import Throttle
 from btlang.server.fleet.fleet import Fleet, FleetRobot
 from btlang.server.http.access import Access, AccessError, address_of, read_object, text_in
 from btlang.server.live.robot_connection import LONGEST, STREAM
-from btlang.server.live.robot_feeds import RobotLink, Robots
+from btlang.server.live.robot_feeds import RobotFeed, RobotFeeds
 from btlang.server.live.sockets import FORBIDDEN, REVOKED
 
 TYPE_CHECKING = False
@@ -35,7 +35,7 @@ _NOTED = 60.0  # seconds between two notes that a robot is here
 
 
 class Dialed:
-    """The way to a robot that dials in; see `btlang.server.live.robot_connection.Reach`."""
+    """The way to a robot that dials in; see `btlang.server.live.robot_connection.RobotConnection`."""
 
     def __init__(self) -> None:
         self.socket: WebSocket | None = None
@@ -152,7 +152,7 @@ class Dialed:
 class Joins:
     """The robots of a fleet among those behind the server."""
 
-    def __init__(self, fleet: Fleet, robots: Robots, access: Access) -> None:
+    def __init__(self, fleet: Fleet, robots: RobotFeeds, access: Access) -> None:
         self._fleet, self._robots, self._access = fleet, robots, access
         self._ways: dict[str, tuple[FleetRobot, Dialed]] = {}
         self._throttle = Throttle()  # of the trail: nobody guesses a code
@@ -175,7 +175,7 @@ class Joins:
             elif name not in self._robots.links:
                 way = Dialed()
                 self._ways[name] = robot, way
-                self._robots.add(RobotLink(name, way, robot.seen))
+                self._robots.add(RobotFeed(name, way, robot.seen))
 
     async def serve(self, socket: WebSocket) -> None:
         """One robot that dials in, until it is gone."""

@@ -22,16 +22,23 @@ from btlang.server.fleet.joining import Joins
 from btlang.server.http.access import COOKIE, Access, AccessError, JsonResponse, address_of, json_object, text_in
 from btlang.server.http.openapi import LIBRARY, VERSION, document
 from btlang.server.http.pages import page_routes
-from btlang.server.live.clients import Clients
-from btlang.server.live.robot_feeds import RobotLink, Robots, metrics
+from btlang.server.live.clients import ClientProtocol
+from btlang.server.live.robot_feeds import RobotFeed, RobotFeeds, metrics
 from btlang.server.live.rosbridge import Rosbridge
 from btlang.server.live.sockets import Sockets
 from btlang.server.page.processes import ASKED, TRIES, Checker, arguments_of, comparison, film, tree
-from btlang.server.page.recordings import Pieces, fetch, in_file, list_recordings, list_recordings_elsewhere, path_of
+from btlang.server.page.recordings import (
+    RecordingResponse,
+    fetch,
+    in_file,
+    list_recordings,
+    list_recordings_elsewhere,
+    path_of,
+)
 from btlang.task import messages
 from btlang.task.messages import Answer, Command, read_command
 from btlang.task.store.database import StoreError
-from btlang.task.store.records import Kind
+from btlang.task.store.records import LibraryKind
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -59,14 +66,14 @@ class Api:
         self,
         accounts: Accounts,
         key: str,
-        robots: Robots | None = None,
+        robots: RobotFeeds | None = None,
         ros: Sequence[str] = (),
         words: Words | None = None,
         cookie: str = COOKIE,
     ) -> None:
-        self.accounts, self.robots, self.words = accounts, robots or Robots(), words
+        self.accounts, self.robots, self.words = accounts, robots or RobotFeeds(), words
         self.access, self.checker, self.trials = Access(accounts, key, cookie), Checker(), Checker()
-        self.sockets, self.clients = Sockets(self.access), Clients(self.robots, self.send)
+        self.sockets, self.clients = Sockets(self.access), ClientProtocol(self.robots, self.send)
         self.rosbridge = Rosbridge(self.access, ros) if ros else None
         self._fetching = asyncio.Semaphore(_MOST_FETCHING)
         self.joins = Joins(Fleet(accounts.database), self.robots, self.access)
@@ -123,7 +130,7 @@ class Api:
         except ConnectionError as error:
             raise AccessError(503, str(error)) from None
 
-    def link(self, robot: str) -> RobotLink:
+    def link(self, robot: str) -> RobotFeed:
         """Raises AccessError (404, 409) if there is no such robot, or several where none was named."""
         link = self.robots.get(robot)
         if link is None and robot:
@@ -229,7 +236,7 @@ class Api:
             name = text_in(data, "world")
             if not name:
                 raise AccessError(400, "'world' must be the name of a world.")
-            command = messages.Library(name, Kind.WORLD.value, revision=0)
+            command = messages.Library(name, LibraryKind.WORLD.value, revision=0)
             found = await self.send(identity, robot, command, address_of(request))
             if not found.ok:
                 return _answer(found)
@@ -254,7 +261,7 @@ class Api:
     async def _recording(self, request: Request) -> Response:
         link, name = await self._recorder(request), request.path_params["name"]
         if link.is_elsewhere:
-            return Pieces(await fetch(link.read, name))
+            return RecordingResponse(await fetch(link.read, name))
         path = await asyncio.to_thread(path_of, link.recordings, name)
         return FileResponse(path, media_type="application/octet-stream")
 
@@ -269,7 +276,7 @@ class Api:
             return Response(await self.trials.shown(show, *paths), media_type="application/json")
 
     @asynccontextmanager
-    async def _file(self, link: RobotLink, name: str, request: Request) -> AsyncIterator[str]:
+    async def _file(self, link: RobotFeed, name: str, request: Request) -> AsyncIterator[str]:
         if not link.is_elsewhere:
             yield await asyncio.to_thread(path_of, link.recordings, name)
             return
@@ -280,7 +287,7 @@ class Api:
         async with in_file(await fetch(link.read, name), is_wanted) as path:
             yield path
 
-    async def _recorder(self, request: Request) -> RobotLink:
+    async def _recorder(self, request: Request) -> RobotFeed:
         """The robot whose recordings are asked for."""
         await self._who(request)
         link = self.link(request.query_params.get("robot", ""))
@@ -296,7 +303,7 @@ class Api:
         await self._who(request)
         return PlainTextResponse(metrics(self.robots.links.values(), len(self.sockets)))
 
-    def _library(self, path: str, kind: Kind) -> list[Route]:
+    def _library(self, path: str, kind: LibraryKind) -> list[Route]:
         return [
             self._route(path, partial(self._list, kind), "GET"),
             self._route(f"{path}/{{name:path}}", partial(self._list, kind), "GET"),
@@ -304,10 +311,10 @@ class Api:
             self._route(f"{path}/{{name:path}}", partial(self._delete, kind), "DELETE"),
         ]
 
-    async def _list(self, kind: Kind, request: Request) -> Response:
+    async def _list(self, kind: LibraryKind, request: Request) -> Response:
         return await self._of_library(request, messages.Library(request.path_params.get("name", ""), kind.value))
 
-    async def _put(self, kind: Kind, request: Request) -> Response:
+    async def _put(self, kind: LibraryKind, request: Request) -> Response:
         identity = await self._who(request)
         data = await json_object(request)
         revision = data.get("revision")
@@ -317,7 +324,7 @@ class Api:
         robot = request.query_params.get("robot", "")
         return _answer(await self.send(identity, robot, command, address_of(request)))
 
-    async def _delete(self, kind: Kind, request: Request) -> Response:
+    async def _delete(self, kind: LibraryKind, request: Request) -> Response:
         return await self._of_library(request, messages.Delete(request.path_params["name"], kind.value))
 
     async def _of_library(self, request: Request, command: Command) -> Response:

@@ -53,7 +53,7 @@ class _Protocol(H11Protocol):
             self.transport.close()
 
 
-def listening(host: str, port: int) -> socket.socket:
+def open_listener(host: str, port: int) -> socket.socket:
     """A socket that others can connect to. Raises MissionError (BT201)."""
     try:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
@@ -122,7 +122,7 @@ def tls(certificate: Certificate) -> ssl.SSLContext:
     return context
 
 
-def kept_key(folder: str) -> str:
+def load_key(folder: str) -> str:
     """A secret of the server, made when it is first asked for. Raises OSError."""
     path = os.path.join(folder, "secret.key")
     if not os.path.exists(path) or os.path.getsize(path) == 0:  # an empty one would be no secret

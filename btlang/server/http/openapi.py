@@ -6,7 +6,7 @@ from functools import cache
 
 from btlang.server.page.processes import ASKED, TextQuery
 from btlang.task.commands.schema import schema
-from btlang.task.store.records import Kind
+from btlang.task.store.records import LibraryKind
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -36,10 +36,10 @@ def _object(*required: str, **properties: dict[str, Any]) -> dict[str, Any]:
 
 
 LIBRARY = {
-    "/api/missions": Kind.MISSION,
-    "/api/worlds": Kind.WORLD,
-    "/api/robot-files": Kind.ROBOT,
-    "/api/tests": Kind.TEST,
+    "/api/missions": LibraryKind.MISSION,
+    "/api/worlds": LibraryKind.WORLD,
+    "/api/robot-files": LibraryKind.ROBOT,
+    "/api/tests": LibraryKind.TEST,
 }
 """What the library has, by the paths of its routes."""
 _WORLD = {"type": "string", "description": "The name of a world of the library, instead of the world of the robot."}

@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Container
 from contextlib import suppress
 
-from btlang.server.live.robot_view import STATES, merged
+from btlang.server.live.robot_view import STATES, merge_statuses
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ TOPICS = {
 _TOPIC = {kind: topic for topic, kinds in TOPICS.items() for kind in kinds}
 
 
-class News:
+class RobotNews:
     """A message for many clients, which is written as JSON once. So are statuses that were merged for many."""
 
     __slots__ = ("_merged", "_text", "message", "robot")
@@ -35,7 +35,7 @@ class News:
     def __init__(self, robot: str, message: dict[str, Any]) -> None:
         self.robot, self.message = robot, message
         self._text = ""
-        self._merged: tuple[News, News] | None = None
+        self._merged: tuple[RobotNews, RobotNews] | None = None
 
     @property
     def text(self) -> str:
@@ -44,20 +44,20 @@ class News:
             self._text = json.dumps({"robot": self.robot, **self.message}, separators=(",", ":"), default=str)
         return self._text
 
-    def after(self, before: News) -> News:
+    def after(self, before: RobotNews) -> RobotNews:
         """These statuses together with earlier ones of the same run, where these count."""
         if self._merged is None or self._merged[0] is not before:
-            self._merged = before, News(self.robot, merged(before.message, self.message))
+            self._merged = before, RobotNews(self.robot, merge_statuses(before.message, self.message))
         return self._merged[1]
 
 
-class Outlet:
+class ClientQueue:
     """Used by one event loop. `put` never waits; `wait` waits until there is something to `take`."""
 
     def __init__(self) -> None:
         self._queue: deque[str] = deque()
-        self._statuses: dict[str, News] = {}
-        self._states: dict[tuple[str, str], News] = {}
+        self._statuses: dict[str, RobotNews] = {}
+        self._states: dict[tuple[str, str], RobotNews] = {}
         self.topics: Container[str] = TOPICS
         """Of which the messages are taken."""
         self._topics: dict[str, deque[str]] = {}
@@ -65,7 +65,7 @@ class Outlet:
         self._full = self._is_closed = False
         self._news, self._answers, self._taken = asyncio.Event(), asyncio.Event(), asyncio.Event()
 
-    def put(self, news: News) -> None:
+    def put(self, news: RobotNews) -> None:
         """Adds a message of a robot."""
         kind = news.message["type"]
         if kind in _TOPIC and _TOPIC[kind] not in self.topics:
@@ -143,7 +143,7 @@ class Outlet:
         else:
             self._full = True
 
-    def _merge(self, news: News) -> None:
+    def _merge(self, news: RobotNews) -> None:
         before = self._statuses.get(news.robot)
         same = before is not None and before.message["run"] == news.message["run"]
         self._statuses[news.robot] = news.after(before) if before is not None and same else news

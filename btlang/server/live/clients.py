@@ -11,8 +11,8 @@ from btlang.diagnostics.errors import MissionError
 from btlang.server.accounts.accounts import Identity
 from btlang.server.http.access import AccessError, read_object, text_in
 from btlang.server.live.client_queue import TOPICS
-from btlang.server.live.robot_feeds import RobotLink, Robots
-from btlang.server.live.sockets import Visitor
+from btlang.server.live.robot_feeds import RobotFeed, RobotFeeds
+from btlang.server.live.sockets import ConnectedClient
 from btlang.support.record import Record
 from btlang.task.live.feed import Allowance
 from btlang.task.messages import Answer, Command, read_command
@@ -31,7 +31,7 @@ LONGEST = 200
 _PAUSE = 0.2  # seconds between two lists of people
 
 
-class Place(Record):
+class PageView(Record):
     """What a page shows. `mission` is the name of the one that is open, "" for none; `is_changing` says that it isn't
     saved.
     """
@@ -42,15 +42,15 @@ class Place(Record):
     is_changing: bool
 
 
-class Presence:
+class PagePresence:
     """In one event loop. All pages that say what they show are sent the list of people whenever it changes."""
 
     def __init__(self) -> None:
-        self._pages: dict[Visitor, tuple[int, Place]] = {}
+        self._pages: dict[ConnectedClient, tuple[int, PageView]] = {}
         self._numbers = itertools.count(1)
         self._sending: asyncio.TimerHandle | None = None
 
-    def show(self, visitor: Visitor, data: dict[str, Any]) -> int:
+    def show(self, visitor: ConnectedClient, data: dict[str, Any]) -> int:
         """A page shows something else. Returns its number in the list. Raises AccessError (400, 403, 429)."""
         if not visitor.identity.is_session:
             raise AccessError(403, "Only pages say what they show: a program isn't a person.")
@@ -64,12 +64,12 @@ class Presence:
             self._changed()
         return number
 
-    def leave(self, visitor: Visitor) -> None:
+    def leave(self, visitor: ConnectedClient) -> None:
         """The socket of a page has ended."""
         if self._pages.pop(visitor, None) is not None:
             self._changed()
 
-    def _make_room(self, visitor: Visitor) -> None:
+    def _make_room(self, visitor: ConnectedClient) -> None:
         user = visitor.identity.user
         own = sum(page.identity.user == user for page in self._pages)
         if own >= MOST_PAGES_OF_USER or len(self._pages) >= MOST_PAGES:
@@ -93,7 +93,7 @@ class Presence:
             page.outlet.keep("people", text, 1)
 
 
-def _place_in(data: dict[str, Any]) -> Place:
+def _place_in(data: dict[str, Any]) -> PageView:
     robot, screen, mission = (text_in(data, name) for name in ("robot", "screen", "mission"))
     is_changing = data.get("changing")
     if screen not in SCREENS:
@@ -102,20 +102,20 @@ def _place_in(data: dict[str, Any]) -> Place:
         raise AccessError(400, f"'robot' and 'mission' must have at most {LONGEST} characters.")
     if not isinstance(is_changing, bool):
         raise AccessError(400, "'changing' must be true or false.")
-    return Place(robot, screen, mission, is_changing)
+    return PageView(robot, screen, mission, is_changing)
 
 
 _MOST_AT_ONCE = 8  # commands of a client that wait for their answers
 
 
-class Clients:
+class ClientProtocol:
     """A `btlang.server.live.sockets.Subprotocol`. `do` does a command of somebody for a robot."""
 
-    def __init__(self, robots: Robots, do: Do) -> None:
+    def __init__(self, robots: RobotFeeds, do: Do) -> None:
         self.greeting: dict[str, Any] | None = {"type": "auth_required"}
         self.refusal: dict[str, Any] = {"type": "auth_invalid", "text": "This token isn't valid."}
-        self._robots, self._do, self._presence = robots, do, Presence()
-        self._watchers: dict[Visitor, tuple[frozenset[str] | None, dict[str, int]]] = {}
+        self._robots, self._do, self._presence = robots, do, PagePresence()
+        self._watchers: dict[ConnectedClient, tuple[frozenset[str] | None, dict[str, int]]] = {}
         """With the robots that they watch, None for all, and the last changes that they know."""
         robots.came = self._came
 
@@ -127,7 +127,7 @@ class Clients:
         """See `Subprotocol`."""
         return {"type": "auth_ok", "user": identity.user, "role": identity.role}
 
-    async def talk(self, visitor: Visitor) -> None:
+    async def talk(self, visitor: ConnectedClient) -> None:
         """See `Subprotocol`."""
         waiting: set[asyncio.Task[None]] = set()
         try:
@@ -145,7 +145,7 @@ class Clients:
                 task.cancel()
             self._presence.leave(visitor)
 
-    async def _answer(self, visitor: Visitor, text: str) -> None:
+    async def _answer(self, visitor: ConnectedClient, text: str) -> None:
         number: Any = None
         try:
             data = read_object(text)
@@ -157,7 +157,7 @@ class Clients:
             result = {"ok": False, "text": str(error), "code": error.diagnostics[0].code}
         visitor.outlet.say(json.dumps({"id": number, "type": "result", **result}, default=str))
 
-    async def _result(self, visitor: Visitor, data: dict[str, Any]) -> dict[str, Any]:
+    async def _result(self, visitor: ConnectedClient, data: dict[str, Any]) -> dict[str, Any]:
         kind = data.pop("type", "command")
         if kind == "ping":
             return {"ok": True}
@@ -174,7 +174,7 @@ class Clients:
         answer = await self._do(visitor.identity, str(robot), read_command(data), visitor.address)
         return answer.as_json()
 
-    def _subscribe(self, visitor: Visitor, data: dict[str, Any]) -> dict[str, Any]:
+    def _subscribe(self, visitor: ConnectedClient, data: dict[str, Any]) -> dict[str, Any]:
         """{"robots": [...], "topics": [...], "rate": N, "after": {...}}: by default all that all robots publish, at
         their rate, and only what comes from now on.
         """
@@ -196,16 +196,16 @@ class Clients:
             self._watch(visitor, link)
         return {"ok": True}
 
-    def _unsubscribe(self, visitor: Visitor) -> None:
+    def _unsubscribe(self, visitor: ConnectedClient) -> None:
         self._watchers.pop(visitor, None)
         for link in self._robots.links.values():
             link.discard(visitor.outlet)
 
-    def _came(self, link: RobotLink) -> None:
+    def _came(self, link: RobotFeed) -> None:
         for visitor in self._watchers:
             self._watch(visitor, link)
 
-    def _watch(self, visitor: Visitor, link: RobotLink) -> None:
+    def _watch(self, visitor: ConnectedClient, link: RobotFeed) -> None:
         robots, after = self._watchers[visitor]
         if robots is None or link.name in robots:
             link.add(visitor.outlet, after.get(link.name))

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from contextlib import AbstractAsyncContextManager
     from typing import Any, Protocol
 
-    class Reach(Protocol):
+    class RobotConnection(Protocol):
         """A way to a robot. What it raises is an OSError, or a TimeoutError; who calls has his own patience."""
 
         async def ask(self, message: dict[str, Any]) -> Any:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
         def watching(self, request: dict[str, Any]) -> AbstractAsyncContextManager[asyncio.StreamReader]:
             """What happens (btlang.task.live.feed), a line of JSON each."""
 
-    class ReachElsewhere(Reach, Protocol):
+    class RemoteConnection(RobotConnection, Protocol):
         """A way to a robot of another computer."""
 
         async def read(self, message: dict[str, Any]) -> Any:
@@ -39,27 +39,27 @@ STREAM = 4
 """Bytes of the number of a stream, before what happens on a robot elsewhere."""
 
 
-class LocalSockets:
+class LocalConnection:
     """The way to a robot of this computer."""
 
     def __init__(self, name: str) -> None:
         self._name = name
 
     async def ask(self, message: dict[str, Any]) -> Any:
-        """See `Reach`. Raises ValueError for an answer that isn't JSON."""
+        """See `RobotConnection`. Raises ValueError for an answer that isn't JSON."""
         async with _connected(socket_path(self._name)) as (reader, writer):
             writer.write(json.dumps(message).encode() + b"\n")
             return json.loads(await reader.readline())
 
     async def stop(self) -> None:
-        """See `Reach`. The socket is for nothing else."""
+        """See `RobotConnection`. The socket is for nothing else."""
         async with _connected(socket_path(self._name, stop=True)) as (reader, _):
             if not await reader.read(16):
                 raise ConnectionError("it has hung up")
 
     @asynccontextmanager
     async def watching(self, request: dict[str, Any]) -> AsyncIterator[asyncio.StreamReader]:
-        """See `Reach`."""
+        """See `RobotConnection`."""
         async with _connected(socket_path(self._name)) as (reader, writer):
             writer.write(json.dumps({"watch": request}).encode() + b"\n")
             yield reader

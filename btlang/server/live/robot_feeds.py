@@ -9,8 +9,8 @@ from collections.abc import AsyncGenerator, Callable, Iterable
 from contextlib import aclosing, suppress
 
 from btlang.editing.words import Words
-from btlang.server.live.client_queue import News, Outlet
-from btlang.server.live.robot_connection import LocalSockets
+from btlang.server.live.client_queue import ClientQueue, RobotNews
+from btlang.server.live.robot_connection import LocalConnection
 from btlang.server.live.robot_view import RobotView
 from btlang.task.commands.client import names_up
 from btlang.task.messages import Answer, Command, as_json
@@ -19,7 +19,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.server.live.robot_connection import Reach, ReachElsewhere
+    from btlang.server.live.robot_connection import RemoteConnection, RobotConnection
 
 
 _AGAIN = 0.5  # seconds between two looks whether a robot is there
@@ -31,10 +31,10 @@ _BROKEN = (OSError, ValueError, KeyError, TypeError, AttributeError)  # a robot 
 RATE = 20.0
 
 
-class RobotLink:
+class RobotFeed:
     """One robot. In one event loop. `reach` is the way to it, over the sockets of this computer if it isn't given."""
 
-    def __init__(self, name: str, reach: ReachElsewhere | None = None, seen: float | None = None) -> None:
+    def __init__(self, name: str, reach: RemoteConnection | None = None, seen: float | None = None) -> None:
         self.name = name
         self.is_elsewhere = reach is not None
         self.seen = seen
@@ -42,11 +42,11 @@ class RobotLink:
         self.words = Words()
         self.recordings = ""
         """The folder of its recordings, "" if they aren't on this computer."""
-        self._reach: Reach = reach or LocalSockets(name)
+        self._reach: RobotConnection = reach or LocalConnection(name)
         self._elsewhere = reach
         self._reading = asyncio.Lock()  # a piece at a time: the rest of what the link carries has to come through
-        self._outlets: set[Outlet] = set()
-        self._catching_up: dict[Outlet, asyncio.Task[None]] = {}  # those that don't know the latest change yet
+        self._outlets: set[ClientQueue] = set()
+        self._catching_up: dict[ClientQueue, asyncio.Task[None]] = {}  # those that don't know the latest change yet
         self._paging = asyncio.Lock()  # each is a watcher more for the robot
         self._up = asyncio.Event()
         self._view = RobotView()
@@ -96,17 +96,17 @@ class RobotLink:
             text = f"The emergency stop may not have reached the robot '{self.name}': STOP IT WHERE IT STANDS."
             raise ConnectionError(text) from error
 
-    def add(self, outlet: Outlet, after: int | None = None) -> None:
+    def add(self, outlet: ClientQueue, after: int | None = None) -> None:
         """Adds a client that gets the present state, then all updates. One that was here before first gets the changes
         of tasks `after` the last one that it knows.
         """
         for message in self._view.messages():
-            outlet.put(News(self.name, message))
+            outlet.put(RobotNews(self.name, message))
         self._outlets.add(outlet)
         if after is not None:
             self._catching_up[outlet] = asyncio.create_task(self._catch_up(outlet, after))
 
-    def discard(self, outlet: Outlet) -> None:
+    def discard(self, outlet: ClientQueue) -> None:
         """Removes a client: it gets no more updates."""
         self._outlets.discard(outlet)
         catching_up = self._catching_up.pop(outlet, None)
@@ -139,7 +139,7 @@ class RobotLink:
                     return
                 yield json.loads(line)
 
-    async def _catch_up(self, outlet: Outlet, after: int) -> None:
+    async def _catch_up(self, outlet: ClientQueue, after: int) -> None:
         """Sends a client the changes after one, until it has all that were sent to others."""
         while True:
             await self._up.wait()
@@ -154,7 +154,7 @@ class RobotLink:
             after = max(last, latest) if is_all else last  # the task of a change may be deleted by now
         del self._catching_up[outlet]
 
-    async def _page(self, outlet: Outlet, after: int) -> tuple[int, bool]:
+    async def _page(self, outlet: ClientQueue, after: int) -> tuple[int, bool]:
         """Sends a client some changes after one; returns the number of the last, and whether others have no more."""
         end = after + _PAGE
         with suppress(*_BROKEN):
@@ -166,7 +166,7 @@ class RobotLink:
                         return after, True
                     else:
                         after = int(message["number"])
-                        outlet.put(News(self.name, message))
+                        outlet.put(RobotNews(self.name, message))
                         if after >= end:
                             break
         return after, False
@@ -185,31 +185,31 @@ class RobotLink:
 
     def _publish(self, message: dict[str, Any]) -> None:
         self._view.take(message)
-        news = News(self.name, message)
+        news = RobotNews(self.name, message)
         for outlet in self._outlets:
             if message["type"] != "change" or outlet not in self._catching_up:
                 outlet.put(news)
 
 
-class Robots:
+class RobotFeeds:
     """All that are up on this computer, as long as `follow` goes on, and those that joined.
 
     `came` is called with one that is new.
     """
 
-    def __init__(self, came: Callable[[RobotLink], object] = lambda link: None) -> None:
-        self.links: dict[str, RobotLink] = {}
+    def __init__(self, came: Callable[[RobotFeed], object] = lambda link: None) -> None:
+        self.links: dict[str, RobotFeed] = {}
         self.came = came
         self._following: dict[str, asyncio.Task[None]] = {}
 
-    def get(self, name: str) -> RobotLink | None:
+    def get(self, name: str) -> RobotFeed | None:
         """That of a name; "" for the only one that is up."""
         if name:
             return self.links.get(name)
         up = [link for link in self.links.values() if link.is_up]
         return up[0] if len(up) == 1 else None
 
-    def add(self, link: RobotLink) -> None:
+    def add(self, link: RobotFeed) -> None:
         """Follows a robot from now on."""
         self.links[link.name] = link
         self._following[link.name] = asyncio.create_task(link.follow())
@@ -224,7 +224,7 @@ class Robots:
         """Adds the robots that are up on this computer."""
         for name in names_up():
             if name not in self.links:
-                self.add(RobotLink(name))
+                self.add(RobotFeed(name))
 
     async def follow(self) -> None:
         """Looks for robots again and again, until it is cancelled."""
@@ -237,7 +237,7 @@ class Robots:
                 task.cancel()
 
 
-def metrics(links: Iterable[RobotLink], clients: int) -> str:
+def metrics(links: Iterable[RobotFeed], clients: int) -> str:
     """Those of the robots, and how many sockets are open."""
     rows: list[tuple[str, str, str, float]] = []
     for link in links:

@@ -44,7 +44,7 @@ class RobotView:
             self.statuses = {id: found for id, found in self.statuses.items() if id in ids and id != message["run"]}
         elif kind == "statuses":
             if any(run["run"] == message["run"] for run in self.runs.values()):
-                self.statuses[message["run"]] = merged(self.statuses.get(message["run"]), message)
+                self.statuses[message["run"]] = merge_statuses(self.statuses.get(message["run"]), message)
         elif kind in STATES:
             self.states[kind] = message
 
@@ -58,7 +58,7 @@ class RobotView:
         return [*messages, *self.states.values()]
 
 
-def merged(before: dict[str, Any] | None, after: dict[str, Any]) -> dict[str, Any]:
+def merge_statuses(before: dict[str, Any] | None, after: dict[str, Any]) -> dict[str, Any]:
     """Return statuses together with earlier ones of the same run as one message."""
     if before is None:
         return after

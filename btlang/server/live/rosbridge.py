@@ -15,9 +15,9 @@ from itertools import count
 from starlette.websockets import WebSocketDisconnect
 
 from btlang.ros.bridge.replies import failures, status
-from btlang.server.accounts.accounts import Identity, Role
+from btlang.server.accounts.accounts import Identity, UserRole
 from btlang.server.http.access import Access, AccessError, read_object
-from btlang.server.live.sockets import LOST, Visitor
+from btlang.server.live.sockets import LOST, ConnectedClient
 from btlang.support.record import Record
 from btlang.text.escaping import one_line
 
@@ -114,18 +114,18 @@ _SHOWN = 100  # characters of what is refused
 
 class _Operation(Record):
     name: str  # the field that says what it is about
-    role: Role
+    role: UserRole
 
 
 OPERATIONS = {
-    "subscribe": _Operation("topic", Role.VIEWER),
-    "unsubscribe": _Operation("topic", Role.VIEWER),
-    "advertise": _Operation("topic", Role.OPERATOR),
-    "unadvertise": _Operation("topic", Role.VIEWER),
-    "publish": _Operation("topic", Role.OPERATOR),
-    "call_service": _Operation("service", Role.OPERATOR),
-    "send_action_goal": _Operation("action", Role.OPERATOR),
-    "cancel_action_goal": _Operation("action", Role.VIEWER),
+    "subscribe": _Operation("topic", UserRole.VIEWER),
+    "unsubscribe": _Operation("topic", UserRole.VIEWER),
+    "advertise": _Operation("topic", UserRole.OPERATOR),
+    "unadvertise": _Operation("topic", UserRole.VIEWER),
+    "publish": _Operation("topic", UserRole.OPERATOR),
+    "call_service": _Operation("service", UserRole.OPERATOR),
+    "send_action_goal": _Operation("action", UserRole.OPERATOR),
+    "cancel_action_goal": _Operation("action", UserRole.VIEWER),
 }
 """With the least role for each. To end what one began needs none."""
 
@@ -137,7 +137,7 @@ class Rosbridge:
         self.greeting: dict[str, Any] | None = None
         self.refusal = status('Log in first: {"op": "auth", "mac": TOKEN}, with a token of this server.')
         self._access, self._allowed = access, tuple(allowed)
-        self._visitors: dict[int, Visitor] = {}
+        self._visitors: dict[int, ConnectedClient] = {}
         self._numbers = count(1)
         self._bridge = BridgeProcess(self._heard, self._ended)
         self._leaving: set[asyncio.Task[None]] = set()
@@ -149,7 +149,7 @@ class Rosbridge:
     def welcome(self, identity: Identity) -> None:
         """See `Subprotocol`: rosbridge has no answer for that."""
 
-    async def talk(self, visitor: Visitor) -> None:
+    async def talk(self, visitor: ConnectedClient) -> None:
         """See `Subprotocol`. What he began ends with him."""
         number = next(self._numbers)
         self._visitors[number] = visitor
@@ -170,7 +170,7 @@ class Rosbridge:
         """Ends the process."""
         await self._bridge.close()
 
-    async def _take(self, visitor: Visitor, number: int, text: str) -> list[dict[str, Any]]:
+    async def _take(self, visitor: ConnectedClient, number: int, text: str) -> list[dict[str, Any]]:
         """Hands an operation on; what to answer at once."""
         try:
             data = read_object(text)
@@ -189,7 +189,7 @@ class Rosbridge:
         await self._bridge.drain()
         return []
 
-    def _refusal(self, visitor: Visitor, data: dict[str, Any]) -> str:
+    def _refusal(self, visitor: ConnectedClient, data: dict[str, Any]) -> str:
         operation = OPERATIONS[data["op"]]
         name = data.get(operation.name)
         if not isinstance(name, str) or len(name) > _LONGEST_NAME or not _NAME.fullmatch(name):

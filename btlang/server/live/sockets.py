@@ -9,7 +9,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from btlang.server.accounts.accounts import Identity
 from btlang.server.http.access import Access, AccessError, address_of, is_same_site, read_object
-from btlang.server.live.client_queue import Outlet
+from btlang.server.live.client_queue import ClientQueue
 from btlang.task.live.feed import Allowance
 
 TYPE_CHECKING = False
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
         def welcome(self, identity: Identity) -> dict[str, Any] | None:
             """For somebody who is logged in now."""
 
-        async def talk(self, visitor: Visitor) -> None:
+        async def talk(self, visitor: ConnectedClient) -> None:
             """Until he leaves (WebSocketDisconnect), or has to (CancelledError)."""
 
 
@@ -40,12 +40,12 @@ REVOKED, FORBIDDEN, LOST = 4001, 4003, 1011
 _UNSUPPORTED = 1003  # the code for what isn't text
 
 
-class Visitor:
+class ConnectedClient:
     """Somebody who is logged in, on one socket, with what is on its way to him."""
 
     def __init__(self, socket: WebSocket, identity: Identity) -> None:
         self.socket, self.identity = socket, identity
-        self.outlet = Outlet()
+        self.outlet = ClientQueue()
         self.allowance = Allowance(0.0)
         self._talk: asyncio.Task[None] | None = None
         self._code, self._last = 0, ""
@@ -104,7 +104,7 @@ class Sockets:
 
     def __init__(self, access: Access) -> None:
         self._access = access
-        self._visitors: set[Visitor] = set()
+        self._visitors: set[ConnectedClient] = set()
 
     def __len__(self) -> int:
         return len(self._visitors)
@@ -119,7 +119,7 @@ class Sockets:
             identity = await self._log_in(subprotocol, socket)
             if identity is None:
                 return
-            visitor = Visitor(socket, identity)
+            visitor = ConnectedClient(socket, identity)
             self._visitors.add(visitor)
             try:
                 await self._look(visitor)  # while he was welcomed, his token may have been revoked
@@ -135,7 +135,7 @@ class Sockets:
         for visitor in tuple(self._visitors):
             await self._look(visitor)
 
-    async def _look(self, visitor: Visitor) -> None:
+    async def _look(self, visitor: ConnectedClient) -> None:
         now = await asyncio.to_thread(self._access.accounts.still, visitor.identity)
         if now is None:
             await visitor.leave(REVOKED)

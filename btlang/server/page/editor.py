@@ -27,7 +27,7 @@ from btlang.server.page.local_page import LocalApi, LocalRobots, check_page, loc
 from btlang.server.page.processes import MOST_CHARACTERS
 from btlang.support.test_files import ENDING, is_test_file
 from btlang.task.commands.answers import differences
-from btlang.task.commands.checks import refused
+from btlang.task.commands.checks import refusal_error
 from btlang.task.messages import Answer
 from btlang.task.store.records import is_whole
 from btlang.text.escaping import one_line
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 
-class Files:
+class EditorFiles:
     """Of these the one that `words` belong to can be saved, and the file of its tests beside it; the others, which it
     includes, are shown.
 
@@ -82,7 +82,7 @@ class Files:
         before = _text(path)
         text = text if before is None else _with_line_ends(text, before)
         if revision != _revision(before):
-            problem = refused(f"The file '{name}'", "was changed by another program, or in another window")
+            problem = refusal_error(f"The file '{name}'", "was changed by another program, or in another window")
             data = {**_content(before), "diff": differences(before or "", text)}
             return Answer(False, str(problem), data, problem.diagnostics[0].code)
         write_file(path, ("\ufeff" if before is not None and has_mark(path) else "") + text)
@@ -114,7 +114,7 @@ class Files:
         return found
 
 
-class TreeFiles(Files):
+class TreeEditorFiles(EditorFiles):
     """A mission that is, until it is saved, the English of a tree in JSON. Saving it also writes its tree into a copy
     of that one, which itself stays as it is. `main` is the ID of one of several trees.
     """
@@ -150,7 +150,9 @@ class TreeFiles(Files):
         data, copy = {**answer.data, **self._names}, self._names["copy"]
         try:
             if self._content_of_copy() not in (None, self._written):
-                raise refused(f"The file '{copy}'", "was written by another program. To have it anew, move it away")
+                raise refusal_error(
+                    f"The file '{copy}'", "was written by another program. To have it anew, move it away"
+                )
             write_file(self._copy, self._words.mission(self._words.source(text)).to(self._target))
             self._written = self._content_of_copy()
         except MissionError as error:
@@ -165,7 +167,7 @@ class TreeFiles(Files):
         return _english_of(self._tree, self._words, self._main)
 
 
-class XmlFiles(Files):
+class XmlEditorFiles(EditorFiles):
     """A tree in XML in English, which saving writes onto it. A text that doesn't compile yet is kept beside it until it
     does. `main` is the ID of one of several trees.
     """
@@ -188,7 +190,7 @@ class XmlFiles(Files):
             return super().save(name, text, revision)
         tree, before = os.path.basename(self._tree), self.read(name)
         if revision != before["revision"]:
-            problem = refused(f"The file '{tree}'", "was changed by another program, or in another window")
+            problem = refusal_error(f"The file '{tree}'", "was changed by another program, or in another window")
             data = {**before, "diff": differences(before["text"], text)}
             return Answer(False, str(problem), data, problem.diagnostics[0].code)
         try:
@@ -270,8 +272,8 @@ def edit(options: argparse.Namespace) -> int:
     sort = tree_sort(options.file)
     file = english_beside(options.file) if sort else options.file
     words = Words(options.keywords, options.world, options.language, file=file)
-    trees = {"xml": XmlFiles, "json": TreeFiles}.get(sort)
-    files = trees(words, options.file, options.main) if trees is not None else Files(words)
+    trees = {"xml": XmlEditorFiles, "json": TreeEditorFiles}.get(sort)
+    files = trees(words, options.file, options.main) if trees is not None else EditorFiles(words)
     files.read(files.name)  # what can't be opened says so at once
     with local_page(lambda accounts, port, _: EditorApi(accounts, files, words, port), options.port) as page:
         say_where(page, f"Edit {one_line(options.file)}", options.browser)
@@ -282,7 +284,7 @@ def edit(options: argparse.Namespace) -> int:
 class EditorApi(LocalApi):
     """The server for the files of an editor, without robots."""
 
-    def __init__(self, accounts: Accounts, files: Files, words: Words, port: int) -> None:
+    def __init__(self, accounts: Accounts, files: EditorFiles, words: Words, port: int) -> None:
         super().__init__(accounts, port, ("write", "file", files.name), LocalRobots(), words)
         self._files, self._saving = files, asyncio.Lock()
 

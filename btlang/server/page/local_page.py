@@ -24,13 +24,13 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.editing.words import Words
 from btlang.run.terminal import interrupted_by_signals
-from btlang.server.accounts.accounts import Accounts, Identity, Role
+from btlang.server.accounts.accounts import Accounts, Identity, UserRole
 from btlang.server.accounts.certificate import write_private
 from btlang.server.http.access import AccessError, address_of, is_same_site, json_object, text_in
 from btlang.server.http.app import Api
-from btlang.server.http.listener import listening, web_server
+from btlang.server.http.listener import open_listener, web_server
 from btlang.server.http.pages import BUILT
-from btlang.server.live.robot_feeds import RobotLink, Robots
+from btlang.server.live.robot_feeds import RobotFeed, RobotFeeds
 from btlang.text.output import show
 from btlang.text.source import NOWHERE
 
@@ -55,10 +55,10 @@ class LocalApi(Api):
     `screen` are the parts of the address of the screen.
     """
 
-    role = Role.ADMINISTRATOR
+    role = UserRole.ADMINISTRATOR
 
     def __init__(
-        self, accounts: Accounts, port: int, screen: tuple[str, ...], robots: Robots, words: Words | None = None
+        self, accounts: Accounts, port: int, screen: tuple[str, ...], robots: RobotFeeds, words: Words | None = None
     ) -> None:
         super().__init__(accounts, secrets.token_hex(32), robots, words=words, cookie=f"btlang-{port}")
         accounts.add(_USER, self.role, "")
@@ -96,10 +96,10 @@ class LocalApi(Api):
         return {**super()._described(identity), "screen": self._screen}
 
 
-class LocalRobots(Robots):
+class LocalRobots(RobotFeeds):
     """The robots of a page, without others that are up on this computer."""
 
-    def __init__(self, *links: RobotLink) -> None:
+    def __init__(self, *links: RobotFeed) -> None:
         super().__init__()
         self._given = links
 
@@ -178,7 +178,7 @@ def local_page(make: Callable[[Accounts, int, str], LocalApi], port: int = 0) ->
     `make` makes its server, from accounts, the port and a private folder. Requests are answered in a thread.
     """
     check_page()
-    door = listening(_HOST, port)
+    door = open_listener(_HOST, port)
     port = door.getsockname()[1]
     with (
         tempfile.TemporaryDirectory(prefix="btlang-") as folder,

@@ -25,8 +25,8 @@ from btlang.editing.palette import palette
 from btlang.editing.rename import rename
 from btlang.editing.words import Words
 from btlang.frontends.table import frontend_of
-from btlang.recording.film import Film, side_by_side, tried
-from btlang.recording.open import opened
+from btlang.recording.film import Film, side_by_side, try_mission
+from btlang.recording.open import open_recording
 from btlang.server.http.access import AccessError, text_in
 from btlang.support.gc_pause import gc_paused
 from btlang.support.record import Record
@@ -83,7 +83,7 @@ def tree(path: str) -> bytes:
 
 
 def _film(path: str) -> dict[str, Any]:
-    with opened(path, ()) as (recording, mission, nodes):
+    with open_recording(path, ()) as (recording, mission, nodes):
         data = Film(mission, dict(recording.about)).take(recording.events(nodes)).data()
     return in_units(data, data["text"])
 
@@ -94,7 +94,7 @@ def _comparison(one: str, other: str) -> dict[str, Any]:
 
 
 def _tree(path: str) -> dict[str, Any]:
-    with opened(path, ()) as (_, mission, _):
+    with open_recording(path, ()) as (_, mission, _):
         return {"xml": str(mission.to("xml"))}
 
 
@@ -180,7 +180,7 @@ TRIES: Mapping[str, TextQuery] = {
     "test": TextQuery(
         "Tests of a mission in the simulated world, with films of those that fail.", _test, ("tests", "called")
     ),
-    "try": TextQuery("A run of a mission in the simulated world, as a film.", _of_mission(tried)),
+    "try": TextQuery("A run of a mission in the simulated world, as a film.", _of_mission(try_mission)),
 }
 """What takes longer: it has a process of its own."""
 ASKED = {**DOES, **TRIES}

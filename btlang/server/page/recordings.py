@@ -151,7 +151,7 @@ async def in_file(recording: Fetched, is_wanted: Callable[[], Awaitable[bool]]) 
             os.unlink(path)
 
 
-class Pieces(StreamingResponse):
+class RecordingResponse(StreamingResponse):
     """A recording on its way. Where it breaks off so does the connection: nobody takes a part for the whole."""
 
     def __init__(self, recording: Fetched) -> None:

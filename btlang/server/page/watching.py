@@ -21,15 +21,15 @@ from btlang.robots.world_problem import read_world
 from btlang.run.controls import Controls
 from btlang.run.terminal import EMERGENCY_STOPPED
 from btlang.run.world_input import WorldInput
-from btlang.server.accounts.accounts import Accounts, Role
+from btlang.server.accounts.accounts import Accounts, UserRole
 from btlang.server.live.robot_connection import LONGEST
-from btlang.server.live.robot_feeds import RobotLink
+from btlang.server.live.robot_feeds import RobotFeed
 from btlang.server.page.local_page import LocalApi, LocalPage, LocalRobots, local_page, say_where
 from btlang.session import Run
 from btlang.task.live.feed import Feed
 from btlang.task.messages import Answer, EmergencyStop, List
 from btlang.task.messages import Urdf as UrdfCommand
-from btlang.task.store.records import Change
+from btlang.task.store.records import TaskChange
 from btlang.text.escaping import one_line
 from btlang.text.output import show
 
@@ -50,7 +50,7 @@ _OF_RECORDING = ("/api/films/{name}", "/api/trees/{name}", "/api/recordings/{nam
 class WatchApi(LocalApi):
     """The server for somebody who watches: what shows a robot, or a recording, and the emergency stop."""
 
-    role = Role.VIEWER
+    role = UserRole.VIEWER
 
     def routes(self) -> list[BaseRoute]:
         """Only those that its screen asks for."""
@@ -68,7 +68,7 @@ class NoTasks:
         """There is none."""
         return 0
 
-    def changes(self, *, after: int, limit: int) -> Sequence[tuple[int, Change]]:
+    def changes(self, *, after: int, limit: int) -> Sequence[tuple[int, TaskChange]]:
         """There are none."""
         return ()
 
@@ -82,7 +82,7 @@ class PageMonitor:
     hooks = None
 
     def __init__(self, name: str, world: World | None, body: Body | None) -> None:
-        self.link = RobotLink(name, self)
+        self.link = RobotFeed(name, self)
         self._body = body
         self._controls = Controls()
         self._emergency = ""
@@ -128,18 +128,18 @@ class PageMonitor:
         return Answer(False, "This page only watches.", {}, "").as_json()
 
     async def stop(self) -> None:
-        """See `btlang.server.live.robot_connection.Reach`."""
+        """See `btlang.server.live.robot_connection.RobotConnection`."""
         self._emergency = "emergency stop by the page"
         await asyncio.to_thread(self._controls.emergency_stop)
         self._feed.wake()
 
     async def read(self, message: dict[str, Any]) -> Any:
-        """See `btlang.server.live.robot_connection.ReachElsewhere`."""
+        """See `btlang.server.live.robot_connection.RemoteConnection`."""
         raise ConnectionError("a run has no recordings")
 
     @asynccontextmanager
     async def watching(self, request: dict[str, Any]) -> AsyncIterator[asyncio.StreamReader]:
-        """See `btlang.server.live.robot_connection.Reach`. The feed waits for news in a thread."""
+        """See `btlang.server.live.robot_connection.RobotConnection`. The feed waits for news in a thread."""
         reader, loop, is_over = asyncio.StreamReader(limit=LONGEST), asyncio.get_running_loop(), threading.Event()
 
         def send() -> None:
@@ -164,7 +164,7 @@ class PageMonitor:
 
 
 @contextmanager
-def watched(mission: Mission, name: str, body: Body, is_simulated: bool, browser: bool) -> Iterator[PageMonitor]:
+def open_monitor(mission: Mission, name: str, body: Body, is_simulated: bool, browser: bool) -> Iterator[PageMonitor]:
     """A monitor that shows a run on a page. `is_simulated`: the robot moves in the world of the mission."""
     world = read_world(mission.world, body) if is_simulated or mission.world is not None else None
     monitor = PageMonitor(name, world, body)
@@ -187,7 +187,7 @@ def serve(options: argparse.Namespace) -> int:
 
 def _recording_api(path: str, accounts: Accounts, port: int, folder: str) -> WatchApi:
     """The server of one recording, which is in a folder of its own under a name that an address can have."""
-    link = RobotLink(re.sub(r"\.mcap$", "", os.path.basename(path)) or "recording")
+    link = RobotFeed(re.sub(r"\.mcap$", "", os.path.basename(path)) or "recording")
     os.symlink(os.path.abspath(path), os.path.join(folder, "recording.mcap"))
     link.recordings = folder
     api = WatchApi(accounts, port, ("runs", link.name, "recording.mcap"), LocalRobots())

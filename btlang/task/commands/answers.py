@@ -6,11 +6,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import unified_diff
 from itertools import takewhile
 
-from btlang.task.commands.checks import refused
+from btlang.task.commands.checks import refusal_error
 from btlang.task.messages import Answer, Put
-from btlang.task.schedule.calendar import format_moment, length
-from btlang.task.store.records import FINAL, MissionText, Revision, Schedule, State, Task
-from btlang.task.store.task_store import Store
+from btlang.task.schedule.calendar import format_duration, format_moment
+from btlang.task.store.records import FINAL, MissionText, Revision, Schedule, Task, TaskState
+from btlang.task.store.task_store import TaskStore
 from btlang.text.enumeration import joined
 from btlang.text.escaping import one_line
 
@@ -27,7 +27,7 @@ _HIDDEN = ("mission", "saved", "token")
 def task_data(task: Task, waits: str = "") -> dict[str, Any]:
     """A task without its text, and why it waits."""
     data = task.as_dict(without=_HIDDEN)
-    return {**data, "mission": short(task.mission), "revision": task.mission.revision, "waits": waits}
+    return {**data, "mission": shorten(task.mission), "revision": task.mission.revision, "waits": waits}
 
 
 def task_line(task: Mapping[str, Any]) -> str:
@@ -37,7 +37,7 @@ def task_line(task: Mapping[str, Any]) -> str:
     return f"{task['id']:>4}  {task['state']:<9}{priority}  {task['mission']}" + (f"  [{one_line(why)}]" if why else "")
 
 
-def short(mission: MissionText) -> str:
+def shorten(mission: MissionText) -> str:
     """The name of a mission or else its text, cut, in one line."""
     text = one_line(mission.name or " / ".join(line.strip() for line in mission.text.splitlines() if line.strip()))
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
@@ -45,21 +45,21 @@ def short(mission: MissionText) -> str:
 
 def schedule_data(schedule: Schedule) -> dict[str, Any]:
     """A schedule with the short form of its mission."""
-    return {**schedule.as_dict(without=("mission",)), "mission": short(schedule.mission)}
+    return {**schedule.as_dict(without=("mission",)), "mission": shorten(schedule.mission)}
 
 
 def schedule_line(schedule: Schedule, now: float) -> str:
     """A schedule in one line: id, rule, mission, when it is due, and what isn't as usual."""
     zone = f" in {schedule.zone}" if schedule.zone else ""
     when = "" if schedule.next is None else f"; next at {format_moment(schedule.next, now)}"
-    line = f"{schedule.id:>4}  {schedule.rule}{zone}: {short(schedule.mission)}{when}"
+    line = f"{schedule.id:>4}  {schedule.rule}{zone}: {shorten(schedule.mission)}{when}"
     unusual = [
         f"{field} {getattr(schedule, field)}"
         for field in ("overlap", "missed", "restart")
         if getattr(schedule, field) != schedule.field_defaults[field]
     ]
     unusual += [f"priority {schedule.priority:+d}"] if schedule.priority else []
-    unusual += [] if schedule.within is None else [f"within {length(schedule.within)}"]
+    unusual += [] if schedule.within is None else [f"within {format_duration(schedule.within)}"]
     unusual += [f"label {one_line(label)}" for label in schedule.labels]
     unusual += [f"{one_line(name)}={one_line(str(value))}" for name, value in schedule.mission.values.items()]
     return f"{line}  [{', '.join(unusual)}]" if unusual else line
@@ -70,7 +70,7 @@ def revision_data(revision: Revision) -> dict[str, Any]:
     return revision.as_dict(without=("text",))
 
 
-def deleted(name: str, schedules: Sequence[int]) -> str:
+def describe_deletion(name: str, schedules: Sequence[int]) -> str:
     """What is said of a text that is no longer in the library, while some schedules have it."""
     text = f"'{one_line(name)}' is no longer in the library."
     if not schedules:
@@ -80,13 +80,13 @@ def deleted(name: str, schedules: Sequence[int]) -> str:
     return f"{text} {who} on with its text. To end {it}: btc task unschedule"
 
 
-def outdated(command: Put, called: str, latest: Revision | None) -> Answer:
+def outdated_error(command: Put, called: str, latest: Revision | None) -> Answer:
     """The refusal of a text, `called` "mission" or the like, that was made from another revision than the latest one,
     with what differs from that.
     """
     before = "" if latest is None else latest.text
     number = 0 if latest is None else latest.number
-    problem = refused(
+    problem = refusal_error(
         f"The {called} '{command.name}'", f"has changed since revision {command.revision}: it has {number}"
     )
     data = {"revision": number, "text": before, "diff": differences(before, command.text)}
@@ -113,7 +113,7 @@ def _common(first: list[str], second: list[str]) -> int:
     return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(first, second, strict=False)))
 
 
-def report(store: Store, since: float, until: float) -> Iterator[str]:
+def write_report(store: TaskStore, since: float, until: float) -> Iterator[str]:
     """Lines for people. What counts is when a task was due, or else when it was asked for: seconds since 1970."""
     tasks = [task for task in store.tasks() if since <= _time_of(task) < until]
     tasks.sort(key=lambda task: (_time_of(task), task.id))
@@ -131,13 +131,14 @@ def _group(title: str, tasks: Sequence[Task]) -> Iterator[str]:
     yield ""
     yield f"{title}: {_counted(tasks)}."
     for task in tasks:
-        if task.state is not State.COMPLETED:
+        if task.state is not TaskState.COMPLETED:
             reason = f": {one_line(task.reason)}" if task.reason else ""
-            yield f"  {format_moment(_time_of(task), 0.0)}  task {task.id}, {short(task.mission)}: {task.state}{reason}"
+            when = format_moment(_time_of(task), 0.0)
+            yield f"  {when}  task {task.id}, {shorten(task.mission)}: {task.state}{reason}"
 
 
 def _counted(tasks: Sequence[Task]) -> str:
-    done = sum(task.state is State.COMPLETED for task in tasks)
+    done = sum(task.state is TaskState.COMPLETED for task in tasks)
     still_open = sum(task.state not in FINAL for task in tasks)
     rest = f", {still_open} not over yet" if still_open else ""
     return f"{done} of {len(tasks)} done{rest}"
@@ -145,7 +146,7 @@ def _counted(tasks: Sequence[Task]) -> str:
 
 def _title(task: Task, schedule: Schedule | None) -> str:
     rule = schedule.rule if schedule is not None else "a schedule that is removed"
-    return f"{short(task.mission)} ({rule})"
+    return f"{shorten(task.mission)} ({rule})"
 
 
 def _time_of(task: Task) -> float:

@@ -27,7 +27,7 @@ HIGHEST = 2**63 - 1
 _WEEK = 7 * 86_400.0
 
 
-def moment(given: str | float | None, now: float) -> float | None:
+def read_time(given: str | float | None, now: float) -> float | None:
     """A time since 1970, given as one or in English. Raises MissionError (BT194)."""
     return read_moment(given, now) if isinstance(given, str) else given
 
@@ -37,7 +37,7 @@ def report_times(since: str | float | None, until: str | float | None, now: floa
     end = read_past_moment(until, now) if isinstance(until, str) else now if until is None else until
     begin = read_past_moment(since, now) if isinstance(since, str) else end - _WEEK if since is None else since
     if begin > end:
-        raise refused(
+        raise refusal_error(
             "The report", f"would begin at {format_moment(begin, now)}, after its end at {format_moment(end, now)}"
         )
     return begin, end
@@ -45,14 +45,14 @@ def report_times(since: str | float | None, until: str | float | None, now: floa
 
 def task_times(command: Submit, now: float) -> tuple[float | None, float | None]:
     """When its task may begin at the earliest and at the latest. Raises MissionError (BT194; BT187 if it never may)."""
-    earliest, deadline = moment(command.at, now), moment(command.by, now)
+    earliest, deadline = read_time(command.at, now), read_time(command.by, now)
     if deadline is not None and deadline <= now:
-        raise refused("The task", f"could never begin: its deadline, {format_moment(deadline, now)}, has passed")
+        raise refusal_error("The task", f"could never begin: its deadline, {format_moment(deadline, now)}, has passed")
     if earliest is not None and deadline is not None and earliest > deadline:
         times = (
             f"its earliest time, {format_moment(earliest, now)}, is after its deadline, {format_moment(deadline, now)}"
         )
-        raise refused("The task", f"could never begin: {times}")
+        raise refusal_error("The task", f"could never begin: {times}")
     return earliest, deadline
 
 
@@ -62,17 +62,17 @@ def check_values(mission: Mission, names: Iterable[str]) -> None:
     words = set(re.findall(r"\w+", ports))
     for name in names:
         if not set(re.findall(r"\w+", value_key(name))) <= words:
-            raise refused("The mission", f"has no value '{one_line(name)}'")
+            raise refusal_error("The mission", f"has no value '{one_line(name)}'")
 
 
-def checked_labels(labels: tuple[str, ...], command: str) -> tuple[str, ...]:
+def check_labels(labels: tuple[str, ...], command: str) -> tuple[str, ...]:
     """The labels. Raises MissionError (BT198) if one is empty."""
     if not all(label.strip() for label in labels):
         raise wrong(command, "a label must have a text")
     return labels
 
 
-def checked_priority(priority: int, command: str) -> int:
+def check_priority(priority: int, command: str) -> int:
     """The priority. Raises MissionError (BT198) if it is out of range."""
     least, most = PRIORITIES
     if not least <= priority <= most:
@@ -80,14 +80,14 @@ def checked_priority(priority: int, command: str) -> int:
     return priority
 
 
-def checked_within(seconds: float | None) -> float | None:
+def check_within(seconds: float | None) -> float | None:
     """The time after which a task of a schedule isn't worth beginning. Raises MissionError (BT198) if it isn't one."""
     if seconds is not None and seconds <= 0:
         raise wrong("schedule", "'within' must be more than 0")
     return seconds
 
 
-def choice(kind: type[Choice], given: str, field: str, command: str) -> Choice:
+def choose_member(kind: type[Choice], given: str, field: str, command: str) -> Choice:
     """The member of a kind that a field of a command names. Raises MissionError (BT198)."""
     try:
         return kind(given)
@@ -96,7 +96,7 @@ def choice(kind: type[Choice], given: str, field: str, command: str) -> Choice:
         raise wrong(command, f"'{field}' must be one of {names}, not '{given}'") from None
 
 
-def refused(what: int | str, reason: str) -> MissionError:
+def refusal_error(what: int | str, reason: str) -> MissionError:
     """BT187: what a command is about can't be changed like that. `what` begins a sentence; a number is a task's."""
     named = f"Task {what}" if isinstance(what, int) else what
     return MissionError([diagnostic("BT187", NOWHERE, what=named, reason=reason)])

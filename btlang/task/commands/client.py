@@ -22,7 +22,7 @@ USUAL_NAME = "robot"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")
 
 
-def checked_name(name: str) -> str:
+def check_name(name: str) -> str:
     """The name. Raises MissionError (BT198) if it can't be part of a file name."""
     if _NAME.fullmatch(name) is None:
         raise wrong(name, "it must be up to 32 letters, digits, '-' and '_'")
@@ -31,7 +31,7 @@ def checked_name(name: str) -> str:
 
 def data_folder(name: str) -> str:
     """What the robot keeps: its store, its recordings, its latch."""
-    return os.path.join(user_dir("data"), "robots", checked_name(name))
+    return os.path.join(user_dir("data"), "robots", check_name(name))
 
 
 def robots_known() -> list[str]:
@@ -43,7 +43,7 @@ def robots_known() -> list[str]:
 
 def socket_path(name: str, stop: bool = False) -> str:
     """The socket for commands to a robot; with `stop` the one for the emergency stop alone."""
-    return os.path.join(socket_folder(), f"{checked_name(name)}{'.stop' if stop else ''}.sock")
+    return os.path.join(socket_folder(), f"{check_name(name)}{'.stop' if stop else ''}.sock")
 
 
 def names_up() -> list[str]:
@@ -58,7 +58,7 @@ def names_up() -> list[str]:
 _PATIENCE = 30.0  # seconds for an answer
 
 
-class Client:
+class RobotClient:
     """Sends commands to the robot of a name, "" for the only one that is up. Raises MissionError (BT185) if there is
     no such robot, or several.
     """
@@ -82,7 +82,7 @@ class Client:
         self._lines.close()
         self._socket.close()
 
-    def __enter__(self) -> Client:
+    def __enter__(self) -> RobotClient:
         return self
 
     def __exit__(self, *problem: object) -> None:

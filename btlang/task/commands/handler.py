@@ -14,26 +14,26 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.speech.marks import without_marks
 from btlang.task import messages
-from btlang.task.commands.answers import report, task_data, task_line
+from btlang.task.commands.answers import task_data, task_line, write_report
 from btlang.task.commands.checks import (
     HIGHEST,
+    check_labels,
+    check_priority,
     check_values,
-    checked_labels,
-    checked_priority,
-    choice,
-    refused,
+    choose_member,
+    refusal_error,
     report_times,
     task_times,
 )
 from btlang.task.commands.robot_handlers import ComponentHandler, VoiceHandler, WorldHandler
-from btlang.task.commands.store_handlers import LibraryHandler, ScheduleHandler, unknown
-from btlang.task.execution.emergency import EmergencyStop
+from btlang.task.commands.store_handlers import LibraryHandler, ScheduleHandler, unknown_text_error
+from btlang.task.execution.emergency import EmergencyLatch
 from btlang.task.execution.executor import Executor
-from btlang.task.execution.manager import Manager
+from btlang.task.execution.manager import TaskManager
 from btlang.task.messages import Answer, Command, wrong
 from btlang.task.schedule.calendar import format_moment
-from btlang.task.store.records import ACTIVE, FINAL, WAITING, Act, Ending, MissionText, Restart, State, Task
-from btlang.task.store.task_store import Store
+from btlang.task.store.records import ACTIVE, FINAL, WAITING, Act, MissionText, RequestedEnd, Restart, Task, TaskState
+from btlang.task.store.task_store import TaskStore
 from btlang.text.escaping import one_line
 from btlang.text.json_text import NestedTooDeep, dump_json
 from btlang.text.source import NOWHERE
@@ -57,10 +57,10 @@ class Handler:
 
     def __init__(
         self,
-        store: Store,
-        manager: Manager,
+        store: TaskStore,
+        manager: TaskManager,
         executor: Executor,
-        emergency: EmergencyStop,
+        emergency: EmergencyLatch,
         session: Session,
         admit: Callable[[MissionText], Mission],
         now: Callable[[], float],
@@ -76,7 +76,8 @@ class Handler:
         components, world = ComponentHandler(session), WorldHandler(session, world_input)
         self._does: dict[type[Command], Callable[[Any, str], Answer]] = {
             messages.Submit: self._submit, messages.List: self._list, messages.Show: self._show,
-            messages.Cancel: partial(self._end, State.CANCELED), messages.Kill: partial(self._end, State.KILLED),
+            messages.Cancel: partial(self._end, TaskState.CANCELED),
+            messages.Kill: partial(self._end, TaskState.KILLED),
             messages.Interrupt: self._interrupt, messages.Resume: self._resume, messages.Skip: self._skip,
             messages.Reorder: self._reorder, messages.Again: self._again, messages.AddSchedule: schedules.add,
             messages.RemoveSchedule: schedules.remove, messages.Schedules: schedules.list,
@@ -125,14 +126,14 @@ class Handler:
     def _submit(self, command: messages.Submit, person: str) -> Answer:
         earliest, deadline = task_times(command, self._now())
         task = self.add(
-            self._mission(command), person, priority=checked_priority(command.priority, command.tag),
-            labels=checked_labels(command.labels, command.tag), earliest=earliest, deadline=deadline,
-            restart=choice(Restart, command.restart, "restart", command.tag),
+            self._mission(command), person, priority=check_priority(command.priority, command.tag),
+            labels=check_labels(command.labels, command.tag), earliest=earliest, deadline=deadline,
+            restart=choose_member(Restart, command.restart, "restart", command.tag),
         )  # fmt: skip
         return Answer(True, f"Task {task.id} is queued.", {"task": task_data(task)})
 
     def _list(self, command: messages.List, person: str) -> Answer:
-        wanted = {choice(State, state, "states", command.tag) for state in command.states}
+        wanted = {choose_member(TaskState, state, "states", command.tag) for state in command.states}
         states = wanted or WAITING | ACTIVE
         found = self._store.tasks(states, label=command.label, newest=bool(wanted & FINAL), limit=command.limit)
         found.sort(key=lambda task: task.state not in ACTIVE)
@@ -166,13 +167,13 @@ class Handler:
             lines.append(f"  recorded in {one_line(task.recording)}")
         return Answer(True, "\n".join(lines), {"task": {**data, "text": task.mission.text}})
 
-    def _end(self, state: State, command: messages.Cancel | messages.Kill, person: str) -> Answer:
+    def _end(self, state: TaskState, command: messages.Cancel | messages.Kill, person: str) -> Answer:
         task = self._open(command.task)
         cause = _cause(command.reason, person)
         ended, until = None, time.monotonic() + _BEGINNING
         while ended is None:
             now = self._now()
-            ended = self._executor.end(task.id, Ending(state, cause, person)) or self._store.change(
+            ended = self._executor.end(task.id, RequestedEnd(state, cause, person)) or self._store.change(
                 task.id, WAITING, state, time=now, cause=cause, person=person, ended=now
             )
             if ended is None:  # it ends at this moment, or is about to begin
@@ -183,7 +184,7 @@ class Handler:
         if ended.state is state:
             return Answer(True, f"Task {task.id} is {state}.", {"task": self._data(ended)})
         if ended.state in FINAL:
-            raise refused(task.id, f"was already over: {ended.state}")
+            raise refusal_error(task.id, f"was already over: {ended.state}")
         return Answer(True, f"Task {task.id} is about to be {state}.", {"task": self._data(ended)})
 
     def _interrupt(self, command: messages.Interrupt, person: str) -> Answer:
@@ -192,12 +193,14 @@ class Handler:
         run = self._executor.run
         if self._executor.task is not None and self._executor.task.id == task.id and run is not None:
             run.save()  # raises if it can't be kept
-        ended = self._executor.end(task.id, Ending(State.DELAYED, cause, person, token))
+        ended = self._executor.end(task.id, RequestedEnd(TaskState.DELAYED, cause, person, token))
         if ended is None:
             state = self._known(task.id).state
-            raise refused(task.id, "ends already" if state is State.UNDERWAY else f"isn't under way: it's {state}")
+            raise refusal_error(
+                task.id, "ends already" if state is TaskState.UNDERWAY else f"isn't under way: it's {state}"
+            )
         if ended.state in FINAL:
-            raise refused(task.id, f"was already over: {ended.state}")
+            raise refusal_error(task.id, f"was already over: {ended.state}")
         text = f"Task {task.id} is interrupted. To let it go on, use the token {token}."
         return Answer(True, text, {"task": self._data(ended), "token": token})
 
@@ -206,27 +209,29 @@ class Handler:
             ended = self._executor.resume()
             return Answer(True, f"That ends {ended}." if ended else "Nothing was paused.", {"ended": ended})
         task = self._open(command.task)
-        if task.state is not State.DELAYED or not task.token:
-            raise refused(task.id, f"wasn't interrupted: it's {task.state}")
+        if task.state is not TaskState.DELAYED or not task.token:
+            raise refusal_error(task.id, f"wasn't interrupted: it's {task.state}")
         if not command.token:
-            raise refused(task.id, "was interrupted, and only the token of that lets it go on: --token TOKEN")
+            raise refusal_error(task.id, "was interrupted, and only the token of that lets it go on: --token TOKEN")
         if command.token != task.token:
-            raise refused(task.id, "has another token: it was interrupted again, or by somebody else")
+            raise refusal_error(task.id, "has another token: it was interrupted again, or by somebody else")
         cause = f"{person or 'somebody'} lets it go on"
         resumed = self._store.change(
-            task.id, {State.DELAYED}, State.QUEUED, time=self._now(), cause=cause, person=person, token=""
+            task.id, {TaskState.DELAYED}, TaskState.QUEUED, time=self._now(), cause=cause, person=person, token=""
         )
         if resumed is None:
-            raise refused(task.id, "has changed meanwhile")
+            raise refusal_error(task.id, "has changed meanwhile")
         self._executor.wake()
         return Answer(True, f"Task {task.id} goes on when it's its turn.", {"task": self._data(resumed)})
 
     def _skip(self, command: messages.Skip, person: str) -> Answer:
         task, now = self._open(command.task), self._now()
         cause = _cause(command.reason, person)
-        skipped = self._store.change(task.id, WAITING, State.SKIPPED, time=now, cause=cause, person=person, ended=now)
+        skipped = self._store.change(
+            task.id, WAITING, TaskState.SKIPPED, time=now, cause=cause, person=person, ended=now
+        )
         if skipped is None:
-            raise refused(task.id, "has begun, so it can't be skipped: cancel it")
+            raise refusal_error(task.id, "has begun, so it can't be skipped: cancel it")
         self._executor.wake()
         return Answer(True, f"Task {task.id} is skipped.", {"task": self._data(skipped)})
 
@@ -235,7 +240,7 @@ class Handler:
         if (command.priority is None) is (command.before == 0):
             raise wrong("reorder", "it needs either 'priority' or 'before'")
         if command.priority is not None:
-            moved = self._store.amend(task.id, priority=checked_priority(command.priority, command.tag))
+            moved = self._store.amend(task.id, priority=check_priority(command.priority, command.tag))
         else:
             moved = self._moved_before(task, self._open(command.before))
         self._executor.wake()
@@ -244,10 +249,10 @@ class Handler:
 
     def _moved_before(self, task: Task, other: Task) -> Task | None:
         if task.id == other.id:
-            raise refused(task.id, "can't come before itself")
+            raise refusal_error(task.id, "can't come before itself")
         for each in (task, other):
             if each.state in ACTIVE:
-                raise refused(each.id, f"has begun: it's {each.state}")
+                raise refusal_error(each.id, f"has begun: it's {each.state}")
         return self._store.move_before(task.id, other.id)
 
     def _again(self, command: messages.Again, person: str) -> Answer:
@@ -273,7 +278,7 @@ class Handler:
 
     def _step(self, command: messages.Step, person: str) -> Answer:
         if not self._executor.step():
-            raise refused("The robot", "has no paused mission to step")
+            raise refusal_error("The robot", "has no paused mission to step")
         return Answer(True, "One tick.", {})
 
     def _stop(self, command: messages.EmergencyStop, person: str) -> Answer:
@@ -294,7 +299,7 @@ class Handler:
     def _say(self, command: messages.Say, person: str) -> Answer:
         say = getattr(self._session.robot, "say", None)
         if say is None:
-            raise refused("The robot", "has no voice")
+            raise refusal_error("The robot", "has no voice")
         run = self._executor.run
         call = partial(say, without_marks(command.text))
         if run is not None:
@@ -326,7 +331,7 @@ class Handler:
 
     def _report(self, command: messages.Report, person: str) -> Answer:
         since, until = report_times(command.since, command.until, self._now())
-        lines = list(report(self._store, since, until))
+        lines = list(write_report(self._store, since, until))
         return Answer(True, "\n".join(lines), {"lines": lines})
 
     def _trail(self, command: messages.Trail, person: str) -> Answer:
@@ -345,7 +350,7 @@ class Handler:
                 raise wrong(command.tag, "it needs 'text' or 'name'")
             found = self._store.text(name)
             if found is None:
-                raise unknown(name, is_asked_for=True)
+                raise unknown_text_error(name, is_asked_for=True)
             text, revision = found.text, found.number
         mission = MissionText(text, name, revision, dict(command.values), command.keywords)
         check_values(self._admit(mission), mission.values)
@@ -354,13 +359,13 @@ class Handler:
     def _known(self, number: int) -> Task:
         task = self._store.task(number) if abs(number) <= HIGHEST else None
         if task is None:
-            raise refused(number, "isn't known")
+            raise refusal_error(number, "isn't known")
         return task
 
     def _open(self, number: int) -> Task:
         task = self._known(number)
         if task.state in FINAL:
-            raise refused(number, f"was already over: {task.state}")
+            raise refusal_error(number, f"was already over: {task.state}")
         return task
 
     def _data(self, task: Task) -> dict[str, Any]:

@@ -22,7 +22,7 @@ from btlang.run.world_input import WorldInput
 from btlang.session import Session
 from btlang.speech.engine import Utterance
 from btlang.task import messages
-from btlang.task.commands.checks import choice, refused
+from btlang.task.commands.checks import choose_member, refusal_error
 from btlang.task.messages import Answer, wrong
 from btlang.text.escaping import one_line
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 _WIDEST = 320  # pixels of a picture: many may watch
 
 
-class Change(StrEnum):
+class ComponentChange(StrEnum):
     """What may be done to a component."""
 
     RESTART = "restart"
@@ -76,13 +76,13 @@ class ComponentHandler:
         """The body. Raises MissionError."""
         body = getattr(self._session.robot, "body", None)
         if body is None or not any(joint.link for joint in body.joints):
-            raise refused("The robot", "has no links in its file, so there is no URDF of it")
+            raise refusal_error("The robot", "has no links in its file, so there is no URDF of it")
         return Answer(True, f"The body of the {one_line(body.name)}.", {"urdf": urdf(body)})
 
     def change(self, command: messages.ChangeComponent, person: str) -> Answer:
         """One of them. Raises MissionError."""
         connection = self._session.connection
-        act = choice(Change, command.act, "act", command.tag)
+        act = choose_member(ComponentChange, command.act, "act", command.tag)
         if not isinstance(connection, ComponentConnection):
             raise wrong(command.tag, "the robot has no components")
         try:
@@ -91,7 +91,11 @@ class ComponentHandler:
             raise wrong(command.tag, str(problem)) from None
         waits = connection.manager.is_free(command.name)
         when = "now" if waits else "as soon as no running mission uses it"
-        done = {Change.UNLOAD: "is brought down", Change.RESTART: "is started anew", Change.LOAD: "is loaded"}[act]
+        done = {
+            ComponentChange.UNLOAD: "is brought down",
+            ComponentChange.RESTART: "is started anew",
+            ComponentChange.LOAD: "is loaded",
+        }[act]
         return Answer(True, f"The {one_line(command.name)} {done}, {when}.", component_data(self._session))
 
 
@@ -108,10 +112,10 @@ def component_data(session: Session) -> dict[str, list[dict[str, Any]]]:
     return {"components": components, "devices": devices}
 
 
-def _change(manager: Manager, act: Change, name: str, session: Session) -> None:
-    if act is Change.RESTART:
+def _change(manager: Manager, act: ComponentChange, name: str, session: Session) -> None:
+    if act is ComponentChange.RESTART:
         manager.restart(name)
-    elif act is Change.UNLOAD:
+    elif act is ComponentChange.UNLOAD:
         manager.unload(name)
     else:
         file = session.robot.body.file
@@ -155,9 +159,11 @@ class VoiceHandler:
         robot = self._session.robot
         body, said = getattr(robot, "body", None), getattr(robot, "said", None)
         if body is not None and any(device.kind == "speaker" for device in body.devices):
-            raise refused("The robot", "has a speaker, which plays what it says")
+            raise refusal_error("The robot", "has a speaker, which plays what it says")
         if said is None or not said.samples:
-            raise refused("The robot", "has said nothing that can be heard: its voice has no engine, or was silent")
+            raise refusal_error(
+                "The robot", "has said nothing that can be heard: its voice has no engine, or was silent"
+            )
         began = min(max(0.0, robot.time - robot.said_at), said.seconds)
         data = {"wav": b64encode(as_wav(said, _LONGEST_SOUND)).decode(), "text": said.text, "seconds": began}
         return Answer(True, f'It says "{said.text}".', data)
@@ -191,7 +197,7 @@ class WorldHandler:
             raise wrong(command.tag, f"it needs a text of 1 to {_LONGEST} characters")
         question = self._world_input.question
         if not question:
-            raise refused("The robot", "isn't asking anything")
+            raise refusal_error("The robot", "isn't asking anything")
         self._world_input.type(text)
         return Answer(True, "The robot hears that.", {"question": question})
 
@@ -202,14 +208,14 @@ class WorldHandler:
         held = command.act == _HOLD
         push = _button(self._session)
         if push is None:
-            raise refused("The robot", 'has no microphone that waits for a button: "push" of its ears')
+            raise refusal_error("The robot", 'has no microphone that waits for a button: "push" of its ears')
         push(held)
         return Answer(True, "The robot listens." if held else "The robot has heard it.", {})
 
     def invite(self, command: messages.InviteVisitor, person: str) -> Answer:
         """Somebody comes into a simulated world."""
         if not takes_visitors(self._session):
-            raise refused("The robot", "isn't in a simulated world, so no visitor can be made to come")
+            raise refusal_error("The robot", "isn't in a simulated world, so no visitor can be made to come")
         self._world_input.invite()
         return Answer(True, "A visitor comes.", {})
 

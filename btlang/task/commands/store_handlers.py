@@ -8,13 +8,20 @@ from btlang.api import Mission
 from btlang.robots.body_file import read_body
 from btlang.robots.world_problem import read_world
 from btlang.task import messages
-from btlang.task.commands.answers import deleted, outdated, revision_data, schedule_data, schedule_line
-from btlang.task.commands.checks import HIGHEST, checked_labels, checked_priority, checked_within, choice, refused
+from btlang.task.commands.answers import describe_deletion, outdated_error, revision_data, schedule_data, schedule_line
+from btlang.task.commands.checks import (
+    HIGHEST,
+    check_labels,
+    check_priority,
+    check_within,
+    choose_member,
+    refusal_error,
+)
 from btlang.task.messages import Answer, wrong
 from btlang.task.schedule.calendar import format_moment
 from btlang.task.schedule.recurrence import read_rule
-from btlang.task.store.records import Kind, Missed, MissionText, Overlap, Restart, Schedule
-from btlang.task.store.task_store import Store
+from btlang.task.store.records import LibraryKind, Missed, MissionText, Overlap, Restart, Schedule
+from btlang.task.store.task_store import TaskStore
 from btlang.text.escaping import one_line
 from btlang.text.source import Source
 
@@ -28,7 +35,12 @@ if TYPE_CHECKING:
 MOST_CHARACTERS = 200_000
 """Of a text from others that isn't a mission; a world or robot file takes some seconds to read at most."""
 _LONGEST_NAME = 200
-_CALLED = {Kind.MISSION: "mission", Kind.WORLD: "world", Kind.ROBOT: "robot file", Kind.TEST: "test file"}
+_CALLED = {
+    LibraryKind.MISSION: "mission",
+    LibraryKind.WORLD: "world",
+    LibraryKind.ROBOT: "robot file",
+    LibraryKind.TEST: "test file",
+}
 
 
 class LibraryHandler:
@@ -40,7 +52,7 @@ class LibraryHandler:
 
     def __init__(
         self,
-        store: Store,
+        store: TaskStore,
         admit: Callable[[MissionText], Mission],
         now: Callable[[], float],
         body: Body | None,
@@ -50,29 +62,29 @@ class LibraryHandler:
 
     def put(self, command: messages.Put, person: str) -> Answer:
         """A new revision of a text that the robot can use."""
-        name, kind = command.name, choice(Kind, command.kind, "kind", command.tag)
+        name, kind = command.name, choose_member(LibraryKind, command.kind, "kind", command.tag)
         if not name.strip() or "/" in name or not name.isprintable() or len(name) > _LONGEST_NAME:
             reason = f"a name of at most {_LONGEST_NAME} characters, without '/', that can be shown"
             raise wrong(command.tag, f"'name' must be {reason}")
         self._check(kind, name, command.text)
         kept = self._store.put_text(name, command.text, person, self._now(), command.revision, kind)
         if kept is None:
-            return outdated(command, _CALLED[kind], self._store.text(name, kind=kind))
+            return outdated_error(command, _CALLED[kind], self._store.text(name, kind=kind))
         text = f"'{one_line(kept.name)}' is in the library, revision {kept.number}."
         return Answer(True, text, {kind: revision_data(kept)})
 
     def delete(self, command: messages.Delete, person: str) -> Answer:
         """Takes a text out."""
-        kind = choice(Kind, command.kind, "kind", command.tag)
+        kind = choose_member(LibraryKind, command.kind, "kind", command.tag)
         if not self._store.delete_text(command.name, person, self._now(), kind):
-            raise unknown(command.name, kind)
-        missions = [] if kind is not Kind.MISSION else self._store.schedules()
+            raise unknown_text_error(command.name, kind)
+        missions = [] if kind is not LibraryKind.MISSION else self._store.schedules()
         left = [each.id for each in missions if each.mission.revision and each.mission.name == command.name]
-        return Answer(True, deleted(command.name, left), {"schedules": left})
+        return Answer(True, describe_deletion(command.name, left), {"schedules": left})
 
     def list(self, command: messages.Library, person: str) -> Answer:
         """All texts of a kind, or what there is of one."""
-        kind = choice(Kind, command.kind, "kind", command.tag)
+        kind = choose_member(LibraryKind, command.kind, "kind", command.tag)
         found = self._found(command, kind)
         now = self._now()
         lines = [
@@ -82,11 +94,11 @@ class LibraryHandler:
         ]
         data = [{**revision_data(each), "text": each.text} for each in found]
         if command.name and not found:
-            raise unknown(command.name, kind)
-        empty = "The library is empty." if kind is Kind.MISSION else f"The library has no {_CALLED[kind]}s."
+            raise unknown_text_error(command.name, kind)
+        empty = "The library is empty." if kind is LibraryKind.MISSION else f"The library has no {_CALLED[kind]}s."
         return Answer(True, "\n".join(lines) or empty, {f"{kind}s": data})
 
-    def _found(self, command: messages.Library, kind: Kind) -> Sequence[Revision]:
+    def _found(self, command: messages.Library, kind: LibraryKind) -> Sequence[Revision]:
         if not command.name:
             return self._store.texts(kind)
         if command.revision is None:
@@ -94,36 +106,36 @@ class LibraryHandler:
         found = self._store.text(command.name, command.revision, kind) if command.revision <= HIGHEST else None
         return [] if found is None else [found]
 
-    def _check(self, kind: Kind, name: str, text: str) -> None:
+    def _check(self, kind: LibraryKind, name: str, text: str) -> None:
         """Raises MissionError with what is wrong with a text. Reads only the text, and runs nothing."""
-        if kind is Kind.MISSION:
+        if kind is LibraryKind.MISSION:
             self._admit(MissionText(text, name))
             return
         if len(text) > MOST_CHARACTERS:
             raise wrong("put", f"a {_CALLED[kind]} may have at most {MOST_CHARACTERS:,} characters")
-        if kind is Kind.TEST:
+        if kind is LibraryKind.TEST:
             return
         source = Source(text, one_line(name), roots=())
-        if kind is Kind.ROBOT:
+        if kind is LibraryKind.ROBOT:
             read_body(source, self._overs)
             return
         read_world(source, self._body)
 
 
-def kept_text(store: Store, name: str, kind: Kind) -> Source:
+def latest_text(store: TaskStore, name: str, kind: LibraryKind) -> Source:
     """The newest revision of a world or robot file. Raises MissionError (BT187) if there's none."""
     found = store.text(name, kind=kind)
     if found is None:
-        raise unknown(name, kind)
+        raise unknown_text_error(name, kind)
     return Source(found.text, one_line(name), roots=())
 
 
-def unknown(name: str, kind: Kind = Kind.MISSION, is_asked_for: bool = False) -> MissionError:
+def unknown_text_error(name: str, kind: LibraryKind = LibraryKind.MISSION, is_asked_for: bool = False) -> MissionError:
     """BT187: there's no such text. One that `is_asked_for` as a task may be meant as the mission itself."""
     reason = "isn't in the library"
     if is_asked_for and " " in name:
         reason += f"; to give a mission as text, write -c before it: btc task add -c '{one_line(name)}'"
-    return refused(f"The {_CALLED[kind]} '{name}'", reason)
+    return refusal_error(f"The {_CALLED[kind]} '{name}'", reason)
 
 
 class ScheduleHandler:
@@ -135,7 +147,7 @@ class ScheduleHandler:
 
     def __init__(
         self,
-        store: Store,
+        store: TaskStore,
         wake: Callable[[], object],
         mission_of: Callable[[messages.AddSchedule], MissionText],
         now: Callable[[], float],
@@ -148,14 +160,14 @@ class ScheduleHandler:
         mission = self._mission_of(command)
         first = recurrence.next(now)
         if first is None:
-            raise refused(f"The schedule '{recurrence}'", "would never be due: its time has passed")
+            raise refusal_error(f"The schedule '{recurrence}'", "would never be due: its time has passed")
         made = self._store.add_schedule(
             Schedule(
                 0, str(recurrence), command.zone, mission, person, now, first,
-                checked_priority(command.priority, command.tag), checked_labels(command.labels, command.tag),
-                choice(Restart, command.restart, "restart", command.tag),
-                choice(Overlap, command.overlap, "overlap", command.tag),
-                choice(Missed, command.missed, "missed", command.tag), checked_within(command.within),
+                check_priority(command.priority, command.tag), check_labels(command.labels, command.tag),
+                choose_member(Restart, command.restart, "restart", command.tag),
+                choose_member(Overlap, command.overlap, "overlap", command.tag),
+                choose_member(Missed, command.missed, "missed", command.tag), check_within(command.within),
             )
         )  # fmt: skip
         self._wake()
@@ -165,7 +177,7 @@ class ScheduleHandler:
     def remove(self, command: messages.RemoveSchedule, person: str) -> Answer:
         """Ends one."""
         if command.schedule > HIGHEST or not self._store.delete_schedule(command.schedule):
-            raise refused(f"Schedule {command.schedule}", "isn't known")
+            raise refusal_error(f"Schedule {command.schedule}", "isn't known")
         return Answer(True, f"Schedule {command.schedule} is removed.", {})
 
     def list(self, command: messages.Schedules, person: str) -> Answer:

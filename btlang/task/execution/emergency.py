@@ -30,7 +30,7 @@ def shut_latch(folder: str, person: str, reason: str = "") -> None:
     _write(latch_path(folder), _reason(person, reason))
 
 
-class EmergencyStop:
+class EmergencyLatch:
     """`stop` may be called from any thread: it sets a flag, stops the robot by `halt`, and is done. It takes no lock,
     and waits for nothing: what keeps the latch in the file at `path` is another thread, which also looks whether
     somebody else has shut it there.

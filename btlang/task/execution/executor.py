@@ -14,13 +14,13 @@ from btlang.engine.leaves.leaf import described
 from btlang.engine.status import RUNNING
 from btlang.run.outcome import EMERGENCY, SUSPENDED
 from btlang.session import Run, Session
-from btlang.task.execution.emergency import EmergencyStop
-from btlang.task.execution.manager import ENDED, Manager, recovered
+from btlang.task.execution.emergency import EmergencyLatch
+from btlang.task.execution.manager import ENDED, TaskManager, describe_recovery
 from btlang.task.execution.missions import HouseRules
 from btlang.task.execution.run_sinks import Recordings, RunWatch, add_sinks, commands_of, indices_of, reason_of
 from btlang.task.store.database import Outbox, StoreError
-from btlang.task.store.records import ACTIVE, FINAL, Ending, MissionText, Restart, State, Task
-from btlang.task.store.task_store import Store
+from btlang.task.store.records import ACTIVE, FINAL, MissionText, RequestedEnd, Restart, Task, TaskState
+from btlang.task.store.task_store import TaskStore
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -51,9 +51,9 @@ class Executor:
     def __init__(
         self,
         session: Session,
-        store: Store,
-        manager: Manager,
-        emergency: EmergencyStop,
+        store: TaskStore,
+        manager: TaskManager,
+        emergency: EmergencyLatch,
         rules: HouseRules,
         idle: Mission,
         *,
@@ -75,7 +75,7 @@ class Executor:
         self._task: Task | None = None
         self._run: Run | None = None
         self._watch: RunWatch | None = None
-        self._ending: Ending | None = None
+        self._ending: RequestedEnd | None = None
         self._paused = self._closing = self._hangs = False
         self._outbox = Outbox(trouble, lambda: None if recordings is None else recordings.make_room())
         self._next: float | None = None  # when the manager wants to look again
@@ -174,8 +174,10 @@ class Executor:
         ended = ["the pause"] if self._paused else []
         self._paused = False
         if self._store.setting(_BLOCKED):
-            for task in self._store.tasks({State.BLOCKED}):
-                self._store.change(task.id, {State.BLOCKED}, State.QUEUED, time=self._now(), cause="it may go on")
+            for task in self._store.tasks({TaskState.BLOCKED}):
+                self._store.change(
+                    task.id, {TaskState.BLOCKED}, TaskState.QUEUED, time=self._now(), cause="it may go on"
+                )
             self._store.set_setting(_BLOCKED, "")  # last, so that no other task comes before these
             ended.append("the wait for help")
         run = self._run
@@ -192,7 +194,7 @@ class Executor:
         run.step()
         return True
 
-    def end(self, task: int, ending: Ending) -> Task | None:
+    def end(self, task: int, ending: RequestedEnd) -> Task | None:
         """Ends the task under way, if it is this one; returns the task as it is then, or soon will be.
 
         A task whose mission ends by itself in the same moment has the state of that.
@@ -202,9 +204,9 @@ class Executor:
                 return None
             if self._ending is None or ending.outranks(self._ending):
                 self._ending = ending
-                ends = {State.KILLED: self._run.emergency_stop, State.DELAYED: self._run.suspend}
+                ends = {TaskState.KILLED: self._run.emergency_stop, TaskState.DELAYED: self._run.suspend}
                 ends.get(ending.state, self._run.stop)()
-            elif ending.state is State.DELAYED:  # it ends already, or has another token
+            elif ending.state is TaskState.DELAYED:  # it ends already, or has another token
                 return None
             self._changed.wait_for(lambda: self._task is None or self._task.id != task, _ANSWER)
         return self._store.task(task)
@@ -235,7 +237,7 @@ class Executor:
         if task is None:
             self._idle()
         elif (hindrance := self._hindrance()) != "":  # it came meanwhile
-            self._change(task, State.QUEUED, hindrance)
+            self._change(task, TaskState.QUEUED, hindrance)
         else:
             self._do(task)
 
@@ -270,13 +272,13 @@ class Executor:
         try:
             try:
                 run = self._prepared(task)
-                self._change(task, State.UNDERWAY, "it goes on" if task.saved else "it begins", started=self._now())
+                self._change(task, TaskState.UNDERWAY, "it goes on" if task.saved else "it begins", started=self._now())
                 self._latest = task.saved
                 outcome = self._execute(run)
             except MissionError as error:
-                self._change(task, State.ERROR, error.diagnostics[0].message)
+                self._change(task, TaskState.ERROR, error.diagnostics[0].message)
             except (Exception, SystemExit) as problem:  # a word or a sink of the user's is broken
-                self._change(task, State.ERROR, described(problem))
+                self._change(task, TaskState.ERROR, described(problem))
             else:
                 self._end(task, run, outcome)
         finally:
@@ -322,12 +324,12 @@ class Executor:
             self._new = False
             for other in self._manager.refresh(now):
                 if other.id == task.id:
-                    self._ending = Ending(State.CANCELED, "its schedule replaces it", "")
+                    self._ending = RequestedEnd(TaskState.CANCELED, "its schedule replaces it", "")
                     run.stop()
             self._next = self._manager.next_time(now)
             if not watch.acting and self._ending is None and self._manager.is_more_urgent(task, now):
                 run.save()  # raises if it can't be kept
-                self._ending = Ending(State.DELAYED, "a more urgent task comes first", "")
+                self._ending = RequestedEnd(TaskState.DELAYED, "a more urgent task comes first", "")
                 run.suspend()
         except (StoreError, MissionError) as error:
             self._trouble(str(error))
@@ -354,30 +356,30 @@ class Executor:
         ending, standstill = self._ending, outcome.standstill
         warning = f"WARNING: {standstill}" if standstill.alarming else ""
 
-        def change(state: State, cause: str, *person: str, **fields: Any) -> None:
+        def change(state: TaskState, cause: str, *person: str, **fields: Any) -> None:
             self._change(task, state, "; ".join(filter(None, (cause, warning))), *person, **fields)
 
         if outcome.failure is not None and self._rules.is_own(outcome.failure.path):
             reason = outcome.failure.reason
-            change(State.BLOCKED, f"a house rule failed: {reason}", saved=self._latest)
+            change(TaskState.BLOCKED, f"a house rule failed: {reason}", saved=self._latest)
             self._ask_for_help(reason)
         elif outcome.failure is not None:
-            change(State.FAILED, reason_of(outcome))
+            change(TaskState.FAILED, reason_of(outcome))
         elif not outcome.stopped:
-            change(State.COMPLETED, "" if outcome.seconds else NOTHING_TO_DO)
+            change(TaskState.COMPLETED, "" if outcome.seconds else NOTHING_TO_DO)
         elif outcome.stopped == EMERGENCY and len(self._emergency.stops) > self._stops:  # perhaps it's released already
-            change(State.KILLED, self._emergency.stops[-1])
-        elif ending is not None and ending.state is State.DELAYED:
+            change(TaskState.KILLED, self._emergency.stops[-1])
+        elif ending is not None and ending.state is TaskState.DELAYED:
             saved = json.dumps(run.save())
-            change(State.DELAYED, ending.cause, ending.person, saved=saved, token=ending.token)
+            change(TaskState.DELAYED, ending.cause, ending.person, saved=saved, token=ending.token)
         elif ending is not None:
             change(ending.state, ending.cause, ending.person)
         else:
             saved = json.dumps(run.save()) if outcome.stopped == SUSPENDED and task.restart is Restart.RESUME else ""
             if saved:
                 self._outbox.write(partial(self._store.amend, task.id, saved=saved))
-            begun, reason = task.replace(state=State.UNDERWAY, saved=saved), "the robot was shut down"
-            self._outbox.write(partial(recovered, begun, self._store, self._now(), reason))
+            begun, reason = task.replace(state=TaskState.UNDERWAY, saved=saved), "the robot was shut down"
+            self._outbox.write(partial(describe_recovery, begun, self._store, self._now(), reason))
 
     def _ask_for_help(self, reason: str) -> None:
         """A house rule failed: the robot stands still, and people are called."""
@@ -387,7 +389,7 @@ class Executor:
         if say is not None:
             say("I need help.")
 
-    def _change(self, task: Task, state: State, cause: str, person: str = "", **fields: Any) -> None:
+    def _change(self, task: Task, state: TaskState, cause: str, person: str = "", **fields: Any) -> None:
         now = self._now()
         if state in FINAL:
             fields |= {"ended": now, "saved": ""}

@@ -9,11 +9,11 @@ from collections.abc import Callable, Iterator
 from btlang.engine.status import FAILURE
 from btlang.task.schedule.calendar import format_moment
 from btlang.task.schedule.recurrence import read_rule
-from btlang.task.store.records import ACTIVE, WAITING, Missed, MissionText, Overlap, Restart, Schedule, State, Task
+from btlang.task.store.records import ACTIVE, WAITING, Missed, MissionText, Overlap, Restart, Schedule, Task, TaskState
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.task.store.task_store import Store
+    from btlang.task.store.task_store import TaskStore
 
 _PUNCTUAL = 60.0  # seconds after its time from which one that was missed counts as missed
 DAY = 86_400.0
@@ -24,7 +24,7 @@ ENDED = "ended"
 """In place of a saved run: the status with which its tree ended."""
 
 
-class Manager:
+class TaskManager:
     """All times are seconds since 1970. Methods raise StoreError where the store can't be used.
 
     A task is due if it is queued, or was suspended for a more urgent one, and its earliest time has come.
@@ -32,7 +32,7 @@ class Manager:
 
     def __init__(
         self,
-        store: Store,
+        store: TaskStore,
         keeps: float = math.inf,
         needs: Callable[[MissionText], tuple[str, ...]] = lambda mission: (),
     ) -> None:
@@ -46,10 +46,10 @@ class Manager:
         """
         found = []
         for task in self._store.tasks(ACTIVE):
-            if stopped and task.state is State.UNDERWAY:
-                after = self._store.change(task.id, ACTIVE, State.KILLED, time=now, cause=stopped, ended=now)
+            if stopped and task.state is TaskState.UNDERWAY:
+                after = self._store.change(task.id, ACTIVE, TaskState.KILLED, time=now, cause=stopped, ended=now)
             else:
-                after = recovered(task, self._store, now, CUT_OFF)
+                after = describe_recovery(task, self._store, now, CUT_OFF)
             if after is not None:
                 found.append(after)
         return found
@@ -102,9 +102,9 @@ class Manager:
         """Why a task that waits hasn't begun yet. `first` is that of the method, if known."""
         if task.state not in WAITING:
             return ""
-        if task.state is State.DELAYED and task.token:
+        if task.state is TaskState.DELAYED and task.token:
             return f"it was interrupted: {task.reason}" if task.reason else "it was interrupted"
-        if task.state is State.BLOCKED:
+        if task.state is TaskState.BLOCKED:
             return task.reason
         if task.earliest is not None and task.earliest > now:
             return f"its time is {format_moment(task.earliest, now)}"
@@ -160,7 +160,7 @@ class Manager:
                     yield other
 
     def _skip(self, task: Task, now: float, reason: str) -> None:
-        self._store.change(task.id, WAITING, State.SKIPPED, time=now, cause=reason, ended=now)
+        self._store.change(task.id, WAITING, TaskState.SKIPPED, time=now, cause=reason, ended=now)
 
     def _task(self, schedule: Schedule, time: float, now: float) -> Task:
         deadline = None if schedule.within is None else time + schedule.within
@@ -171,16 +171,16 @@ class Manager:
         )  # fmt: skip
 
 
-def recovered(task: Task, store: Store, now: float, reason: str) -> Task | None:
+def describe_recovery(task: Task, store: TaskStore, now: float, reason: str) -> Task | None:
     """A task that was under way and is no longer, as it says itself: given up, again from its start, or resumed."""
-    if task.state is State.STANDBY:
-        return store.change(task.id, ACTIVE, State.QUEUED, time=now, cause=f"{reason} before it began")
+    if task.state is TaskState.STANDBY:
+        return store.change(task.id, ACTIVE, TaskState.QUEUED, time=now, cause=f"{reason} before it began")
     if task.restart is Restart.GIVE_UP:
-        return store.change(task.id, ACTIVE, State.ERROR, time=now, cause=reason, ended=now)
+        return store.change(task.id, ACTIVE, TaskState.ERROR, time=now, cause=reason, ended=now)
     saved = task.saved if task.restart is Restart.RESUME else ""
     status = json.loads(saved).get(ENDED) if saved else None
     if status is not None:
-        state = State.FAILED if status is FAILURE else State.COMPLETED
+        state = TaskState.FAILED if status is FAILURE else TaskState.COMPLETED
         return store.change(task.id, ACTIVE, state, time=now, cause=f"{reason} when it was over", ended=now)
     how = "goes on where it was" if saved else "begins again"
-    return store.change(task.id, ACTIVE, State.QUEUED, time=now, cause=f"{reason}; it {how}", saved=saved)
+    return store.change(task.id, ACTIVE, TaskState.QUEUED, time=now, cause=f"{reason}; it {how}", saved=saved)

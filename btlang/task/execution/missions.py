@@ -109,7 +109,7 @@ _EXAMPLE = "whenever the battery is below 20%, go to the dock then charge to 80%
 
 
 class HouseRules:
-    """The rules of a robot, the first one the most important. Made by `house_rules` or `no_house_rules`."""
+    """The rules of a robot, the first one the most important. Made by `read_house_rules` or `no_house_rules`."""
 
     def __init__(self, mission: Mission | None) -> None:
         self._mission = mission
@@ -153,7 +153,7 @@ def no_house_rules() -> HouseRules:
     return HouseRules(None)
 
 
-def house_rules(mission: Mission) -> HouseRules:
+def read_house_rules(mission: Mission) -> HouseRules:
     """Those in a mission. Raises MissionError (BT188) if there is anything but rules in it."""
     node = mission.tree.root
     while _is_rule(node):

@@ -15,13 +15,13 @@ from btlang.passes.scripts import is_prepared
 from btlang.run.bus import INLINE
 from btlang.run.events import LOGGED, Arrived, DoorMoved, Ended, Event, PeriodPassed, StatusesChanged, Stopped
 from btlang.run.json_log import as_json
-from btlang.run.robot_state import RobotState, asked, rounded_scan
+from btlang.run.robot_state import RobotState, ask_sensor, round_scan
 from btlang.run.snapshot import Doing, KnownNodes, text_and_places
 from btlang.session import Run
 from btlang.task.live.robot_now import BodyNow, MapNow
 from btlang.task.store.database import StoreError
-from btlang.task.store.records import Change
-from btlang.task.store.task_store import Store
+from btlang.task.store.records import TaskChange
+from btlang.task.store.task_store import TaskStore
 from btlang.text.utf16 import Units
 
 TYPE_CHECKING = False
@@ -31,17 +31,17 @@ if TYPE_CHECKING:
     from btlang.robots.geometry import Point
     from btlang.robots.world import World
     from btlang.run.events import Sink
-    from btlang.task.store.records import Change
+    from btlang.task.store.records import TaskChange
     from btlang.tree.node import Node
 
-    class Changes(Protocol):
-        """What became of tasks; see btlang.task.store.task_store.Store."""
+    class ChangeSource(Protocol):
+        """What became of tasks; see btlang.task.store.task_store.TaskStore."""
 
         listeners: list[Callable[[], object]]
 
         def latest_change(self) -> int: ...
 
-        def changes(self, *, after: int, limit: int) -> Sequence[tuple[int, Change]]: ...
+        def changes(self, *, after: int, limit: int) -> Sequence[tuple[int, TaskChange]]: ...
 
 
 _EARLY = 0.5  # of a period
@@ -102,7 +102,7 @@ class Feed:
 
     def __init__(
         self,
-        store: Changes,
+        store: ChangeSource,
         robot: Callable[[], dict[str, Any]],
         words: dict[str, Any],
         world: World | None = None,
@@ -167,7 +167,7 @@ class Feed:
             if self._map is not None:
                 self._map.look(event.robot)
             if self._watchers:
-                self._take_way(asked(lambda: event.robot.way) or ())
+                self._take_way(ask_sensor(lambda: event.robot.way) or ())
                 self._body.look(event.robot, event.wall)
             if self._watchers and event.wall >= self._next_scan:
                 self._next_scan = event.wall + _SCANS
@@ -310,14 +310,14 @@ def _state(state: RobotState | None) -> dict[str, Any]:
 
 
 def _scan(event: PeriodPassed) -> list[float | None]:
-    return rounded_scan(asked(lambda: [float(distance) for distance in event.robot.scan()]) or ())
+    return round_scan(ask_sensor(lambda: [float(distance) for distance in event.robot.scan()]) or ())
 
 
 _RETRY = 1.0  # seconds after which a store that could not be read is asked again
 _REST = 4.0  # times as long as it took: many changes are handed on together then
 
 
-class Follower:
+class TaskFollower:
     """Hands the changes of this process's tasks to `changed`, each once and in order, in a thread of its own.
 
     It begins with the changes that come after it was made, until `close`. `changed` may raise StoreError: then it gets
@@ -326,8 +326,8 @@ class Follower:
 
     def __init__(
         self,
-        store: Store,
-        changed: Callable[[Sequence[Change]], object],
+        store: TaskStore,
+        changed: Callable[[Sequence[TaskChange]], object],
         trouble: Callable[[str], object] = lambda text: None,
     ) -> None:
         self._store, self._changed, self._trouble = store, changed, trouble

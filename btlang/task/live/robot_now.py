@@ -6,7 +6,7 @@ from functools import partial
 
 from btlang.robots.world import KEEP_OUT, World, Zone
 from btlang.run.events import DoorMoved
-from btlang.run.robot_state import asked
+from btlang.run.robot_state import ask_sensor
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -31,12 +31,12 @@ class BodyNow:
 
     def look(self, robot: Any, wall: float) -> None:
         """Takes in how the robot is now. For the thread of the run."""
-        self.speech = asked(lambda: _speech(robot)) or ("", 0, 0)
+        self.speech = ask_sensor(lambda: _speech(robot)) or ("", 0, 0)
         if wall < self._next:
             return
         self._next = wall + _PERIOD
         joints = [joint for joint in getattr(getattr(robot, "body", None), "joints", ()) if joint.link]
-        self.joints = [asked(partial(_position, robot, joint)) for joint in joints]
+        self.joints = [ask_sensor(partial(_position, robot, joint)) for joint in joints]
 
 
 def _position(robot: Any, joint: Joint) -> float:
@@ -73,7 +73,7 @@ class MapNow:
 
     def look(self, robot: Any) -> None:
         """Takes in which zones are closed. For the thread of the run."""
-        zones = asked(lambda: robot.zones)
+        zones = ask_sensor(lambda: robot.zones)
         if zones is None or zones.version == self._version:
             return
         self._version = zones.version

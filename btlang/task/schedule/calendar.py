@@ -175,7 +175,7 @@ def format_moment(moment: float, now: float) -> str:
     return clock if there[:3] == today[:3] else f"{strftime('%Y-%m-%d', there)} {clock}"
 
 
-def length(seconds: float) -> str:
+def format_duration(seconds: float) -> str:
     """A duration in the longest unit of which it's a whole number: "10 min"."""
     unit, size = next((each for each in (("h", 3600), ("min", 60)) if seconds % each[1] == 0), ("s", 1))
     return f"{seconds / size:g} {unit}"

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 
-def can_be_kept(value: Any) -> bool:
+def is_storable(value: Any) -> bool:
     """Whether they take all texts and numbers in a value."""
     waiting = [value]
     while waiting:
@@ -36,7 +36,7 @@ def is_whole(text: str) -> bool:
     return "\0" not in text
 
 
-class State(StrEnum):
+class TaskState(StrEnum):
     """Of a task; the names are those of Open-RMF (rmf_api_msgs, task_state.json)."""
 
     QUEUED = "queued"
@@ -61,11 +61,13 @@ class State(StrEnum):
     COMPLETED = "completed"
 
 
-FINAL = frozenset((State.SKIPPED, State.CANCELED, State.KILLED, State.FAILED, State.ERROR, State.COMPLETED))
+FINAL = frozenset(
+    (TaskState.SKIPPED, TaskState.CANCELED, TaskState.KILLED, TaskState.FAILED, TaskState.ERROR, TaskState.COMPLETED)
+)
 """A task in one of these never changes again."""
-WAITING = frozenset((State.QUEUED, State.DELAYED, State.BLOCKED))
+WAITING = frozenset((TaskState.QUEUED, TaskState.DELAYED, TaskState.BLOCKED))
 """A task in one of these may still begin or go on."""
-ACTIVE = frozenset((State.STANDBY, State.UNDERWAY))
+ACTIVE = frozenset((TaskState.STANDBY, TaskState.UNDERWAY))
 """The executor has it; at most one task of a robot is in one of these."""
 
 
@@ -126,7 +128,7 @@ class Task(Record):
     mission: MissionText
     person: str
     created: float
-    state: State = State.QUEUED
+    state: TaskState = TaskState.QUEUED
     priority: int = 0
     labels: tuple[str, ...] = ()
     earliest: float | None = None
@@ -146,15 +148,15 @@ class Task(Record):
     bonus: int = 0
 
 
-class Ending(Record):
+class RequestedEnd(Record):
     """What was asked of the run under way: the state that its task gets then, why, by whom, and the token."""
 
-    state: State
+    state: TaskState
     cause: str
     person: str
     token: str = ""
 
-    def outranks(self, other: Ending) -> bool:
+    def outranks(self, other: RequestedEnd) -> bool:
         """Whether it replaces one that was asked for a moment before. Whoever asked for that was promised it, so only
         more replaces it: a token after a suspension without one, the end after that, and a kill after another end.
         """
@@ -162,15 +164,15 @@ class Ending(Record):
 
     @property
     def _rank(self) -> tuple[bool, bool, bool]:
-        return self.state is State.KILLED, self.state in FINAL, bool(self.token)
+        return self.state is TaskState.KILLED, self.state in FINAL, bool(self.token)
 
 
-class Change(Record):
+class TaskChange(Record):
     """A task got a state: when, why, and through whom ("" for the robot itself)."""
 
     task: int
     time: float
-    state: State
+    state: TaskState
     cause: str
     person: str
 
@@ -196,7 +198,7 @@ class Schedule(Record):
     """Seconds after the time when a task that has not begun is not worth beginning; None: always worth it."""
 
 
-class Kind(StrEnum):
+class LibraryKind(StrEnum):
     """What a text of the library is: a mission, a world file, a robot file, or the tests of a mission, which have its
     name. Each kind has names of its own.
     """
@@ -216,7 +218,7 @@ class Revision(Record):
     person: str
     time: float
     deleted: bool = False
-    kind: Kind = Kind.MISSION
+    kind: LibraryKind = LibraryKind.MISSION
 
 
 class Act(Record):

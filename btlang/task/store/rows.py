@@ -8,7 +8,17 @@ from enum import StrEnum
 from functools import cache
 
 from btlang.support.record import Record
-from btlang.task.store.records import FINAL, WAITING, Kind, Missed, MissionText, Overlap, Restart, State, Task
+from btlang.task.store.records import (
+    FINAL,
+    WAITING,
+    LibraryKind,
+    Missed,
+    MissionText,
+    Overlap,
+    Restart,
+    Task,
+    TaskState,
+)
 from btlang.text.json_text import dump_json
 
 TYPE_CHECKING = False
@@ -26,7 +36,7 @@ _READERS: dict[str, Callable[[Any], Any]] = {
     "bool": bool,
     "float": float,
     "float | None": lambda number: None if number is None else float(number),  # RETURNING may give a whole number
-    **{kind.__name__: kind for kind in (State, Restart, Overlap, Missed, Kind)},
+    **{kind.__name__: kind for kind in (TaskState, Restart, Overlap, Missed, LibraryKind)},
 }
 """By the annotation of the field. Other ones are as in the table."""
 
@@ -88,14 +98,14 @@ IN_TURN = "(priority + bonus) DESC, position, id"
 NOT_OVER = "state NOT IN ({})".format(", ".join(f"'{state}'" for state in sorted(FINAL)))
 """Word by word the condition of the index `task_turn`: only then SQLite uses it. Few tasks of a store are not over."""
 NEXT = (
-    f"SELECT {TASK} FROM task WHERE {NOT_OVER} AND (state = '{State.QUEUED}' OR state = '{State.DELAYED}'"
+    f"SELECT {TASK} FROM task WHERE {NOT_OVER} AND (state = '{TaskState.QUEUED}' OR state = '{TaskState.DELAYED}'"
     f" AND token = '') AND (earliest IS NULL OR earliest <= ?)"
     f" AND (deadline IS NULL OR deadline >= ? OR started IS NOT NULL) ORDER BY {IN_TURN} LIMIT 1"
 )
 WAITS = "{} AND state IN ({})".format(NOT_OVER, ", ".join(f"'{state}'" for state in sorted(WAITING)))
 AHEAD = f"(priority + bonus) = ? AND {WAITS} AND id <> ? AND (position < ? OR (position = ? AND id < ?))"
 """The tasks before another one of the same priority, but for a third."""
-_QUEUED = f"{NOT_OVER} AND state = '{State.QUEUED}'"
+_QUEUED = f"{NOT_OVER} AND state = '{TaskState.QUEUED}'"
 SINCE = "CASE WHEN earliest > created THEN earliest ELSE created END"
 """Since when a task waits."""
 UNBEGUN = f"{_QUEUED} AND started IS NULL"
@@ -107,7 +117,7 @@ TIMES = (
 )
 
 
-def chosen(states: Collection[State] | None, label: str, schedule: int) -> tuple[str, list[object]]:
+def task_condition(states: Collection[TaskState] | None, label: str, schedule: int) -> tuple[str, list[object]]:
     """The condition for tasks in some states, with a label, of a schedule (None, "" and 0: any), and its values."""
     conditions, values = ["1 = 1"], list[object]()
     if states is not None:

@@ -8,7 +8,7 @@ from btlang.support.record import Record
 from btlang.task.store.backup import write_backup
 from btlang.task.store.database import Database, Mode, store_error
 from btlang.task.store.migrations import open_database
-from btlang.task.store.records import FINAL, Act, Change, Kind, Revision, Schedule, State, Task
+from btlang.task.store.records import FINAL, Act, LibraryKind, Revision, Schedule, Task, TaskChange, TaskState
 from btlang.task.store.rows import (
     AHEAD,
     IN_TURN,
@@ -19,11 +19,11 @@ from btlang.task.store.rows import (
     TIMES,
     UNBEGUN,
     WAITS,
-    chosen,
     columns_of,
     from_row,
     insert,
     marks,
+    task_condition,
     to_column,
 )
 
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 _SCHEDULE, _REVISION, _ACT = (columns_of(kind) for kind in (Schedule, Revision, Act))
 
 
-class Store:
+class TaskStore:
     """A store of tasks, to be used from any thread, and by several processes at once. Made by `open_store`.
 
     Each method is one transaction. Times are seconds since 1970 and come from the caller. Any method may raise
@@ -57,7 +57,7 @@ class Store:
         """Where it is, to be shown: without a password."""
         return self._database.place
 
-    def __enter__(self) -> Store:
+    def __enter__(self) -> TaskStore:
         return self
 
     def __exit__(
@@ -83,7 +83,7 @@ class Store:
         with self._database.transaction() as execute:
             added: Task = task.replace(id=_count(execute, "task"))
             insert(execute, "task", added)
-            _note(execute, Change(added.id, added.created, added.state, cause, added.person))
+            _note(execute, TaskChange(added.id, added.created, added.state, cause, added.person))
         self._notify()
         return added
 
@@ -93,7 +93,7 @@ class Store:
 
     def tasks(
         self,
-        states: Collection[State] | None = None,
+        states: Collection[TaskState] | None = None,
         *,
         label: str = "",
         schedule: int = 0,
@@ -101,14 +101,14 @@ class Store:
         limit: int | None = None,
     ) -> list[Task]:
         """Those in these states, with this label, of this schedule; in the order of their turn, or the newest first."""
-        where, values = chosen(states, label, schedule)
+        where, values = task_condition(states, label, schedule)
         order = "id DESC" if newest else IN_TURN
         query = f"SELECT {TASK} FROM task WHERE {where} ORDER BY {order}"
         return self._all(Task, query + _limit(limit, values), *values)
 
-    def count_tasks(self, states: Collection[State] | None = None, *, label: str = "", schedule: int = 0) -> int:
+    def count_tasks(self, states: Collection[TaskState] | None = None, *, label: str = "", schedule: int = 0) -> int:
         """How many `tasks` gives without a limit."""
-        where, values = chosen(states, label, schedule)
+        where, values = task_condition(states, label, schedule)
         with self._database.transaction(Mode.READ) as execute:
             [[count]] = execute(f"SELECT count(*) FROM task WHERE {where}", values)
         return int(count)
@@ -116,8 +116,8 @@ class Store:
     def change(
         self,
         id: int,
-        before: Collection[State],
-        state: State,
+        before: Collection[TaskState],
+        state: TaskState,
         *,
         time: float,
         cause: str = "",
@@ -128,7 +128,7 @@ class Store:
         name. None, and no change, if it isn't in one of those states; a final state it never leaves.
         """
         with self._database.transaction() as execute:
-            noted = Change(id, time, state, cause, person)
+            noted = TaskChange(id, time, state, cause, person)
             changed = self._changed(execute, noted, before, {"reason": cause, **fields})
         if changed is not None:
             self._notify()
@@ -190,7 +190,9 @@ class Store:
             [[time]] = execute(TIMES, (now, now, now))
         return None if time is None else float(time)
 
-    def changes(self, task: int | None = None, after: int = 0, limit: int | None = None) -> list[tuple[int, Change]]:
+    def changes(
+        self, task: int | None = None, after: int = 0, limit: int | None = None
+    ) -> list[tuple[int, TaskChange]]:
         """The changes of all tasks or of one, the oldest first, each with its number: those with a higher one than
         `after`. Numbers ascend in the order in which changes can be seen, so nobody who reads on misses one.
         """
@@ -199,10 +201,10 @@ class Store:
         if task is not None:
             of = " AND task = ?"
             values.append(task)
-        query = f"SELECT {columns_of(Change)}, number FROM change WHERE number > ?{of} ORDER BY number"
+        query = f"SELECT {columns_of(TaskChange)}, number FROM change WHERE number > ?{of} ORDER BY number"
         with self._database.transaction(Mode.READ) as execute:
             rows = execute(query + _limit(limit, values), values)
-        found = self._records(Change, [row[:-1] for row in rows])
+        found = self._records(TaskChange, [row[:-1] for row in rows])
         return [(row[-1], change) for row, change in zip(rows, found, strict=True)]
 
     def latest_change(self) -> int:
@@ -242,7 +244,13 @@ class Store:
             return bool(execute("DELETE FROM schedule WHERE id = ? RETURNING id", (id,)))
 
     def put_text(
-        self, name: str, text: str, person: str, time: float, base: int | None = None, kind: Kind = Kind.MISSION
+        self,
+        name: str,
+        text: str,
+        person: str,
+        time: float,
+        base: int | None = None,
+        kind: LibraryKind = LibraryKind.MISSION,
     ) -> Revision | None:
         """The revision that has this text: the latest one of that name, or else a new one. None, and no change, if it
         was made from another one, `base`, than the latest, 0 if there is none.
@@ -257,14 +265,14 @@ class Store:
             insert(execute, "revision", put)
         return put
 
-    def text(self, name: str, number: int = 0, kind: Kind = Kind.MISSION) -> Revision | None:
+    def text(self, name: str, number: int = 0, kind: LibraryKind = LibraryKind.MISSION) -> Revision | None:
         """A revision, 0 for the latest. None if there isn't one, or the text is deleted by it."""
         which = "kind = ? AND name = ? AND (number = ? OR ? = 0) ORDER BY number DESC LIMIT 1"
         query = f"SELECT {_REVISION} FROM revision WHERE {which}"
         found = self._one(Revision, query, kind.value, name, number, number)
         return None if found is None or found.deleted else found
 
-    def texts(self, kind: Kind = Kind.MISSION) -> list[Revision]:
+    def texts(self, kind: LibraryKind = LibraryKind.MISSION) -> list[Revision]:
         """The latest revision of each text that isn't deleted, by name."""
         latest = (
             "SELECT max(number) FROM revision other WHERE other.kind = revision.kind AND other.name = revision.name"
@@ -273,12 +281,12 @@ class Store:
         found = self._all(Revision, f"SELECT {_REVISION} FROM revision WHERE {which}", kind.value)
         return sorted(found, key=lambda revision: revision.name)  # the same order in all databases
 
-    def revisions(self, name: str, kind: Kind = Kind.MISSION) -> list[Revision]:
+    def revisions(self, name: str, kind: LibraryKind = LibraryKind.MISSION) -> list[Revision]:
         """All of a text, the oldest first, with those that deleted it."""
         query = f"SELECT {_REVISION} FROM revision WHERE kind = ? AND name = ? ORDER BY number"
         return self._all(Revision, query, kind.value, name)
 
-    def delete_text(self, name: str, person: str, time: float, kind: Kind = Kind.MISSION) -> bool:
+    def delete_text(self, name: str, person: str, time: float, kind: LibraryKind = LibraryKind.MISSION) -> bool:
         """Whether there was such a text. Its revisions stay, and one more says who deleted it."""
         with self._database.transaction(Mode.ALONE) as execute:
             latest = self._latest(execute, name, kind)
@@ -337,17 +345,17 @@ class Store:
             if not found:
                 return None
             [task] = found
-            noted = Change(task.id, now, State.STANDBY, "its turn", "")
+            noted = TaskChange(task.id, now, TaskState.STANDBY, "its turn", "")
             fields = {"reason": noted.cause, "attempts": task.attempts + 1}
             return self._changed(execute, noted, (task.state,), fields)
 
-    def _latest(self, execute: Execute, name: str, kind: Kind) -> Revision | None:
+    def _latest(self, execute: Execute, name: str, kind: LibraryKind) -> Revision | None:
         query = f"SELECT {_REVISION} FROM revision WHERE kind = ? AND name = ? ORDER BY number DESC LIMIT 1"
         found = self._records(Revision, execute(query, (kind.value, name)))
         return found[0] if found else None
 
     def _changed(
-        self, execute: Execute, noted: Change, before: Collection[State], fields: Mapping[str, Any]
+        self, execute: Execute, noted: TaskChange, before: Collection[TaskState], fields: Mapping[str, Any]
     ) -> Task | None:
         _check(Task, fields)
         states = [to_column(state) for state in before if state not in FINAL] or [""]
@@ -381,7 +389,7 @@ class Store:
             raise store_error(self.place, f"it's damaged: a {kind.__name__.lower()} can't be read") from error
 
 
-def open_store(place: str, durable: bool = False) -> Store:
+def open_store(place: str, durable: bool = False) -> TaskStore:
     """The store at a place: a file, which is made if it doesn't exist, or a postgresql:// URL of a database. A file is
     read once from end to end, in a tenth of a second for 100,000 tasks, to see whether it's damaged.
 
@@ -389,7 +397,7 @@ def open_store(place: str, durable: bool = False) -> Store:
     of the server. Raises MissionError: BT189 if the package for PostgreSQL is missing, BT195 if it isn't a store or
     can't be used, BT196 if it belongs to a newer btlang.
     """
-    return Store(open_database(place, durable))
+    return TaskStore(open_database(place, durable))
 
 
 def _count(execute: Execute, name: str) -> int:
@@ -398,7 +406,7 @@ def _count(execute: Execute, name: str) -> int:
     return int(number)
 
 
-def _note(execute: Execute, change: Change) -> None:
+def _note(execute: Execute, change: TaskChange) -> None:
     insert(execute, "change", change, number=_count(execute, "change"))
 
 
