@@ -46,6 +46,7 @@ LONG: dict[str, str] = {
     "docs/api.md": "made from the docstrings",
     "btlang/session.py": "a session, and the runs that it makes",
     "btlang/robots/simulated.py": "the robot, one capability after the other",
+    "btlang/task/store/task_store.py": "the store, one table after the other",
     "btlang/run/events.py": "the classes of events, from which the schema of logs is made",
     "btlang/ros/robot.py": "the same over ROS 2",
     "btlang/testing/words.toml": "the words of tests",

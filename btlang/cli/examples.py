@@ -39,19 +39,19 @@ class Example(Record):
 
 
 def examples() -> list[Example]:
-    """All shipped missions, by name."""
+    """Return all shipped missions, by name."""
     names = sorted(name[: -len(".txt")] for name in os.listdir(shipped("examples")) if name.endswith(".txt"))
     return [_example(name) for name in names]
 
 
 def all_examples() -> list[Example]:
-    """The missions, then the folders."""
+    """Return the missions, then the folders."""
     names = sorted(os.listdir(shipped("examples")))
     return [*examples(), *(_folder(name) for name in names if os.path.isfile(shipped("examples", name, _README)))]
 
 
 def find_examples(names: Iterable[str]) -> list[Example]:
-    """The missions of these names, with or without `.txt`. Raises MissionError (BT008)."""
+    """Return the missions of these names, with or without `.txt`. Raises MissionError (BT008)."""
     known = {example.name: example for example in all_examples()}
     wanted = [name.removesuffix(".txt") for name in names]
     problems = [_unknown(name, known) for name in wanted if name not in known]
@@ -61,13 +61,13 @@ def find_examples(names: Iterable[str]) -> list[Example]:
 
 
 def path_of(name: str) -> str:
-    """The file of a shipped mission, "" where none has this name."""
+    """Return the file of a shipped mission, "" where none has this name."""
     path = shipped("examples", f"{name}.txt")
     return path if os.path.isfile(path) else ""
 
 
 def list_examples(width: int = 80) -> list[str]:
-    """Each mission with what it does, in a line; then the folders."""
+    """Return a line for each mission with what it does; then the folders."""
     listed = all_examples()
     column = max(len(example.name) for example in listed) + 4
     lines = []
@@ -84,7 +84,7 @@ def list_examples(width: int = 80) -> list[str]:
 
 
 def describe_start(folder: str, chosen: Sequence[Example]) -> list[str]:
-    """How to begin with what was copied to a folder, in lines."""
+    """Return how to begin with what was copied to a folder, in lines."""
     readmes = [os.path.join(folder, example.file) for example in chosen if example.file.endswith(_README)]
     lines = [f"To begin, read {readme}" for readme in readmes]
     if len(readmes) < len(chosen):
@@ -93,12 +93,12 @@ def describe_start(folder: str, chosen: Sequence[Example]) -> list[str]:
 
 
 def copy_examples(folder: str, chosen: Sequence[Example]) -> list[str]:
-    """Copies missions to a folder, with their worlds, parts and tests in its `worlds`, `parts` and `tests`.
+    """Copy missions to a folder, with their worlds, parts and tests in its `worlds`, `parts` and `tests`.
 
     Returns the paths written.
 
-    Nothing is overwritten: raises MissionError (BT009) with every file that is there already, before any is written.
-    A file that is there with the same text stays.
+    Nothing is overwritten: raises MissionError (BT009) with every file that is there already, before any is written. A
+    file that is there with the same text stays.
     """
     files = {os.path.join(folder, example.file): example.text.encode() for example in chosen}
     needed = [name for example in chosen for name in (example.world, *example.parts, example.test) if name]

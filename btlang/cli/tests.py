@@ -38,12 +38,12 @@ class Summary(Record):
 
     @property
     def failures(self) -> list[Result]:
-        """Those that did not pass, by their seeds."""
+        """The results that did not pass, by their seeds."""
         return [result for result in self.results if not result.passed]
 
 
 def format_summary(summary: Summary, *, has_seeds: bool) -> Iterable[str]:
-    """What is shown of a test: a line, and of one that failed why."""
+    """Return what is shown of a test: a line, and of one that failed why."""
     first, failures = summary.results[0], summary.failures
     seconds = sum(result.seconds for result in summary.results)
     if not failures:
@@ -61,7 +61,7 @@ def format_summary(summary: Summary, *, has_seeds: bool) -> Iterable[str]:
 
 
 def format_ending(summaries: Sequence[Summary]) -> str:
-    """The last line."""
+    """Return the last line."""
     failed = sum(bool(summary.failures) for summary in summaries)
     mission_time = sum(result.seconds for summary in summaries for result in summary.results)
     count = f"{len(summaries)} test{'s' * (len(summaries) != 1)}"
@@ -70,7 +70,7 @@ def format_ending(summaries: Sequence[Summary]) -> str:
 
 
 def junit(summaries: Iterable[Summary]) -> str:
-    """The results as JUnit XML, as CI servers read it: a suite for each file, a case for each test."""
+    """Return the results as JUnit XML, as CI servers read it: a suite for each file, a case for each test."""
     suites = ElementTree.Element("testsuites")
     files: dict[str, ElementTree.Element] = {}
     for summary in summaries:
@@ -94,7 +94,7 @@ def junit(summaries: Iterable[Summary]) -> str:
 
 
 def _printable(text: str) -> str:
-    """Without the characters that XML cannot have."""
+    """Return a text without the characters that XML cannot have."""
     return "".join(character if character >= " " or character in "\n\t" else "?" for character in text)
 
 

@@ -34,7 +34,7 @@ _BLOCKS = re.compile(r"^(?:[-+=]|\d+(?=[.)]))")
 
 
 def escape_markdown(text: str) -> str:
-    """A text on one line that is shown as it is."""
+    """Escape a text so that it is shown as it is, on one line."""
     line = _LINKS.sub(_BREAK, one_line(" ".join(text.split())))
     line = _MARKS.sub(r"\\\g<0>", line)
     block = _BLOCKS.match(line)
@@ -44,7 +44,7 @@ def escape_markdown(text: str) -> str:
 
 
 def code(text: str) -> str:
-    """A text on one line as code, also in a table."""
+    """Return a text on one line as code, also in a table."""
     line = one_line(" ".join(text.split())) or " "
     marks = "`" * (max(map(len, re.findall("`+", line)), default=0) + 1)
     room = " " if "`" in (line[0], line[-1]) else ""
@@ -52,13 +52,13 @@ def code(text: str) -> str:
 
 
 def block(text: str) -> Iterator[str]:
-    """Lines as they are."""
+    """Yield lines as a block that is shown as it is."""
     marks = "`" * max(3, *(len(run) + 1 for run in re.findall("`+", text) or [""]))
     yield from (f"{marks}text", *printable(text).rstrip("\n").split("\n"), marks)
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:
-    """A table of cells that are Markdown; no lines where it has no rows."""
+    """Yield a table of cells that are Markdown; no lines where it has no rows."""
     rows = list(rows)
     if rows:
         yield from (_row(heads), _row(["---"] * len(heads)), *map(_row, rows))
@@ -69,7 +69,9 @@ def _row(cells: Sequence[str]) -> str:
 
 
 def file_name(text: str) -> str:
-    """A text as a part of the names of files and places in pages: letters and digits of ASCII, `.`, `_` and `-`."""
+    """Return a text as a part of the names of files and places in pages: letters and digits of ASCII, `.`, `_` and
+    `-`.
+    """
     return re.sub(r"[^A-Za-z0-9._-]+", "-", text).strip("-.") or "tree"
 
 
@@ -78,7 +80,7 @@ INDEX = "index.md"
 
 
 class PageWriter:
-    """Writes the pages of a project; `pages` are the names of their files by those of the trees."""
+    """A writer of the pages of a project; `pages` are the names of their files by those of the trees."""
 
     def __init__(self, project: DocumentedProject) -> None:
         self._project = project
@@ -90,7 +92,7 @@ class PageWriter:
         self._pictures = _distinct(places, ".svg")
 
     def page(self, file: str, *, pictures: bool = True) -> str:
-        """The page of a file."""
+        """Return the page of a file."""
         chapters = [chapter for chapter in self._project.chapters if chapter.file == file]
         lines = [MADE, "", f"# {escape_markdown(file)}", ""]
         if len(chapters) > 1:
@@ -102,12 +104,12 @@ class PageWriter:
         return "\n".join(lines).rstrip("\n") + "\n"
 
     def pictures(self) -> Iterator[tuple[str, str]]:
-        """The name and text of each SVG file."""
+        """Yield the name and text of each SVG file."""
         for one in self._project.chapters:
             yield self._pictures[one.file, one.name], to_svg(one.tree, one.vocabulary, title=one.name)
 
     def index(self) -> str:
-        """A table of all trees and the files, and the trees that nobody uses."""
+        """Return a table of all trees and the files, and the trees that nobody uses."""
         project = self._project
         lines = [MADE, "", "# Trees", ""]
         ordered = sorted(project.chapters, key=lambda one: (one.name.casefold(), one.name, one.file))
@@ -161,7 +163,7 @@ class PageWriter:
         yield from block("\n".join(line for line in text.split("\n") if not line.startswith(KEPT)))
 
     def _ports(self, chapter: TreeChapter) -> Iterator[tuple[str, ...]]:
-        """The ports that the model of the tree has, then the other keys in the order of the tree."""
+        """Yield the ports that the model of the tree has, then the other keys in the order of the tree."""
         model = self._project.models.get(chapter.name)
         ports = {port.name: port for port in model.ports} if model is not None and model.kind == SUBTREE else {}
         keys: dict[str, set[str]] = {}
@@ -176,7 +178,7 @@ class PageWriter:
             yield code(name), use, code(port.type) if port.type else "", default, escape_markdown(port.text)
 
     def _nodes(self, chapter: TreeChapter) -> Iterator[tuple[str, ...]]:
-        """All but those of BehaviorTree.CPP itself."""
+        """Yield all nodes but those of BehaviorTree.CPP itself."""
         found = nodes_of(chapter.tree)
         for id in sorted(found):
             kind = CATALOGUE.get(id)
@@ -190,12 +192,12 @@ class PageWriter:
             yield code(id), sort, str(len(found[id])), escape_markdown(about)
 
     def _models(self, file: str) -> Iterator[str]:
-        """The nodes that a file describes."""
+        """Yield the nodes that a file describes."""
         models = sorted(self._project.described[file], key=lambda model: (model.kind, model.id))
         yield from table(("node", "kind", "ports", "what it does"), map(_described, models))
 
     def _link(self, chapter: TreeChapter, page: str = "") -> str:
-        """To a chapter, from the page of a file."""
+        """Link to a chapter, from the page of a file."""
         target = "" if page == chapter.file else self.pages[chapter.file]
         return f"[{escape_markdown(chapter.name)}]({target}#{self._place(chapter)})"
 
@@ -211,7 +213,7 @@ class PageWriter:
 
 
 def to_markdown(tree: Tree, vocabulary: Lexicon) -> str:
-    """The page of one tree with its subtrees, without a picture."""
+    """Return the page of one tree with its subtrees, without a picture."""
     title = tree.name or "Mission"
     chapter = TreeChapter(title, title, tree, vocabulary, runs_first=True)
     project = DocumentedProject((title,), (chapter,), {model.id: model for model in tree.models})
@@ -227,14 +229,14 @@ def _about(chapter: TreeChapter) -> str:
 
 
 def _part(title: str, lines: Iterator[str]) -> Iterator[str]:
-    """A heading with these lines, nothing where there are none."""
+    """Yield a heading with these lines, nothing where there are none."""
     found = list(lines)
     if found:
         yield from (f"### {title}", "", *found, "")
 
 
 def _distinct(names: Mapping[Key, str], ending: str, *taken: str) -> dict[Key, str]:
-    """Names of files, each only once, also where letters of both sizes are one."""
+    """Name of files, each only once, also where letters of both sizes are one."""
     found: dict[Key, str] = {}
     used = {name.lower() for name in taken}
     for key, name in names.items():

@@ -29,13 +29,13 @@ from btlang.vocabulary.lexicon import Lexicon
 
 
 class KeyReader:
-    """Knows the directions of ports by the models of a project and by the words."""
+    """A reader of keys: it knows the directions of ports by the models of a project and by the words."""
 
     def __init__(self, models: Mapping[str, NodeModel], vocabulary: Lexicon) -> None:
         self._models, self._vocabulary = models, vocabulary
 
     def keys(self, root: Node) -> dict[str, set[str]]:
-        """`READS` and `SETS` by key, in the order of the tree."""
+        """Return `READS` and `SETS` by key, in the order of the tree."""
         found: dict[str, set[str]] = {}
         for node in Tree(root).walk():
             for port, text in node.ports:
@@ -55,7 +55,7 @@ class KeyReader:
         return [(key, {"output": {SETS}, "inout": {READS, SETS}}.get(self._direction(node, port), {READS}))]
 
     def _direction(self, node: Node, port: str) -> str:
-        """Of a SubTree by the model of its tree."""
+        """Return the direction of a port of a SubTree by the model of its tree."""
         id = node.port("ID") if node.id == SUBTREE else node.id
         kind = CATALOGUE.get(id)
         if kind is not None and port in kind.ports:
@@ -101,19 +101,19 @@ class DocumentedProject(Record):
     left_out: tuple[str, ...] = ()
 
     def used(self, name: str, file: str) -> TreeChapter | None:
-        """The tree that a use in a file means: that of the same file before others."""
+        """Return the tree that a use in a file means: that of the same file before others."""
         found = [chapter for chapter in self.chapters if chapter.name == name]
         return next((chapter for chapter in found if chapter.file == file), found[0] if found else None)
 
     def users(self, used: TreeChapter) -> list[TreeChapter]:
-        """The trees that use one."""
+        """Return the trees that use one."""
         return [one for one in self.chapters if any(self.used(name, one.file) is used for name in one.uses)]
 
 
 def read_documents(
     paths: Sequence[str], vocabulary: Lexicon, compiled: Callable[[Source], Mission]
 ) -> DocumentedProject:
-    """Reads files, and in folders those that are trees in XML or missions; both are recognized by their content.
+    """Read files, and in folders those that are trees in XML or missions; both are recognized by their content.
 
     Raises MissionError for a file that is named, or begins as a tree, and can't be read, and where nothing is found.
     """
@@ -176,7 +176,7 @@ def _trees(name: str, file: XmlFile, models: Collection[NodeModel], vocabulary: 
 
 
 def nodes_of(tree: Tree) -> dict[str, list[Node]]:
-    """The nodes of a tree and its own subtrees, by id."""
+    """Return the nodes of a tree and its own subtrees, by id."""
     found: dict[str, list[Node]] = {}
     for node in tree.walk():
         found.setdefault(node.id, []).append(node)

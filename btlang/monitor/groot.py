@@ -86,24 +86,24 @@ class GrootServer:
     def watch(
         self, follower: RunFollower, tree: Callable[[], GrootTree], values: Callable[[int], Mapping[str, Any]]
     ) -> None:
-        """A run begins; `follower` knows its statuses."""
+        """Answer about a run that begins; `follower` knows its statuses."""
         self._follower, self._make, self._values = follower, tree, values
 
     def __call__(self, event: Event) -> None:
-        """In the thread of the run: keeps what a client that records will ask for."""
+        """Keep what a client that records will ask for. In the thread of the run."""
         if self._recording and isinstance(event, StatusesChanged):
             for index, status, _, _ in event.changes:
                 self._changes.append((event.wall, index, status))
 
     def close(self) -> None:
-        """Ends the server. May be called twice."""
+        """End the server. May be called twice."""
         self._over = True
         self._thread.join(2.0)
         if not self._context.closed:
             self._context.destroy(linger=0)
 
     def _reached(self, index: int) -> None:
-        """In the thread of the run, which uses no socket."""
+        """Note that a breakpoint was reached. In the thread of the run, which uses no socket."""
         self._reached_nodes.append(index)
 
     def _serve(self) -> None:
@@ -124,7 +124,7 @@ class GrootServer:
             self._server.send_multipart(reply)
 
     def _answer(self, frames: list[bytes]) -> list[bytes]:
-        """Raises ValueError and its like for what is no question."""
+        """Raise ValueError and its like for what is no question."""
         request = protocol.read_request(frames[0])
         answer = _ANSWERS.get(request.letter)
         if answer is None:
@@ -220,7 +220,7 @@ _CODES = {
 
 
 def _plain(values: Mapping[str, Any]) -> dict[str, Any]:
-    """What msgpack can hold; whole numbers of more than 64 bits and all else become texts."""
+    """Return what msgpack can hold; whole numbers of more than 64 bits and all else become texts."""
     return {key: value if _fits(value) else str(value) for key, value in values.items()}
 
 
@@ -231,7 +231,9 @@ def _fits(value: Any) -> bool:
 
 
 def _hooks(content: bytes) -> Any:
-    """JSON that isn't deep: an engine of deep trees lets Python recurse further than a thread's stack reaches."""
+    """Read hooks from JSON that isn't deep: an engine of deep trees lets Python recurse further than a thread's stack
+    reaches.
+    """
     depth = 0
     for byte in content:
         depth += (byte in b"[{") - (byte in b"]}")

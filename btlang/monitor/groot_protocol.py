@@ -35,7 +35,7 @@ class GrootRequest(Record):
 
 
 def read_request(head: bytes) -> GrootRequest:
-    """Raises ValueError for what is no head of a request."""
+    """Raise ValueError for what is no head of a request."""
     if len(head) != _HEADER.size:
         raise ValueError("wrong request header")
     protocol, letter, number = _HEADER.unpack(head)
@@ -45,25 +45,25 @@ def read_request(head: bytes) -> GrootRequest:
 
 
 def head(letter: bytes, number: int, tree_id: bytes = b"") -> bytes:
-    """The head of a request, or with the id of the tree (16 bytes) that of a reply."""
+    """Return the head of a request, or with the id of the tree (16 bytes) that of a reply."""
     return _HEADER.pack(PROTOCOL, letter, number) + tree_id
 
 
 def statuses(codes: bytes) -> bytes:
-    """The numbers of all nodes with their codes, in order."""
+    """Return the numbers of all nodes with their codes, in order."""
     return b"".join(map(_STATUS.pack, range(1, len(codes) + 1), codes))
 
 
 def read_statuses(data: bytes) -> dict[int, int]:
-    """The code of each node by its number."""
+    """Return the code of each node by its number."""
     return dict(_STATUS.iter_unpack(data))
 
 
 def transition(microseconds: int, uid: int, code: int) -> bytes:
-    """A change of a status, at a time since the recording began."""
+    """Return a change of a status, at a time since the recording began."""
     return _TRANSITION.pack(microseconds & 0xFFFFFFFF, microseconds >> 32 & 0xFFFF, uid, code)
 
 
 def read_transitions(data: bytes) -> list[tuple[int, int, int]]:
-    """Microseconds, number and code of each."""
+    """Yield microseconds, number and code of each transition."""
     return [(low | high << 32, uid, code) for low, high, uid, code in _TRANSITION.iter_unpack(data)]

@@ -40,7 +40,7 @@ class GrootTree:
         """The node at the root of each tree, by the name of its blackboard: the path of its use, or the main ID."""
 
     def _trees(self) -> Iterator[tuple[str, int]]:
-        """Path and root of each use of a subtree; the main one comes first."""
+        """Yield path and root of each use of a subtree; the main one comes first."""
         yield MAIN_TREE, 0
         paths = {0: ""}
         for index, node in enumerate(self._nodes):
@@ -53,7 +53,7 @@ class GrootTree:
                 yield path, root
 
     def to_xml(self) -> str:
-        """With paths (`_fullpath`) and numbers (`_uid`)."""
+        """Write XML with paths (`_fullpath`) and numbers (`_uid`)."""
         lines = ['<?xml version="1.0" encoding="UTF-8"?>', '<root BTCPP_format="4">']
         for path, root in self.blackboards.items():
             ID = MAIN_TREE if root == 0 else _name(self._nodes[root - 1])
@@ -95,12 +95,14 @@ def _name(node: Node) -> str:
 
 
 def _attributes(pairs: tuple[tuple[str, str], ...]) -> str:
-    """Groot gets a `?` for what XML can't hold."""
+    """Write attributes; Groot gets a `?` for what XML can't hold."""
     return Markers().attributes(tuple((key, _UNWRITABLE.sub("?", text)) for key, text in pairs))
 
 
 def models_of(to_xml: Callable[[], str]) -> str:
-    """The XML of a mission, "" where it has none: Groot then draws nodes that it doesn't know without their ports."""
+    """Return the XML of a mission, "" where it has none: Groot then draws nodes that it doesn't know without their
+    ports.
+    """
     try:
         return to_xml()
     except MissionError:
@@ -112,7 +114,7 @@ _FORMAT = 1
 
 
 def to_btlog(tree: GrootTree, events: Iterable[Event]) -> bytes:
-    """The file: the tree, the wall time at which the run began, and each change with its time since then."""
+    """Return the file: the tree, the wall time at which the run began, and each change with its time since then."""
     xml = tree.to_xml().encode("utf-8", "replace")
     began: float | None = None
     changes: list[bytes] = []

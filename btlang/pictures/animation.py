@@ -33,7 +33,7 @@ _SPOKEN = 10  # frames that a text is shown, at least
 
 
 def animate(world: World, record: RunRecord, title: str) -> bytes:
-    """The bytes of a GIF of at most 140 frames that runs for ever."""
+    """Return the bytes of a GIF of at most 140 frames that runs for ever."""
     from PIL.Image import Dither
 
     frames = _Film(world, record, title).frames()
@@ -46,7 +46,7 @@ def animate(world: World, record: RunRecord, title: str) -> bytes:
 
 
 def _palette(frames: list[Image]) -> Image:
-    """Colours of the whole film, from some of its frames one below the other."""
+    """Return colours of the whole film, from some of its frames one below the other."""
     from PIL import Image
 
     chosen = [*frames[:: max(1, len(frames) // 8)], frames[-1]]
@@ -60,7 +60,10 @@ def _palette(frames: list[Image]) -> Image:
 
 
 class _Film:
-    """What stands still is drawn once; onto it the way grows; robot, things and text are redrawn on each frame."""
+    """A film of a run.
+
+    What stands still is drawn once; onto it the way grows; robot, things and text are redrawn on each frame.
+    """
 
     def __init__(self, world: World, record: RunRecord, title: str) -> None:
         self._record = record
@@ -92,7 +95,7 @@ class _Film:
         self._canvas.begin_film(_DPI)
 
     def frames(self) -> list[Image]:
-        """All frames, the last one with the outcome."""
+        """Yield all frames, the last one with the outcome."""
         end = self._times[-1]
         number = min(FRAMES - 1, max(1, ceil(end / _LEAST)))
         film = [self._frame(end * (i - 1) / number, end * i / number) for i in range(number + 1)]
@@ -115,7 +118,7 @@ class _Film:
         return Image.frombytes("RGBA", size, pixels).convert("RGB")
 
     def _grow(self, before: float, now: float) -> None:
-        """The way since the last frame, which stays for all frames to come."""
+        """Draw the way since the last frame, which stays for all frames to come."""
         first, last = bisect_right(self._times, before), bisect_right(self._times, now)
         poses = [self._sample(before).pose, *(s.pose for s in self._record.track[first:last]), self._sample(now).pose]
         points = [self._map.at(pose.x, pose.y) for pose in poses]
@@ -133,7 +136,7 @@ class _Film:
         self._canvas.keep()
 
     def _things_at(self, now: float, pose: Pose) -> None:
-        """Objects that move: where they lie, or in front of the robot that carries them."""
+        """Draw objects that move: where they lie, or in front of the robot that carries them."""
         places: dict[str, Point | None] = {name: (thing.x, thing.y) for name, thing in self._things.items()}
         places |= {name: place for t, name, place in self._record.moves if t <= now}
         for name, place in places.items():
@@ -147,7 +150,7 @@ class _Film:
                 self._canvas.text(x + radius + 2, y, text, size=SMALL, colour=OBJECT, halo=True, z=5)
 
     def _surroundings_at(self, now: float) -> None:
-        """People and unknown things where they are, and doors as they are."""
+        """Draw people and unknown things where they are, and doors as they are."""
         for name, sightings in self._record.sightings.items():
             if name not in self._record.moved:
                 draw_standing(self._canvas, self._map, self._world, name, sighting_at(sightings, now))
@@ -159,25 +162,25 @@ class _Film:
             self._canvas.text(x + 5, y, text, size=SMALL, colour=DOOR_COLOUR, halo=True, z=3)
 
     def _speech(self, now: float, pose: Pose, least: float) -> None:
-        """What the robot says, above it; what it last said stays for some frames."""
+        """Draw what the robot says, above it; what it last said stays for some frames."""
         mark = self._latest(("say", "print", "ask", "call"), now, least)
         if mark is not None:
             self._bubble(mark, (pose.x, pose.y), self._record.radius)
 
     def _answers(self, now: float, pose: Pose, least: float) -> None:
-        """What the robot hears, at whoever says it."""
+        """Draw what the robot hears, at whoever says it."""
         mark = self._latest(("hear",), now, least)
         if mark is not None:
             speaker = place_of(self._world, self._record, mark.who, now)
             self._bubble(mark, speaker or (pose.x, pose.y), -self._record.radius if speaker is None else PERSON_RADIUS)
 
     def _latest(self, kinds: tuple[str, ...], now: float, least: float) -> PictureMark | None:
-        """What was said last, as long as it is shown."""
+        """Return what was said last, as long as it is shown."""
         said = [mark for mark in self._record.marks if mark.kind in kinds and mark.text and mark.t <= now]
         return said[-1] if said and now <= said[-1].t + max(least, 0.35 + 0.06 * len(said[-1].text)) else None
 
     def _bubble(self, mark: PictureMark, place: Point, radius: float) -> None:
-        """Above a place, or below it where there is no room, or for a negative radius."""
+        """Draw a bubble above a place, or below it where there is no room, or for a negative radius."""
         text = letters.clip_text(letters.make_printable(mark.text), 180, SMALL)
         fill, edge = BUBBLES.get(mark.kind, BUBBLES["say"])
         width = letters.width(text, SMALL) + 12
@@ -208,7 +211,7 @@ class _Film:
         return "  and  ".join(dict.fromkeys(under_way))
 
     def _sample(self, t: float) -> PathSample:
-        """Where the robot was, between two samples too."""
+        """Return where the robot was, between two samples too."""
         track = self._record.track
         after = bisect_right(self._times, t)
         if after == 0 or after == len(track):

@@ -91,13 +91,16 @@ class SvgSurface:
         self._parts.append((0, "</g>"))
 
     def encoded(self, kind: str) -> bytes:
-        """The file. The same picture gives the same bytes."""
+        """Return the file. The same picture gives the same bytes."""
         assert kind == ".svg"
         lines = [line for _, line in sorted(self._parts, key=itemgetter(0))]
         return ("\n".join([*self._head, *lines, "</svg>"]) + "\n").encode()
 
     def _add(self, z: float, tag: str, inner: str = "", /, **attributes: str | float | None) -> None:
-        """Values are numbers, colours and the like, so that nothing has to be escaped. `inner` is XML."""
+        """Add an element.
+
+        Values are numbers, colours and the like, so that nothing has to be escaped. `inner` is XML.
+        """
         written = "".join(
             f' {name.replace("_", "-")}="{value if isinstance(value, str) else _number(value)}"'
             for name, value in attributes.items()

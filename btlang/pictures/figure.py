@@ -30,7 +30,7 @@ _PAUSE = 0.8  # seconds that its last one stays
 
 
 def draw_gesture(body: Body, gesture: Gesture, rehearsal: Rehearsal, path: str, kind: str) -> bytes:
-    """The bytes of a file of a kind, ".svg", ".png" or ".gif". Raises MissionError (BT081)."""
+    """Return the bytes of a file of a kind, ".svg", ".png" or ".gif". Raises MissionError (BT081)."""
     with open_drawing(path, kind) as sheet:
         if kind == ".gif":
             return _film(body, gesture, rehearsal)
@@ -49,7 +49,7 @@ def draw_gesture(body: Body, gesture: Gesture, rehearsal: Rehearsal, path: str, 
 
 
 def _moments(gesture: Gesture, rehearsal: Rehearsal) -> list[tuple[float, str]]:
-    """The seconds of its key frames and of its stroke, with what stands above each."""
+    """Return the seconds of its key frames and of its stroke, with what stands above each."""
     longer = rehearsal.seconds / gesture.seconds
     found = {0.0: "0 s"} | {frame.at: f"{frame.at:g} s" for frame in gesture.frames}
     found[gesture.stroke] = f"{gesture.stroke:g} s: stroke"
@@ -61,7 +61,7 @@ def _index(rehearsal: Rehearsal, seconds: float) -> int:
 
 
 def _draw(canvas: Surface, body: Body, angles: Mapping[str, float], left: float, top: float) -> None:
-    """The side that it turns its right arm to, and the front."""
+    """Draw the side that it turns its right arm to, and the front."""
     rows = np.array([[angles[joint.name] for joint in body.joints]])
     frames = Kinematics(body).frames(rows)
     floor = top + _HIGH * _SCALE - 6

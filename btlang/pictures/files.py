@@ -16,7 +16,7 @@ MOVING = (".gif",)
 
 
 def picture_ending(path: str, allowed: tuple[str, ...]) -> str:
-    """The ending of a file in small letters. Raises ValueError where it is not one of those allowed."""
+    """Return the ending of a file in small letters. Raises ValueError where it is not one of those allowed."""
     found = os.path.splitext(path)[1].lower()
     if found not in allowed:
         raise ValueError(f"expected a file that ends in {joined(allowed, 'or')}, not '{path}'")
@@ -24,7 +24,7 @@ def picture_ending(path: str, allowed: tuple[str, ...]) -> str:
 
 
 def check_picture(path: str) -> None:
-    """Raises MissionError where the picture cannot be drawn (BT081) or the file cannot be written (BT009)."""
+    """Raise MissionError where the picture cannot be drawn (BT081) or the file cannot be written (BT009)."""
     if picture_ending(path, STILL + MOVING) != ".svg" and find_spec("matplotlib") is None:
         raise matplotlib_error(path)
     is_new = not os.path.lexists(path)
@@ -37,5 +37,5 @@ def check_picture(path: str) -> None:
 
 
 def matplotlib_error(path: str) -> MissionError:
-    """What to raise where matplotlib is not there."""
+    """Make the error BT081: matplotlib is not there."""
     return MissionError([diagnostic("BT081", Span(Source("", path), 0, 0))])

@@ -36,12 +36,14 @@ _FULL_WIDTH = 103  # of the rest: a Chinese character, or the mark for one that 
 
 
 def make_printable(text: str) -> str:
-    """The text in one line, with a mark for each character that cannot be printed."""
+    """Return the text in one line, with a mark for each character that cannot be printed."""
     return "".join(c if c.isprintable() or c in _JOINERS else UNKNOWN for c in " ".join(text[:_LONGEST].split()))
 
 
 def width(text: str, size: float, bold: bool = False) -> float:
-    """Points, of a text that `make_printable` made: exact for English, Greek and Russian, elsewhere rather too much."""
+    """Return the width in points of a text that `make_printable` made: exact for English, Greek and Russian, elsewhere
+    rather too much.
+    """
     return sum(_advance(c, bold) for c in text) * size / 100
 
 
@@ -56,7 +58,7 @@ def _advance(character: str, bold: bool) -> int:
 
 
 def wrap_text(text: str, room: float, most: int, size: float, bold: bool) -> list[str]:
-    """At most so many lines, none wider than `room`; what does not fit ends in an ellipsis."""
+    """Return at most so many lines, none wider than `room`; what does not fit ends in an ellipsis."""
     lines: list[str] = []
     words = text[:_BROKEN].split()
     while words:
@@ -69,7 +71,7 @@ def wrap_text(text: str, room: float, most: int, size: float, bold: bool) -> lis
 
 
 def clip_text(text: str, room: float, size: float, bold: bool = False) -> str:
-    """The text, or as much of it as fits with an ellipsis."""
+    """Return the text, or as much of it as fits with an ellipsis."""
     if width(text, size, bold) <= room:
         return text
     count = _fitting(text, room - width("…", size, bold), size, bold)
@@ -87,7 +89,7 @@ def _first_line(words: list[str], room: float, size: float, bold: bool) -> tuple
 
 
 def _fitting(text: str, room: float, size: float, bold: bool) -> int:
-    """How many characters from the start fit."""
+    """Return how many characters from the start fit."""
     used = 0
     for count, character in enumerate(text):
         used += _advance(character, bold)

@@ -66,7 +66,7 @@ class RunPicture:
         self.record(event)  # type: ignore[arg-type]
 
     def save(self, path: str) -> None:
-        """Draws what happened so far to a file that ends in .svg, .png or .gif; nothing where no run began.
+        """Draw what happened so far to a file that ends in .svg, .png or .gif; nothing where no run began.
 
         Raises ValueError for another ending, MissionError (BT009, BT081).
         """
@@ -122,7 +122,7 @@ class _Still:
             self._placer.taken.append(Area(x - size, y - size, 2 * size, 2 * size))
 
     def _marks(self) -> list[PictureMark]:
-        """Draws signs, each once at a place; returns what was said."""
+        """Draw signs, each once at a place; return what was said."""
         drawn: list[tuple[str, float, float]] = []
         said: list[PictureMark] = []
         for mark in self._record.marks:
@@ -159,7 +159,7 @@ class _Still:
             self.canvas.text(*middle, text, size=SMALL, bold=True, colour="white", align="center", z=6)
 
     def _bubbles(self, said: list[PictureMark]) -> None:
-        """What the robot and others said, each text once, as long as there is room for it."""
+        """Draw what the robot and others said, each text once, as long as there is room for it."""
         texts: dict[str, PictureMark] = {}
         for mark in said:
             if mark.text:
@@ -186,7 +186,7 @@ class _Still:
         return [_SIGNS[kind] for kind in _SIGNS if kind in kinds]
 
     def _strip(self, y: float, wide: float) -> None:
-        """The scale and what the signs mean, below the map."""
+        """Draw the scale and what the signs mean, below the map."""
         canvas, x = self.canvas, _MARGIN + 2
         x += self._map.draw_scale(canvas, x, y + 2) + 20
         for look, word in ((START, "start"), (END, "end")):
@@ -214,7 +214,7 @@ class _Still:
 
 
 def _in_the_end(world: World, record: RunRecord) -> World:
-    """The world with its doors as they were at last."""
+    """Return the world with its doors as they were at last."""
     is_open = {name: opened for _, name, opened in record.doors}
     changed: World = world.replace(
         doors=tuple(door.replace(open=is_open.get(door.name, door.open)) for door in world.doors)
@@ -223,13 +223,13 @@ def _in_the_end(world: World, record: RunRecord) -> World:
 
 
 def _walked(record: RunRecord, world: World) -> list[Point]:
-    """All points of the ways of people."""
+    """Return all points of the ways of people."""
     names = [name for name in record.sightings if name not in world.names.objects]
     return [point for name in names for way in ways(record.sightings[name]) for point in way]
 
 
 def numbers(values: list[int]) -> str:
-    """`1`, `3-5`, `1, 3-5`: numbers in order with runs joined; of many, the first and `…`."""
+    """Write `1`, `3-5`, `1, 3-5`: numbers in order with runs joined; of many, the first and `…`."""
     runs: list[list[int]] = []
     for value in sorted(values):
         if runs and value == runs[-1][-1] + 1:
@@ -241,7 +241,7 @@ def numbers(values: list[int]) -> str:
 
 
 def _groups(commands: list[RecordedCommand], map: WorldMap) -> list[tuple[tuple[float, float], list[RecordedCommand]]]:
-    """Commands that began at nearly the same place, with the place of the first of them."""
+    """Return groups of commands that began at nearly the same place, with the place of the first of them."""
     groups: list[tuple[tuple[float, float], list[RecordedCommand]]] = []
     for command in commands:
         x, y = map.at(command.start.pose.x, command.start.pose.y)

@@ -48,7 +48,7 @@ _STEP = 0.2  # metres between two sightings
 
 
 class PathSample(Record):
-    """Where the robot was at a time, with percent of its battery."""
+    """A sample of a path: where the robot was at a time, with percent of its battery."""
 
     t: float
     pose: Pose
@@ -68,7 +68,7 @@ class RecordedCommand:
 
 
 class Sighting(Record):
-    """Where somebody or something was from a time on, None for nowhere, and whether the robot saw it."""
+    """A sighting: where somebody or something was from a time on, None for nowhere, and whether the robot saw it."""
 
     t: float
     point: Point | None
@@ -76,7 +76,8 @@ class Sighting(Record):
 
 
 class PictureMark(Record):
-    """What happened to the robot: kind say, print, ask, hear, call, bump, stuck, grasp, release, give or drop.
+    """A mark in a picture for what happened to the robot: kind say, print, ask, hear, call, bump, stuck, grasp,
+    release, give or drop.
 
     `who` is the person who was asked or heard, "" for any.
     """
@@ -116,7 +117,7 @@ class RunRecord:
 
     @property
     def begun(self) -> bool:
-        """Whether the robot was seen at all."""
+        """Return whether the robot was seen at all."""
         return bool(self.track)
 
     def __call__(self, event: Event) -> None:
@@ -181,7 +182,7 @@ class RunRecord:
         self.moves.append((t, name, place))
 
     def _changed(self, event: StatusChanged, node: Node) -> None:
-        """`node` has the values that its ports name."""
+        """Record a change; `node` has the values that its ports name."""
         if event.path == "/":  # after a pause it runs again
             self.ended = None if event.status == RUNNING else (event.status, event.t)
         if not (is_asked_wait(event.node) or self._is_action(event.node)):
@@ -199,7 +200,7 @@ class RunRecord:
 
 
 def _stays(before: Sighting, now: Sighting) -> bool:
-    """Whether one in between says nothing more."""
+    """Return whether one in between says nothing more."""
     if before.point is None or now.point is None or before.seen != now.seen:
         return False
     return dist(before.point, now.point) < _STEP
@@ -219,18 +220,18 @@ _ENDINGS = {SUCCESS: "Succeeded", FAILURE: "Failed", IDLE: "Stopped", RUNNING: "
 
 
 def select_commands(commands: Sequence[RecordedCommand]) -> list[RecordedCommand]:
-    """Those that the legend names: all, or the first and the last of them."""
+    """Select the commands that the legend names: all, or the first and the last of them."""
     return list(commands) if len(commands) <= FIRST + LAST else [*commands[:FIRST], *commands[-LAST:]]
 
 
 def outcome(record: RunRecord) -> tuple[Look, str]:
-    """How the run ended, in a few words."""
+    """Return how the run ended, in a few words."""
     status, t = record.ended or (IDLE, record.track[-1].t)
     return LOOKS[status], f"{_ENDINGS[status]} after {t:.1f} s"
 
 
 class Legend:
-    """`height` is known before it is drawn."""
+    """The list of commands beside the map. `height` is known before it is drawn."""
 
     def __init__(self, record: RunRecord) -> None:
         self._record = record
@@ -239,7 +240,7 @@ class Legend:
         self.height = 62.0 + sum(_height(text, why) for _, text, why in self._rows) + (_ROW if self._hidden else 0)
 
     def draw(self, canvas: Surface, x: float, y: float) -> None:
-        """Draws it with its upper left corner there."""
+        """Draw it with its upper left corner there."""
         record = self._record
         look, heading = outcome(record)
         canvas.text(x, y + 8, look.sign, size=TITLE + 2, colour=look.strong, bold=True)

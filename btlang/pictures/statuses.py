@@ -47,7 +47,7 @@ class LastStatuses:
 
 
 def by_definition(statuses: Mapping[str, int], tree: Tree) -> dict[tuple[str, str], int]:
-    """The same by name of the subtree ("" is the main tree) and path in it: the latest of all its uses."""
+    """Return the same by name of the subtree ("" is the main tree) and path in it: the latest of all its uses."""
     found: dict[tuple[str, str], int] = {}
     for path, status in statuses.items():
         for key in _keys(path, tree):
@@ -56,7 +56,7 @@ def by_definition(statuses: Mapping[str, int], tree: Tree) -> dict[tuple[str, st
 
 
 def _keys(path: str, tree: Tree) -> Iterator[tuple[str, str]]:
-    """Where the node is drawn; nothing for a path that the tree does not have."""
+    """Yield where the node is drawn; nothing for a path that the tree does not have."""
     subtrees = dict(tree.subtrees)
     name, node, steps = "", tree.root, ""
     for step in path.strip("/").split("/") if path != "/" else ():

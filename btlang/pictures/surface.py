@@ -23,7 +23,7 @@ BUBBLES = {
 
 
 class Look(Record):
-    """How a status is shown: its sign, the word for it, a strong colour and a pale one."""
+    """The look of a status: its sign, the word for it, a strong colour and a pale one."""
 
     sign: str
     word: str
@@ -56,38 +56,39 @@ if TYPE_CHECKING:
             self, x: float, y: float, text: str, *, size: float = TEXT,
             colour: str = INK, bold: bool = False, align: str = "left", z: float = 0, halo: bool = False,
         ) -> object:  # fmt: skip
-            """One line whose capitals are centred on `y`. `align` says whether it is left, center or right of `x`. A
-            halo keeps it legible above lines.
+            """Draw one line whose capitals are centred on `y`.
+
+            `align` says whether it is left, center or right of `x`. A halo keeps it legible above lines.
             """
 
         def box(
             self, x: float, y: float, width: float, height: float, *, round: float = 0,
             fill: str = "none", edge: str = "none", line: float = 1, dashed: bool = False, z: float = 0,
         ) -> object:  # fmt: skip
-            """A rectangle with corners rounded to a radius."""
+            """Draw a rectangle with corners rounded to a radius."""
 
         def polygon(
             self, points: Points, *, fill: str = "none", edge: str = "none", line: float = 1, z: float = 0
         ) -> object:
-            """A closed shape."""
+            """Draw a closed shape."""
 
         def circle(
             self, x: float, y: float, radius: float, *,
             fill: str = "none", edge: str = "none", line: float = 1, dashed: bool = False, z: float = 0,
         ) -> object:  # fmt: skip
-            """A disc or a ring."""
+            """Draw a disc or a ring."""
 
         def line(
             self, points: Points, *,
             colour: str = INK, line: float = 1, dashed: bool = False, round: bool = True, z: float = 0,
         ) -> object:  # fmt: skip
-            """A line through the points."""
+            """Draw a line through the points."""
 
         def shaded(self, points: Points, colours: Sequence[str], *, line: float = 1, z: float = 0) -> object:
-            """A line through the points whose pieces have a colour each."""
+            """Draw a line through the points whose pieces have a colour each."""
 
         def group(self, title: str) -> AbstractContextManager[object]:
-            """What is drawn within is one thing, which a viewer that can do so names."""
+            """Return what is drawn within is one thing, which a viewer that can do so names."""
 
         def encoded(self, kind: str) -> bytes:
-            """The bytes of a file of a kind that the surface can make, ".svg" or ".png"."""
+            """Return the bytes of a file of a kind that the surface can make, ".svg" or ".png"."""

@@ -27,7 +27,7 @@ _STEP = 3.0  # points; the way is drawn in pieces no shorter
 
 
 def way(record: RunRecord) -> list[Point]:
-    """All places where the robot was, in metres, without those where it stood still."""
+    """Return all places where the robot was, in metres, without those where it stood still."""
     points: list[Point] = []
     for sample in record.track:
         point = (sample.pose.x, sample.pose.y)
@@ -37,7 +37,7 @@ def way(record: RunRecord) -> list[Point]:
 
 
 def draw_track(canvas: Surface, map: WorldMap, record: RunRecord) -> list[tuple[float, float]]:
-    """Draws the way with arrow heads; returns its points on the canvas."""
+    """Draw the way with arrow heads; return its points on the canvas."""
     points: list[tuple[float, float]] = []
     for place in way(record):
         x, y = map.at(*place)
@@ -59,7 +59,7 @@ def draw_track(canvas: Surface, map: WorldMap, record: RunRecord) -> list[tuple[
 
 
 def draw_body(canvas: Surface, map: WorldMap, pose: Pose, radius: float, look: tuple[str, str], z: float) -> None:
-    """The round robot with a line to where it looks."""
+    """Draw the round robot with a line to where it looks."""
     x, y = map.at(pose.x, pose.y)
     fill, edge = look
     size = max(radius * map.scale, 4.0)
@@ -69,7 +69,7 @@ def draw_body(canvas: Surface, map: WorldMap, pose: Pose, radius: float, look: t
 
 
 def shade(share: float) -> str:
-    """The colour of the way after a share of its length."""
+    """Return the colour of the way after a share of its length."""
     (r, g, b), (r2, g2, b2) = _COLOURS
     mixed = (r + (r2 - r) * share, g + (g2 - g) * share, b + (b2 - b) * share)
     return "#" + "".join(f"{round(part * 255):02x}" for part in mixed)
@@ -88,7 +88,7 @@ _LONGEST_NAME = 110.0
 
 
 def ways(sightings: Sequence[Sighting]) -> list[list[Point]]:
-    """The ways that somebody walked, one for each time that he or she was there."""
+    """Return the ways that somebody walked, one for each time that he or she was there."""
     found: list[list[Point]] = [[]]
     for each in sightings:
         point = each.point
@@ -100,7 +100,7 @@ def ways(sightings: Sequence[Sighting]) -> list[list[Point]]:
 
 
 def sighting_at(sightings: Sequence[Sighting], t: float) -> Sighting:
-    """Where somebody was at a time, between two looks too; before the first one as in that."""
+    """Return where somebody was at a time, between two looks too; before the first one as in that."""
     after = bisect_right(sightings, t, key=lambda each: each.t)
     if after == 0 or after == len(sightings):
         return sightings[min(after, len(sightings) - 1)]
@@ -113,14 +113,16 @@ def sighting_at(sightings: Sequence[Sighting], t: float) -> Sighting:
 
 
 def place_of(world: World, record: RunRecord, name: str, t: float) -> Point | None:
-    """Where a person was at a time, None for who wasn't there, or isn't known by that name."""
+    """Return where a person was at a time, None for who wasn't there, or isn't known by that name."""
     if name in record.sightings:
         return sighting_at(record.sightings[name], t).point
     return next(((person.x, person.y) for person in world.people if person.name == name), None)
 
 
 def draw_walks(canvas: Surface, map: WorldMap, record: RunRecord, world: World, placer: Placer) -> None:
-    """Thin dotted lines along the ways of people, with a disc where they are in the end, or a cross where they left."""
+    """Draw thin dotted lines along the ways of people, with a disc where they are in the end, or a cross where they
+    left.
+    """
     for name, sightings in record.sightings.items():
         if name in world.names.objects:
             continue
@@ -140,7 +142,7 @@ def draw_walks(canvas: Surface, map: WorldMap, record: RunRecord, world: World, 
 
 
 def name_walks(canvas: Surface, map: WorldMap, record: RunRecord, world: World, placer: Placer) -> None:
-    """The names of those who walked, at the ends of their ways."""
+    """Write the names of those who walked, at the ends of their ways."""
     for name, sightings in record.sightings.items():
         walked = [] if name in world.names.objects else ways(sightings)
         if walked:
@@ -151,7 +153,7 @@ def name_walks(canvas: Surface, map: WorldMap, record: RunRecord, world: World, 
 
 
 def draw_standing(canvas: Surface, map: WorldMap, world: World, name: str, sighting: Sighting) -> None:
-    """Somebody or something with its name: a disc where the robot sees it, else a ring."""
+    """Draw somebody or something with its name: a disc where the robot sees it, else a ring."""
     if sighting.point is None:
         return
     known = {thing.name: thing.radius for thing in (*world.objects, *world.people)}

@@ -47,7 +47,9 @@ class Sheet(Record):
 
 
 def title_of(tree: Tree) -> str:
-    """What heads a picture: the name of the mission's file, else the name of the tree or the first line of the text."""
+    """Return what heads a picture: the name of the mission's file, else the name of the tree or the first line of the
+    text.
+    """
     span = next((node.span for node in tree.walk() if node.span is not None), None)
     given = tree.name or "mission"
     if span is None:
@@ -59,7 +61,7 @@ def title_of(tree: Tree) -> str:
 
 
 class Maker:
-    """Makes the sheets of a tree. `label` and `is_action` are those of btlang.api.Mission.
+    """A maker of the sheets of a tree. `label` and `is_action` are those of btlang.api.Mission.
 
     `run` has the statuses and values of a run; in its picture what only computes the values of a command is left out.
     """
@@ -80,7 +82,9 @@ class Maker:
         self._nodes = run.nodes if run is not None else {}
 
     def sheets(self, apart: bool = False) -> list[Sheet]:
-        """One sheet, with the subtrees in place; or, if asked for or needed, the main tree and one of each subtree."""
+        """Make one sheet, with the subtrees in place; or, if asked for or needed, the main tree and one of each
+        subtree.
+        """
         if not apart or not self._subtrees:
             most = IN_PLACE if self._subtrees else MOST
             sheet = self._sheet("", self._tree.root, self._statuses, most, whole=bool(self._subtrees))
@@ -100,7 +104,7 @@ class Maker:
     def _sheet(
         self, name: str, root: Node, statuses: Mapping[str, int], most: int, *, apart: bool = False, whole: bool = False
     ) -> Sheet | None:
-        """None where it must be `whole` and is larger than `most`."""
+        """Make a sheet; None where it must be `whole` and is larger than `most`."""
         boxes: list[TreeBox] = []
         nodes = {} if name else self._nodes  # a definition is drawn for all its uses
         cut: dict[int, int] = {}  # nodes left out, by the box that they would hang on
@@ -145,7 +149,7 @@ class Maker:
 
 
 def _command(node: Node, path: str, statuses: Mapping[str, int]) -> tuple[Node, str]:
-    """What is drawn for a node, with its path: the command that scripts prepare, unless one of these failed."""
+    """Return what is drawn for a node, with its path: the command that scripts prepare, unless one of these failed."""
     last, above = len(node.children) - 1, path.rstrip("/")
     if is_prepared(node) and all(statuses.get(f"{above}/{i}") != FAILURE for i in range(last)):
         return node.children[last], f"{above}/{last}"
@@ -157,7 +161,7 @@ def _plain(node: Node) -> tuple[tuple[str, str], ...]:
 
 
 def _named(node: Node) -> str:
-    """The id with its ports in short: `Repeat x3`, `Timeout 5 s`."""
+    """Return the id with its ports in short: `Repeat x3`, `Timeout 5 s`."""
     words = [node.name, node.id]
     kind = CATALOGUE.get(node.id)
     for key, text in node.ports:
@@ -200,7 +204,7 @@ _FLAT = 1.25  # how much wider than high a picture with columns may be
 
 
 def side(box: TreeBox) -> float:
-    """Room between the left edge of a box and its text."""
+    """Return the room between the left edge of a box and its text."""
     return 11.0 if box.shape in ("decorator", "condition", "subtree") else 7.0
 
 
@@ -225,7 +229,7 @@ class Block:
         self.column = self.whole_width = self.whole_height = self.anchor = 0.0
 
     def enclose(self, blocks: Sequence[Block], *, in_columns: bool = False) -> None:
-        """Takes in the blocks of the children, whose sizes are known; `in_columns` allows more than one column."""
+        """Take in the blocks of the children, whose sizes are known; `in_columns` allows more than one column."""
         if self.is_frame:
             self._surround(blocks[0])
             return
@@ -262,7 +266,7 @@ class Block:
             left = self.whole_width + _COLUMN_GAP
 
     def _middle(self, blocks: Sequence[Block]) -> float:
-        """Half-way between the first child and the last, or straight at one that is near that."""
+        """Return the place half-way between the first child and the last, or straight at one that is near that."""
         anchors = [y + block.anchor for (_, y), block in zip(self.places, blocks, strict=True)]
         middle = (anchors[0] + anchors[-1]) / 2
         nearest = min(anchors, key=lambda anchor: abs(anchor - middle))
@@ -270,13 +274,13 @@ class Block:
 
 
 def _gaps(blocks: Sequence[Block]) -> list[float]:
-    """The room above each block."""
+    """Return the room above each block."""
     gaps = [_BIG_GAP if one.places or two.places else _GAP for one, two in pairwise(blocks)]
     return [0.0, *gaps] if blocks else []
 
 
 def _columns(blocks: Sequence[Block]) -> list[list[Block]]:
-    """As many columns as make the whole about as wide as high."""
+    """Return as many columns as make the whole about as wide as high."""
     heights = [block.whole_height + gap for block, gap in zip(blocks, _gaps(blocks), strict=True)]
     total = sum(heights)
     if total <= _HIGH:
@@ -314,7 +318,7 @@ class BoxLink(Record):
 
 
 class TreeLayout(Record):
-    """Spots are in the order of the boxes, so that a frame comes before what it holds."""
+    """The layout of a tree. Spots are in the order of the boxes, so that a frame comes before what it holds."""
 
     spots: tuple[Spot, ...]
     links: tuple[BoxLink, ...]
@@ -323,7 +327,7 @@ class TreeLayout(Record):
 
 
 def lay_out(boxes: Sequence[TreeBox], signs: bool = False) -> TreeLayout:
-    """Places the boxes; with `signs`, each has room for one. No two overlap, but a frame and what is in it.
+    """Place the boxes; with `signs`, each has room for one. No two overlap, but a frame and what is in it.
 
     Where many branches make the tree very high, they stand in columns, to be read one column after the other.
     """
@@ -351,7 +355,7 @@ def lay_out(boxes: Sequence[TreeBox], signs: bool = False) -> TreeLayout:
 
 
 def _link(block: Block, corner: tuple[float, float], to: tuple[float, float], role: str) -> BoxLink:
-    """`to` is where it ends, from the corner of the block."""
+    """Make a link; `to` is where it ends, from the corner of the block."""
     dx, dy = to
     right = 0.0 if block.is_frame else block.width
     points = [(right, block.anchor)]

@@ -68,13 +68,13 @@ def draw_tree(
     run: LastStatuses | None = None,
     title: str = "",
 ) -> None:
-    """Draws a tree to a file that ends in .svg or .png.
+    """Draw a tree to a file that ends in .svg or .png.
 
-    Named subtrees are framed in place; `apart` draws each once, below the main tree, and so does a tree that would
-    have more than 500 nodes. Of more than 2,000 nodes, or 60 levels, the rest is counted only. `run` was a sink of a
-    run, whose statuses and values are drawn. `label` and `is_action` are those of a Mission; the `title` is by default
-    the name of its file. An .svg file needs no matplotlib.
-    Raises ValueError for another ending, MissionError (BT009, BT081).
+    Named subtrees are framed in place; `apart` draws each once, below the main tree, and so does a tree that would have
+    more than 500 nodes. Of more than 2,000 nodes, or 60 levels, the rest is counted only. `run` was a sink of a run,
+    whose statuses and values are drawn. `label` and `is_action` are those of a Mission; the `title` is by default the
+    name of its file. An .svg file needs no matplotlib. Raises ValueError for another ending, MissionError (BT009,
+    BT081).
     """
     kind = picture_ending(path, STILL)
     sheets = Maker(tree, label, is_action, run).sheets(apart)
@@ -83,7 +83,10 @@ def draw_tree(
 
 
 def picture_of(sheets: list[Sheet], title: str, kind: str, path: str = "", *, has_run: bool = False) -> bytes:
-    """The content of a file of the `kind` ".svg" or ".png"; errors name its `path`. After a run, nodes have signs."""
+    """Return the content of a file of the `kind` ".svg" or ".png"; errors name its `path`.
+
+    After a run, nodes have signs.
+    """
     with open_drawing(path, kind) as sheet:
         return _TreePicture(sheets, title, has_run, sheet).surface.encoded(kind)
 
@@ -114,7 +117,7 @@ class _TreePicture:
             self._draw_legend(looks, height - _MARGIN - 6)
 
     def _frame_of(self, name: str, x: float, y: float, layout: TreeLayout) -> None:
-        """A titled box around a subtree that is drawn apart."""
+        """Draw a titled box around a subtree that is drawn apart."""
         pad = 10.0
         title = letters.clip_text(letters.make_printable(name), max(layout.width, 60.0), TEXT, True)
         self.surface.box(
@@ -202,7 +205,7 @@ class _TreePicture:
 
 
 def _arranged(layouts: list[TreeLayout]) -> list[tuple[float, float]]:
-    """Upper left corners: the main tree, and below it the subtrees in rows."""
+    """Return upper left corners: the main tree, and below it the subtrees in rows."""
     corners = [(_MARGIN, _MARGIN + HEADING)]
     area = sum((layout.width + 36) * (layout.height + 30 + _TITLE) for layout in layouts)
     room = max(_WIDTH, layouts[0].width, sqrt(area * 1.3))
@@ -217,12 +220,12 @@ def _arranged(layouts: list[TreeLayout]) -> list[tuple[float, float]]:
 
 
 def to_svg(tree: Tree, vocabulary: Lexicon, *, title: str = "") -> str:
-    """The text of an SVG file, whose `title` is by default the name of the tree's file."""
+    """Return the text of an SVG file, whose `title` is by default the name of the tree's file."""
     return _drawn(tree, vocabulary, ".svg", title).decode()
 
 
 def to_png(tree: Tree, vocabulary: Lexicon) -> bytes:
-    """The content of a PNG file. Raises MissionError (BT081)."""
+    """Return the content of a PNG file. Raises MissionError (BT081)."""
     return _drawn(tree, vocabulary, ".png")
 
 

@@ -38,18 +38,21 @@ class Area(Record):
 
     @property
     def middle(self) -> tuple[float, float]:
-        """Its centre."""
+        """Return its centre."""
         return self.x + self.width / 2, self.y + self.height / 2
 
     def overlap(self, other: Area) -> float:
-        """Square points that both cover."""
+        """Return the square points that both cover."""
         across = min(self.x + self.width, other.x + other.width) - max(self.x, other.x)
         down = min(self.y + self.height, other.y + other.height) - max(self.y, other.y)
         return across * down if across > 0 and down > 0 else 0.0
 
 
 class Placer:
-    """Labels go within `sheet`. What is `taken` is not covered if there is room elsewhere, lines are avoided."""
+    """A finder of free spots for labels, which go within `sheet`.
+
+    What is `taken` is not covered if there is room elsewhere, lines are avoided.
+    """
 
     def __init__(self, sheet: Area) -> None:
         self._sheet = sheet
@@ -57,11 +60,11 @@ class Placer:
         self._points: npt.NDArray[np.float64] = np.zeros((0, 2))
 
     def avoid(self, points: Iterable[tuple[float, float]]) -> None:
-        """Points of lines that labels should not hide."""
+        """Add points of lines that labels should not hide."""
         self._points = np.concatenate([self._points, np.array(list(points), dtype=float).reshape(-1, 2)])
 
     def place(self, x: float, y: float, width: float, height: float, gap: float) -> tuple[Area, float]:
-        """The best area of that size at least `gap` away from the point, now taken, and how much it overlaps."""
+        """Return the best area of that size at least `gap` away from the point, now taken, and how much it overlaps."""
         best, least, overlap = Area(x, y, width, height), float("inf"), 0.0
         for ring in _RINGS:
             for step in range(_DIRECTIONS):
@@ -92,13 +95,13 @@ class Placer:
 
 
 def _beside(x: float, y: float, width: float, height: float, gap: float, angle: float) -> Area:
-    """The area whose nearest edge is `gap` away from the point in a direction."""
+    """Return the area whose nearest edge is `gap` away from the point in a direction."""
     dx, dy = cos(angle), sin(angle)
     return Area(x + dx * (gap + width / 2) - width / 2, y + dy * (gap + height / 2) - height / 2, width, height)
 
 
 def along(points: list[tuple[float, float]], step: float) -> list[tuple[float, float]]:
-    """Points on a line, one for each `step` of its length, with both ends."""
+    """Return points on a line, one for each `step` of its length, with both ends."""
     found = points[:1]
     left = step
     for (ax, ay), (bx, by) in pairwise(points):
@@ -120,7 +123,7 @@ At = Callable[[float, float], tuple[float, float]]
 
 
 def draw_zones(canvas: Surface, world: World, at: At) -> None:
-    """Slow zones in yellow; those to keep out of in red and hatched."""
+    """Draw slow zones in yellow, and those to keep out of in red and hatched."""
     for zone in world.zones:
         corners = [at(*point) for point in zone.points]
         if zone.is_closed:
@@ -132,18 +135,18 @@ def draw_zones(canvas: Surface, world: World, at: At) -> None:
 
 
 def zone_colour(zone: Zone) -> str:
-    """Of its name."""
+    """Return the colour of a zone's name."""
     return _CLOSED_ZONE if zone.is_closed else _SLOW_ZONE
 
 
 def middle_of(zone: Zone) -> Point:
-    """A point in the zone for its name: the middle of its corners."""
+    """Return a point in the zone for its name: the middle of its corners."""
     xs, ys = [x for x, _ in zone.points], [y for _, y in zone.points]
     return sum(xs) / len(xs), sum(ys) / len(ys)
 
 
 def hatch(corners: Sequence[Point], step: float) -> list[list[Point]]:
-    """Lines that rise to the right, so far apart, where they are in a polygon."""
+    """Return lines that rise to the right, so far apart, where they are in a polygon."""
     found = []
     sums = [x + y for x, y in corners]
     along = (int(min(sums) // step) + 1) * step
@@ -161,7 +164,9 @@ def hatch(corners: Sequence[Point], step: float) -> list[list[Point]]:
 
 
 def draw_door(canvas: Surface, door: Door, at: At, middle: Point) -> None:
-    """Closed a bar in the wall; open its leaf, at a right angle to the wall, towards the middle of the canvas."""
+    """Draw a door: closed a bar in the wall; open its leaf, at a right angle to the wall, towards the middle of the
+    canvas.
+    """
     start, end = at(*door.start), at(*door.end)
     if not door.open:
         canvas.line([start, end], colour="white", line=4.2, round=False)
@@ -175,7 +180,7 @@ def draw_door(canvas: Surface, door: Door, at: At, middle: Point) -> None:
 
 
 def draw_route(canvas: Surface, person: Person, at: At) -> None:
-    """Dots from where somebody begins to each stop, and back to the first one where the route is walked again."""
+    """Draw dots from where somebody begins to each stop, and back to the first one where the route is walked again."""
     stops = [(person.x, person.y), *((stop.x, stop.y) for stop in person.walks)]
     if person.again and len(stops) > 2:
         stops.append(stops[1])
@@ -197,7 +202,9 @@ _LONGEST_NAME = 110.0
 
 
 class WorldMap:
-    """Draws on a canvas within `room`; `area` is what it takes of it. The world is scaled to fit.
+    """A map on a canvas within `room`; `area` is what it takes of it.
+
+    The world is scaled to fit. `track` are further points that have to be on the map.
 
     `track` are further points that have to be on the map.
     """
@@ -220,11 +227,11 @@ class WorldMap:
         self._left, self._top = left, low + height
 
     def at(self, x: float, y: float) -> tuple[float, float]:
-        """Points of the canvas, of metres."""
+        """Return points of the canvas, of metres."""
         return self.area.x + (x - self._left) * self.scale, self.area.y + (self._top - y) * self.scale
 
     def draw(self, canvas: Surface, walked: Container[str] = ()) -> None:
-        """The floor, zones, walls, doors and furniture, and a ring and the route of each person.
+        """Draw the floor, zones, walls, doors and furniture, and a ring and the route of each person.
 
         The rings of those who have `walked` away are dashed.
         """
@@ -249,7 +256,7 @@ class WorldMap:
             canvas.circle(x, y, max(person.radius * s * 0.45, 2.0), fill=_PERSON)
 
     def draw_names(self, canvas: Surface, placer: Placer, moved: Mapping[str, Point | None] = {}) -> None:
-        """Marks and names of what is in the world; `moved` says where objects lie in the end."""
+        """Mark and names of what is in the world; `moved` says where objects lie in the end."""
         for zone in self._world.zones:
             x, y = self.at(*middle_of(zone))
             text = letters.clip_text(letters.make_printable(zone.name), _LONGEST_NAME, SMALL)
@@ -301,11 +308,11 @@ class WorldMap:
         canvas.text(x, y, text, size=SMALL, colour=colour, align="center", halo=True, z=3)
 
     def lines(self) -> list[tuple[float, float]]:
-        """Points on all walls, for labels to keep away from."""
+        """Return points on all walls, for labels to keep away from."""
         return [point for wall in self._world.walls for point in along([self.at(*p) for p in wall], 5.0)]
 
     def draw_scale(self, canvas: Surface, x: float, y: float) -> float:
-        """A bar of a round length; returns the width that it takes."""
+        """Return a bar of a round length; returns the width that it takes."""
         metres = next(m for m in (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 1e9) if m * self.scale >= 40)
         length, text = metres * self.scale, f"{metres:g} m"
         if length > 200:  # a world of one point

@@ -25,7 +25,7 @@ _LEAST_WIDE = 260.0  # for the title
 
 
 def draw_world(world: World, path: str, title: str) -> None:
-    """Draws a world with the robot at its start to a file that ends in .svg or .png.
+    """Draw a world with the robot at its start to a file that ends in .svg or .png.
 
     Raises ValueError for another ending, MissionError (BT009, BT081).
     """

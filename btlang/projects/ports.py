@@ -19,22 +19,22 @@ _ATTRIBUTE = re.compile(r"""([^\s"'=<>/]+)\s*=\s*("[^"]*"|'[^']*')""")
 
 
 def place_of(node: Node) -> Span:
-    """Its start tag."""
+    """Return the start tag of a node."""
     return node.span or NOWHERE
 
 
 def attribute_name(node: Node, port: str) -> Span:
-    """The name of an attribute; the start tag where it has no such attribute."""
+    """Return the name of an attribute; the start tag where it has no such attribute."""
     return _found(node, port, 1)
 
 
 def attribute_value(node: Node, port: str) -> Span:
-    """The text of an attribute, without its quotes; the start tag where it has no such attribute."""
+    """Return the text of an attribute, without its quotes; the start tag where it has no such attribute."""
     return _found(node, port, 2)
 
 
 def id_place(node: Node) -> Span:
-    """What names its id: the tag, or the attribute ID behind a tag of its kind."""
+    """Return what names its id: the tag, or the attribute ID behind a tag of its kind."""
     span = place_of(node)
     tag = re.match(r"<([^\s/>]+)", span.text)
     if tag is not None and tag[1] == node.id:
@@ -61,7 +61,7 @@ _ENUM = re.compile(r"(?:enum\b[\w ]*)?[({\[]?\s*(\w+(?:\s*[|,;]\s*\w+)+)\s*[)}\]
 
 
 def describe_type(text: str, type: str) -> str:
-    """What a value of the type is, where the text is none; "" where it is one, or nothing is known of the type."""
+    """Say what a value of the type is, where the text is none; "" where it is one, or nothing is known of the type."""
     if text[:5] == "json:":
         return ""
     bounds = _bounds(type)
@@ -78,13 +78,13 @@ def describe_type(text: str, type: str) -> str:
 
 
 def enum_names(type: str) -> list[str]:
-    """The names of an enum whose type lists them, such as `LEFT|RIGHT`; none for any other type."""
+    """Return the names of an enum whose type lists them, such as `LEFT|RIGHT`; none for any other type."""
     listed = _ENUM.fullmatch(type.strip())
     return re.split(r"\s*[|,;]\s*", listed[1]) if listed else []
 
 
 def _bounds(type: str) -> tuple[int, int] | None:
-    """The least and the greatest value of a type of whole numbers."""
+    """Return the least and the greatest value of a type of whole numbers."""
     if type in _ALONE:
         return _ALONE[type]
     match = _INTEGER.fullmatch(type)
@@ -108,7 +108,9 @@ class DescribedUses(Record):
 
 
 def port_problems(uses: DescribedUses) -> Iterator[Diagnostic]:
-    """BT232 for ports that the model doesn't have, BT233 for values of another type, BT234 for missing ports.
+    """Report BT232 for ports that the model doesn't have, BT233 for values of another type, BT234 for missing ports.
+
+    BT239 where the model is wrong, and not the nodes.
 
     BT239 where the model is wrong, and not the nodes.
     """
@@ -137,7 +139,7 @@ def port_problems(uses: DescribedUses) -> Iterator[Diagnostic]:
 
 
 def misspelt_ports(uses: DescribedUses) -> Iterator[Diagnostic]:
-    """BT232 for ports that are surely misspelt, where the model may not list all ports."""
+    """Report BT232 for ports that are surely misspelt, where the model may not list all ports."""
     for problem in port_problems(uses):
         if problem.code == "BT232" and problem.fix is not None:
             yield problem
@@ -152,8 +154,8 @@ def _near(name: str, given: Iterable[str], ports: Iterable[str]) -> list[str]:
 
 
 def _lacking(uses: DescribedUses, others: Iterable[PortModel]) -> dict[str, list[Node]]:
-    """The ports that nodes have and the model lacks, with these nodes: another model has them, or several nodes do and
-    they aren't misspelt.
+    """Return the ports that nodes have and the model lacks, with these nodes: another model has them, or several nodes
+    do and they aren't misspelt.
     """
     ports, elsewhere = {port.name for port in uses.model.ports}, {port.name for port in others}
     found: dict[str, list[Node]] = {}
@@ -170,7 +172,9 @@ def _lacking(uses: DescribedUses, others: Iterable[PortModel]) -> dict[str, list
 
 
 def _may_be_left_out(port: PortModel, others: Iterable[PortModel], given: Sequence[dict[str, str]]) -> bool:
-    """Whether a port needn't be given: it is an output or has a default, or half of several nodes leave it out."""
+    """Return whether a port needn't be given: it is an output or has a default, or half of several nodes leave it
+    out.
+    """
     if port.direction == "output" or port.default is not None:
         return True
     if any(other.name == port.name and other.default is not None for other in others):
@@ -180,7 +184,7 @@ def _may_be_left_out(port: PortModel, others: Iterable[PortModel], given: Sequen
 
 
 def _wrong_values(node: Node, ports: Sequence[PortModel]) -> Iterator[Diagnostic]:
-    """BT233 where no model takes a value."""
+    """Report BT233 where no model takes a value."""
     for name, text in node.ports:
         described = [port for port in ports if port.name == name]
         if not described or not text.strip() or "{" in text or described[0].direction == "output":
@@ -190,7 +194,7 @@ def _wrong_values(node: Node, ports: Sequence[PortModel]) -> Iterator[Diagnostic
 
 
 def _stale(uses: DescribedUses, lacking: dict[str, list[Node]]) -> Diagnostic:
-    """BT239 at the model, with the first node of each port that it lacks, and the models that have them."""
+    """Report BT239 at the model, with the first node of each port that it lacks, and the models that have them."""
     notes = [(attribute_name(nodes[0], name), f"'{name}' is given here{_more(nodes)}")
              for name, nodes in lacking.items()]  # fmt: skip
     for model, place in uses.others:
@@ -205,13 +209,13 @@ def _more(nodes: Sequence[Node]) -> str:
 
 
 def suggest_name(span: Span, near: list[str]) -> tuple[Span, str] | None:
-    """The change of a misspelt name to the one name that is near; None where that isn't certain."""
+    """Return the change of a misspelt name to the one name that is near; None where that isn't certain."""
     certain = len(near) == 1 and is_misspelling(span.text, near[0], ())
     return (span, near[0]) if certain else None
 
 
 def subtree_problems(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
-    """BT132 for ports that the model of a tree requires, as BehaviorTree.CPP 4 does."""
+    """Report BT132 for ports that the model of a tree requires, as BehaviorTree.CPP 4 does."""
     if node.port(AUTOREMAP) in TRUE:
         return
     for port in model.ports:
@@ -221,7 +225,9 @@ def subtree_problems(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
 
 
 def constant_outputs(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
-    """BT233 for outputs that name no entry: BehaviorTree.CPP 4 writes them nowhere, but version 3 needs no braces."""
+    """Report BT233 for outputs that name no entry: BehaviorTree.CPP 4 writes them nowhere, but version 3 needs no
+    braces.
+    """
     outputs = {port.name for port in model.ports if port.direction == "output"}
     for name, text in node.ports:
         if name in outputs and text.strip() not in ("", "=") and blackboard_key(name, text) is None:
@@ -231,7 +237,7 @@ def constant_outputs(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
 
 
 def several_alone(node: Node) -> Iterator[Diagnostic]:
-    """BT132 for a second child of a kind of which BehaviorTree.CPP 4.10 takes only one there."""
+    """Report BT132 for a second child of a kind of which BehaviorTree.CPP 4.10 takes only one there."""
     alone = [child for child in node.children if child.id in CATALOGUE and CATALOGUE[child.id].alone_in == node.id]
     if len(alone) > 1:
         notes = tuple((place_of(child), f"{child.id} is asynchronous") for child in alone)

@@ -28,7 +28,9 @@ _WORD = re.compile(r"[^\W\d]\w*")
 
 
 def keys_read(nodes: Iterable[Node], outputs_of: OutputsOf) -> frozenset[str]:
-    """Every key that a port, a script or a SubTree may read, in whatever tree: a key has other names in other trees."""
+    """Return every key that a port, a script or a SubTree may read, in whatever tree: a key has other names in other
+    trees.
+    """
     read: set[str] = set()
     for node in nodes:
         outputs = outputs_of(node)
@@ -44,7 +46,7 @@ def keys_read(nodes: Iterable[Node], outputs_of: OutputsOf) -> frozenset[str]:
 
 
 def unread_values(nodes: Iterable[Node], outputs_of: OutputsOf, read: frozenset[str]) -> Iterator[Diagnostic]:
-    """BT235 for the keys that only output ports name, and that scripts only assign to."""
+    """Report BT235 for the keys that only output ports name, and that scripts only assign to."""
     for node in nodes:
         outputs = outputs_of(node)
         for name, text in node.ports:
@@ -62,7 +64,7 @@ def _keys_set(node_id: str, port: str, text: str, outputs: Container[str]) -> It
 
 
 def unread_subtree_ports(nodes: Iterable[Node], trees: Mapping[str, Node]) -> Iterator[Diagnostic]:
-    """BT235 for values that a tree is given and doesn't name anywhere."""
+    """Report BT235 for values that a tree is given and doesn't name anywhere."""
     named: dict[str, set[str]] = {}
     for node in nodes:
         used = node.port("ID")
@@ -76,7 +78,7 @@ def unread_subtree_ports(nodes: Iterable[Node], trees: Mapping[str, Node]) -> It
 
 
 def _named(root: Node, trees: Mapping[str, Node]) -> set[str]:
-    """All words of a tree that may be keys, and of those that see its keys by their own names."""
+    """Return all words of a tree that may be keys, and of those that see its keys by their own names."""
     words: set[str] = set()
     waiting, done = [root], set[str]()
     while waiting:
@@ -91,7 +93,9 @@ def _named(root: Node, trees: Mapping[str, Node]) -> set[str]:
 
 
 def unused_trees(project: XmlProject) -> Iterator[Diagnostic]:
-    """BT236 for trees that no main tree reaches, where a main tree uses others, in the files of what it reaches."""
+    """Report BT236 for trees that no main tree reaches, where a main tree uses others, in the files of what it
+    reaches.
+    """
     trees = project.trees
     mains = [trees[name] for name in project.mains]
     if not any(name in trees for root in mains for name in subtree_names(root)):
@@ -106,7 +110,7 @@ def unused_trees(project: XmlProject) -> Iterator[Diagnostic]:
 def unknown_nodes(
     nodes: Iterable[Node], described: Collection[str], words: Collection[str], dialects: Mapping[str, int]
 ) -> Iterator[Diagnostic]:
-    """At the first node of each such id, with how often it is used.
+    """Report BT231 at the first node of each unknown id, with how often it is used.
 
     `described` are the ids that the project can mean, `words` those of btlang's leaves; `dialects` are those of files.
     """

@@ -88,7 +88,10 @@ CLASSES = {channel.topic: kind for kind, channel in EVENTS.items()}
 def messages(
     event: Event, nanoseconds: int, label: Callable[[Node], str], movements: Movements
 ) -> Iterator[tuple[RecordingChannel, dict[str, Any] | str]]:
-    """What is written of an event, at a time since 1970; a text is JSON already. `movements` are those of the file."""
+    """Yield what is written of an event, at a time since 1970; a text is JSON already.
+
+    `movements` are those of the file.
+    """
     if isinstance(event, StatusesChanged):
         yield STATUSES, _statuses(event)
     elif isinstance(event, PeriodPassed):
@@ -125,7 +128,7 @@ def _statuses(event: StatusesChanged) -> dict[str, Any]:
 
 
 def _period(event: PeriodPassed, nanoseconds: int) -> Iterator[tuple[RecordingChannel, str]]:
-    """Written by hand, since there are so many of them: an encoder takes three times as long."""
+    """Write a period by hand, since there are so many of them: an encoder takes three times as long."""
     state = event.state
     pose = None if state is None else state.pose
     head = f'{{"t":{event.t!r},"number":{event.number},"wall":{event.wall!r},"ticks":{event.ticks}'
@@ -169,7 +172,7 @@ def _time(nanoseconds: int) -> dict[str, int]:
 
 
 def _text(event: Event) -> tuple[int, str] | None:
-    """The level and the text of an event that is for people."""
+    """Return the level and the text of an event that is for people."""
     if isinstance(event, Said | Printed):
         return _INFO, event.text
     if isinstance(event, Notice):

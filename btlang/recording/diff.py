@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 def steps(events: Iterable[Event]) -> Iterator[Step]:
-    """All changes of statuses."""
+    """Yield all changes of statuses."""
     for event in events:
         if isinstance(event, StatusesChanged):
             for index, status, _, reason in event.without_paths():
@@ -45,7 +45,7 @@ def steps(events: Iterable[Event]) -> Iterator[Step]:
 def first_difference(
     one: Iterable[Event], other: Iterable[Event], node: Callable[[int], Node], label: Callable[[Node], str]
 ) -> str:
-    """The first change of status in which two runs differ, in words; "" if there is none. Times don't count."""
+    """Return the first change of status in which two runs differ, in words; "" if there is none. Times don't count."""
     pair = first_pair(one, other)
     if pair is None:
         return ""
@@ -54,7 +54,7 @@ def first_difference(
 
 
 def first_pair(one: Iterable[Event], other: Iterable[Event]) -> Pair | None:
-    """The first changes of status in which two runs differ, None if there are none. Times don't count."""
+    """Return the first changes of status in which two runs differ, None if there are none. Times don't count."""
     for first, second in zip_longest(steps(one), steps(other)):
         if first is None or second is None or first[1:] != second[1:]:
             return first, second
@@ -62,7 +62,7 @@ def first_pair(one: Iterable[Event], other: Iterable[Event]) -> Pair | None:
 
 
 def describe_step(step: Step | None, node: Callable[[int], Node], label: Callable[[Node], str]) -> str:
-    """A step in words."""
+    """Return a step in words."""
     if step is None:
         return "nothing more"
     t, index, status, reason = step
@@ -70,13 +70,13 @@ def describe_step(step: Step | None, node: Callable[[int], Node], label: Callabl
 
 
 def compare_endings(one: Iterable[Event], other: Iterable[Event]) -> list[int]:
-    """The numbers of the nodes whose last status isn't the same; one that never began has none."""
+    """Return the numbers of the nodes whose last status isn't the same; one that never began has none."""
     last = [{index: status for _, index, status, _ in steps(events)} for events in (one, other)]
     return sorted(index for index in last[0].keys() | last[1].keys() if last[0].get(index) != last[1].get(index))
 
 
 def run_differences(one: Iterable[str], other: Iterable[str]) -> Iterator[str]:
-    """What only one of the stories of two runs has, whenever it was: `-` the first one, `+` the second."""
+    """Yield what only one of the stories of two runs has, whenever it was: `-` the first one, `+` the second."""
     lines = [[_parted(line) for text in story for line in text.splitlines()] for story in (one, other)]
     done = [[words for _, words in story] for story in lines]
     for tag, first, last, begin, end in SequenceMatcher(a=done[0], b=done[1], autojunk=False).get_opcodes():
@@ -86,7 +86,7 @@ def run_differences(one: Iterable[str], other: Iterable[str]) -> Iterator[str]:
 
 
 def _parted(line: str) -> tuple[str, str]:
-    """The time at the start of a line of a story, and the rest."""
+    """Return the time at the start of a line of a story, and the rest."""
     match = re.match(r" *[\d.]+ s  ", line)
     return (match[0].strip() + "  ", line[match.end() :]) if match else ("", re.sub(r" after [\d.]+ s", "", line))
 
@@ -95,7 +95,7 @@ _LONGEST = 80  # characters of the words of a node
 
 
 def diff(options: argparse.Namespace) -> int:
-    """Prints a line for each difference; returns 1 where there is one. Raises MissionError for what can't be read."""
+    """Print a line for each difference; return 1 where there is one. Raises MissionError for what can't be read."""
     found = list(_of_runs(options) if is_recording(options.old) and is_recording(options.new) else _of_trees(options))
     if options.markdown:
         show("\n".join(f"- {line}" for line in found) if found else "No differences.")
@@ -113,12 +113,12 @@ def _of_trees(options: argparse.Namespace) -> Iterator[str]:
 
 
 def mission_differences(old: Mission, new: Mission) -> Iterator[str]:
-    """A line for each difference of their trees."""
+    """Return a line for each difference of their trees."""
     return differences(old.tree, new.tree, words_of(old), words_of(new))
 
 
 def words_of(mission: Mission) -> Callable[[Node], str]:
-    """The English of a node in one line, of a long one that of its first and last command."""
+    """Return the English of a node in one line, of a long one that of its first and last command."""
 
     def said(node: Node) -> str:
         below = children_first(node)

@@ -71,13 +71,13 @@ class Film:
         """Whether more happened than it keeps."""
 
     def take(self, events: Iterable[Event]) -> Film:
-        """All that happened."""
+        """Take in all that happened."""
         for event in events:
             self(event)
         return self
 
     def __call__(self, event: Event) -> None:
-        """Keeps an event."""
+        """Keep an event."""
         if self.is_cut:
             return
         self._story.take((event,))
@@ -119,17 +119,17 @@ class Film:
             self._things += [[round(event.t, 3), *each] for each in self._movements.changed(event.state.things)]
 
     def data(self) -> dict[str, Any]:
-        """As JSON has it.
+        """Return the film as JSON has it.
 
         - `text`: the mission, "" where it had none; `nodes`: in preorder, with the number of the parent (-1: the root)
-          and the characters of the text that say it (None for none); `prepared` are those whose children but the
-          last only compute values for that one; `names`: those of statuses;
+        and the characters of the text that say it (None for none); `prepared` are those whose children but the
+        last only compute values for that one; `names`: those of statuses;
         - `words`: time, node and what it says with the values of its keys, where these are new;
         - `statuses`: a time in seconds, then node and status (a number of `names`) in turn, as a live view has them;
         - `doing`: time, task (0), where it is going, what it said and heard last, where one of these is new;
         - `robot`: time, x, y (metres), heading (degrees), battery (percent), what the left and the right hand hold;
         - `things`: time, name, x, y (metres, None where it isn't there) and whether the robot sees it, where one of
-          these is new; of people who walk and of what the robot doesn't know by its world;
+        these is new; of people who walk and of what the robot doesn't know by its world;
         - `scans`: time and metres, counter-clockwise from straight ahead; `events`: see btlang/run/events.schema.json;
         - `story`: time, node (-1: none) and words; `why`: how it ended; `failed`: the node that failed, or -1;
         - `seconds`: how long it is; `is_cut`: whether more happened than is kept; `map`: see World.as_map.
@@ -169,12 +169,12 @@ class Film:
 
 
 def side_by_side(one: str, other: str) -> dict[str, Any]:
-    """Two recordings, by their paths, as JSON has it; runs nothing. Raises MissionError for what can't be read.
+    """Return two recordings, by their paths, as JSON has it; runs nothing. Raises MissionError for what can't be read.
 
     - `films`: see Film.data; `stories`: what only one of the runs did, as `btc diff` writes it;
     - `missions`: what differs between their trees, as `btc diff` writes it; nodes are compared only where nothing does:
     - `first`: of each run the time, node and words of the first change of status that the other one doesn't have, with
-      None and -1 for a run that has no more; None if there is none. Times don't count;
+    None and -1 for a run that has no more; None if there is none. Times don't count;
     - `ended`: the numbers of the nodes whose last status isn't the same.
     """
     with ExitStack() as stack:
@@ -220,7 +220,7 @@ def simulate(
     ticks: int = _MOST_TICKS,
     seed: int | None = None,
 ) -> tuple[Outcome | None, str]:
-    """Runs a mission on the simulated robot, as fast as possible, for at most so many seconds of the mission and ticks.
+    """Run a mission on the simulated robot, as fast as possible, for at most so many seconds of the mission and ticks.
 
     The outcome, None for a mission with a command that never returns, and what stopped it: "" if it ended by itself. It
     is stopped after `patience` seconds of real time. Raises MissionError for a mission that can't be run.
@@ -242,7 +242,7 @@ def simulate(
 
 
 def check_words(tree: Tree, vocabulary: Lexicon, label: Callable[[Node], str], further: str = OURS) -> None:
-    """Raises MissionError (BT221) for a tree with words that are no words of btlang: what they do might move a real
+    """Raise MissionError (BT221) for a tree with words that are no words of btlang: what they do might move a real
     robot. `further` is where the names of functions of other words that are allowed begin.
     """
     for node in tree.walk():
@@ -254,8 +254,8 @@ def check_words(tree: Tree, vocabulary: Lexicon, label: Callable[[Node], str], f
 def try_mission(
     mission: Mission, seconds: float = 600.0, patience: float = 6.0, seed: int | None = None
 ) -> dict[str, Any]:
-    """The film of a run (see Film.data) of at most so many seconds of the mission and `patience` seconds of real time,
-    and what `stopped` it: "" if it ended by itself.
+    """Return the film of a run (see Film.data) of at most so many seconds of the mission and `patience` seconds of real
+    time, and what `stopped` it: "" if it ended by itself.
 
     Raises MissionError for a mission that can't be run, and BT221 for one with words that are no words of btlang: what
     they do might move a real robot.

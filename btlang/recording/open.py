@@ -14,7 +14,7 @@ _MAGIC = b"\x89MCAP0\r\n"
 
 
 def is_recording(path: str) -> bool:
-    """Whether the file begins as a recording does."""
+    """Return whether the file begins as a recording does."""
     try:
         with open(path, "rb") as file:
             return file.read(len(_MAGIC)) == _MAGIC
@@ -26,7 +26,10 @@ def is_recording(path: str) -> bool:
 def open_recording(
     path: str, keywords: Sequence[str] | None = None
 ) -> Iterator[tuple[Recording, Mission, RecordedNodes]]:
-    """A recording, its mission and the nodes of that; with `keywords` the mission may be run. Raises MissionError."""
+    """Give a recording, its mission and the nodes of that; with `keywords` the mission may be run.
+
+    Raises MissionError.
+    """
     recording = read_recording(path)
     name, language = recording.about.get("mission", "a mission"), recording.about.get("language", "en")
     with open_mission(recording.files, name, language, keywords) as mission:

@@ -47,7 +47,7 @@ class RecordedNodes:
 
     @cached_property
     def _places(self) -> list[int]:
-        """Which child of its parent each node is."""
+        """Return which child of its parent each node is."""
         counts = [0] * len(self._nodes)
         places = []
         for parent in self._parents:
@@ -57,7 +57,7 @@ class RecordedNodes:
         return places
 
     def path(self, index: int) -> str:
-        """As that of an engine: `/0/1` is the second child of the root's first one."""
+        """Return the path of a node as that of an engine: `/0/1` is the second child of the root's first one."""
         steps: list[str] = []
         while self._parents[index] >= 0:
             steps.append(str(self._places[index]))
@@ -65,38 +65,41 @@ class RecordedNodes:
         return "/" + "/".join(reversed(steps))
 
     def node(self, index: int) -> Node:
-        """The node with a number."""
+        """Return the node with a number."""
         return self._nodes[index]
 
     def parent(self, index: int) -> int:
-        """The number of the node above, -1 for the root."""
+        """Return the number of the node above, -1 for the root."""
         return self._parents[index]
 
     def span(self, index: int) -> Span | None:
-        """The sentence of a node, or of the nearest one above it that has one."""
+        """Return the sentence of a node, or of the nearest one above it that has one."""
         span = None
         while span is None and index >= 0:
             span, index = self._nodes[index].span, self._parents[index]
         return span
 
     def filled(self, index: int) -> Node:
-        """The same: what its ports held is with the changes."""
+        """Return the same: what its ports held is with the changes."""
         return self._nodes[index]
 
     def reason(self, index: int, fault: Fault | NodeInstance | None) -> str:
-        """Why a node failed, as it was written."""
+        """Return why a node failed, as it was written."""
         return fault if isinstance(fault, str) else ""
 
 
 class Recording(Record):
-    """`about` and `files` are those of the Recorder, `entries` the messages that are ours: topic and JSON."""
+    """A recording.
+
+    `about` and `files` are those of the Recorder, `entries` the messages that are ours: topic and JSON.
+    """
 
     about: Mapping[str, str]
     files: Mapping[str, bytes]
     entries: tuple[tuple[str, bytes], ...]
 
     def events(self, nodes: RecordedNodes) -> Iterator[Event]:
-        """What happened, as the classes of events, up to the first that is broken."""
+        """Yield what happened, as the classes of events, up to the first that is broken."""
         run = self.about.get("run", "")
         things: dict[str, Whereabouts] = {}
         for topic, data in self.entries:
@@ -109,7 +112,7 @@ class Recording(Record):
 
 
 def read_recording(path: str) -> Recording:
-    """Raises MissionError if it isn't a recording of btlang (BT084), or can't be read (BT001)."""
+    """Raise MissionError if it isn't a recording of btlang (BT084), or can't be read (BT001)."""
     from mcap.exceptions import McapError
     from mcap.records import Attachment, Channel, Message, Metadata
     from mcap.stream_reader import StreamReader
@@ -142,7 +145,7 @@ def read_recording(path: str) -> Recording:
 
 
 def read_about(path: str) -> dict[str, str]:
-    """What a recording says of itself, from its beginning; nothing if it can't be read."""
+    """Return what a recording says of itself, from its beginning; nothing if it can't be read."""
     from mcap.exceptions import McapError
     from mcap.records import Metadata
     from mcap.stream_reader import StreamReader
@@ -160,7 +163,7 @@ def read_about(path: str) -> dict[str, str]:
 def _event(
     topic: str, data: Mapping[str, Any], run: str, nodes: RecordedNodes, things: dict[str, Whereabouts]
 ) -> Event | None:
-    """`things` are those that were written so far."""
+    """Make an event of a message. `things` are those that were written so far."""
     if topic == STATUSES.topic:
         common = data["t"], run, data["number"], data["wall"]
         valued = {int(index): _with_ports(nodes, int(index), ports) for index, ports in data.get("values", {}).items()}

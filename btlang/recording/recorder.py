@@ -58,7 +58,7 @@ class Recorder:
         self._open()
 
     def __call__(self, event: Event) -> None:
-        """Writes an event. Raises OSError if that isn't possible."""
+        """Write an event. Raises OSError if that isn't possible."""
         try:
             self._write(event)
         except OSError as error:
@@ -94,7 +94,7 @@ class Recorder:
             self._open()
 
     def close(self) -> None:
-        """Ends the file. May be called twice, and after the disk was full."""
+        """End the file. May be called twice, and after the disk was full."""
         with suppress(OSError, ValueError):
             if not self._file.closed:
                 self._writer.finish()  # type: ignore[no-untyped-call]
@@ -138,7 +138,10 @@ def _media_type(name: str) -> str:
 def recorder_in(
     folder: str, mission: Mission, keywords: Sequence[str], about: Mapping[str, str], most_bytes: int | None = None
 ) -> Recorder:
-    """A recorder for a run of a mission, in a file of a folder that is named after the time. Raises MissionError."""
+    """Return a recorder for a run of a mission, in a file of a folder that is named after the time.
+
+    Raises MissionError.
+    """
     import btlang
 
     path = os.path.join(folder, time.strftime("%Y-%m-%d-%H%M%S-") + os.urandom(2).hex() + ".mcap")

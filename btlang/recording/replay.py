@@ -29,7 +29,7 @@ _IN_FRONT = 0.4  # metres from its centre at which a robot puts things down, abo
 
 
 class RecordedRobot:
-    """What a recording knows of the robot at one moment."""
+    """A robot as a recording knows it at one moment."""
 
     def __init__(self, state: RobotState) -> None:
         self._state = state
@@ -37,26 +37,26 @@ class RecordedRobot:
 
     @property
     def battery(self) -> float:
-        """Raises ActionFailed where it was not known."""
+        """Return the charge. Raises ActionFailed where it was not known."""
         if self._state.battery is None:
             raise ActionFailed("how full the battery was isn't recorded")
         return self._state.battery
 
     @property
     def pose(self) -> Pose:
-        """Raises ActionFailed where it was not known."""
+        """Return the pose. Raises ActionFailed where it was not known."""
         if self._state.pose is None:
             raise ActionFailed("where the robot was isn't recorded")
         pose: Pose = self._state.pose
         return pose
 
     def locate(self, name: str) -> Point:
-        """Where a thing lies that the robot has just put down: in front of it."""
+        """Return where a thing lies that the robot has just put down: in front of it."""
         return self.pose.ahead(_IN_FRONT)
 
 
 def adapt_picture(picture: Sink) -> Callable[[Event], object]:
-    """The same sink for events of a recording."""
+    """Return the same sink for events of a recording."""
 
     def take(event: Event) -> None:
         if isinstance(event, PeriodPassed) and event.state is not None:
@@ -80,12 +80,12 @@ class ReplayTimeline:
         self._kept: list[tuple[int, RunState]] = []  # how many events each has taken
 
     def count_before(self, t: float) -> int:
-        """How many events there are up to a time, in seconds of the mission."""
+        """Return how many events there are up to a time, in seconds of the mission."""
         return bisect_right(self._times, t)
 
     @cached_property
     def failures(self) -> list[float]:
-        """When nodes failed, in seconds of the mission."""
+        """Return when nodes failed, in seconds of the mission."""
         found: dict[float, None] = {}
         for event in self.events:
             if isinstance(event, StatusesChanged) and FAILURE in {status for _, status, _, _ in event.changes}:
@@ -93,7 +93,7 @@ class ReplayTimeline:
         return list(found)
 
     def state(self, count: int) -> RunState:
-        """The state after so many events; the caller may change it."""
+        """Return the state after so many events; the caller may change it."""
         if not self._kept:
             self._keep()
         at = bisect_right(self._kept, count, key=lambda kept: kept[0]) - 1
@@ -104,7 +104,9 @@ class ReplayTimeline:
         return state
 
     def _keep(self) -> None:
-        """One pass over all events; the states are as far apart as a tree is large, or they would fill the memory."""
+        """Keep states in one pass over all events; they are as far apart as a tree is large, or they would fill the
+        memory.
+        """
         state, changes = RunState(self._shape, self._nodes), 0
         self._kept.append((0, state.copy()))
         apart = max(_KEPT, len(self._shape))
@@ -117,7 +119,7 @@ class ReplayTimeline:
 
 
 class Player:
-    """Plays the events of a timeline. `controls` pause it, go on by one period, and end it, from any thread.
+    """A player of the events of a timeline. `controls` pause it, go on by one period, and end it, from any thread.
 
     A sink with a method `jump` gets the state of the run after a jump; others get what was left out, if it was forward.
     """
@@ -130,23 +132,23 @@ class Player:
         self._wanted: float | None = None  # where to go on, in seconds of the mission
 
     def seek(self, t: float) -> None:
-        """Goes on behind what happened up to a time, in seconds of the mission. From any thread."""
+        """Go on behind what happened up to a time, in seconds of the mission. From any thread."""
         self._wanted = t
         self._controls.wake()
 
     def move(self, seconds: float) -> None:
-        """Goes so many seconds on, or back where they are negative. From any thread."""
+        """Go so many seconds on, or back where they are negative. From any thread."""
         self.seek(max(0.0, (self._now if self._wanted is None else self._wanted) + seconds))
 
     def next_failure(self) -> None:
-        """Goes on to the next time at which a node failed, and pauses there; does nothing if none follows."""
+        """Go on to the next time at which a node failed, and pauses there; does nothing if none follows."""
         following = next((t for t in self._timeline.failures if t > self._now), None)
         if following is not None:
             self._controls.pause()
             self.seek(following)
 
     def play(self, speed: float, start: float = -math.inf) -> bool:
-        """Plays to the end; returns False if it was stopped before.
+        """Play to the end; return False if it was stopped before.
 
         `speed` is seconds of the mission per second of real time, math.inf for no waiting. What comes before `start`
         comes at once. A step goes on to the end of the next period.
@@ -180,7 +182,7 @@ class Player:
         return self._timeline.events[self._count - 1].t if self._count else 0.0
 
     def _stand_still(self) -> None:
-        """Until the pause is over, a step or a jump is asked for."""
+        """Wait until the pause is over, a step or a jump is asked for."""
         controls = self._controls
         while controls.paused and not controls.stopped and self._wanted is None and not controls.take_step():
             controls.wait(None)

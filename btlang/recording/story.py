@@ -19,7 +19,7 @@ _ENDINGS = {FAILURE: "failed", IDLE: "was halted", SKIPPED: "was skipped"}
 
 
 class Story:
-    """Follows the events of a run; `lines` describes it."""
+    """A story of a run: it follows the events, and `lines` describes it."""
 
     def __init__(self, mission: Mission, nodes: RecordedNodes, about: Mapping[str, str]) -> None:
         self._mission, self._nodes, self._about = mission, nodes, about
@@ -31,7 +31,7 @@ class Story:
         self._latest = 0.0
 
     def take(self, events: Iterable[Event]) -> Story:
-        """All that happened."""
+        """Take in all that happened."""
         for event in events:
             self._latest = max(self._latest, event.t)
             self._history(event)
@@ -51,7 +51,7 @@ class Story:
         return self
 
     def lines(self) -> Iterator[str]:
-        """The story, from the beginning."""
+        """Yield the story, from the beginning."""
         about = self._about
         when = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(float(about.get("wall", 0))))
         yield one_line(
@@ -60,14 +60,14 @@ class Story:
         yield from self.body()
 
     def body(self) -> Iterator[str]:
-        """The story without its first line."""
+        """Yield the story without its first line."""
         yield from (self._line(t, text) for t, _, text in self.notes)
         for began, node in self._began.values():
             yield self._line(began, f"{self._mission.label(node)}: not over when the recording ended")
         yield from self.ending()
 
     def ending(self) -> Iterator[str]:
-        """How it ended, and why."""
+        """Yield how it ended, and why."""
         ended = self._ended
         if ended is None:
             yield f"The recording ends after {self._latest:.1f} s, before the mission did."
@@ -95,7 +95,7 @@ class Story:
         return Failure(index, self._nodes.node(index), ended.path, ended.reason, None, self._nodes.span(index))
 
     def _is_said(self, node: Node) -> bool:
-        """Whether it is a command that somebody has said."""
+        """Return whether it is a command that somebody has said."""
         entry = self._mission.vocabulary.entry(node.id)
         return entry is not None and entry.sort == "action" and bool(entry.phrases)
 

@@ -86,7 +86,7 @@ _TOPICS = tuple(dict.fromkeys(command.topic for command in COMMANDS))
 
 
 def command_of(text: str, draft: MissionDraft) -> tuple[str, str] | None:
-    """The word of the REPL that a line begins with, and the rest; None where the line belongs to the mission.
+    """Return the word of the REPL that a line begins with, and the rest; None where the line belongs to the mission.
 
     A word that the mission knows, as a phrase or as a name that is defined or being defined, is the mission's; but
     `show tree` shows the tree, although the robot could print it.
@@ -108,25 +108,25 @@ def command_of(text: str, draft: MissionDraft) -> tuple[str, str] | None:
 
 
 def _own(word: str) -> str:
-    """The command that a word means; the word itself if there's none."""
+    """Return the command that a word means; the word itself if there's none."""
     name = word.lower()
     return _NAMES[name].name if name in _NAMES else name
 
 
 def near_command(text: str) -> str:
-    """The word of the REPL that a line may have misspelt, "" if there's none."""
+    """Return the word of the REPL that a line may have misspelt, "" if there's none."""
     from btlang.text.spelling import respellings
 
     return next((word for word in respellings(text.strip().lower(), _NAMES) if word in _NAMES), "")
 
 
 def is_begun(text: str) -> bool:
-    """Whether the text may become a word of the REPL."""
+    """Return whether the text may become a word of the REPL."""
     return any(name.startswith(text.lower()) for name in _NAMES)
 
 
 class ReplCommands:
-    """Does what the words of the REPL say; `write` gets what `show` takes, `run` runs the whole mission."""
+    """The commands of the REPL. `write` gets what `show` takes, `run` runs the whole mission."""
 
     def __init__(
         self,
@@ -148,11 +148,11 @@ class ReplCommands:
 
     @property
     def is_saved(self) -> bool:
-        """Whether nothing would be lost."""
+        """Return whether nothing would be lost."""
         return self._draft.text in ("", self.saved)
 
     def do(self, name: str, rest: str) -> None:
-        """Raises MissionError where a file or text is wrong, Leave where the user wants to leave."""
+        """Raise MissionError where a file or text is wrong, Leave where the user wants to leave."""
         command = getattr(self, f"_{name}", None) if name in _NAMES else None
         if command is None:
             self._write(f"There's no '{name}' here; 'help' lists what there is.")
@@ -298,7 +298,7 @@ class ReplCommands:
         self._write(robot_line(draft))
 
     def show_map(self) -> None:
-        """Draws the world and the robot in it, if the output is a terminal with room for it."""
+        """Draw the world and the robot in it, if the output is a terminal with room for it."""
         if not can_draw(sys.stdout):
             return
         from btlang.repl.welcome import world_map
@@ -339,7 +339,7 @@ class ReplCommands:
 
 
 def robot_line(draft: MissionDraft) -> str:
-    """Where the robot is and how it is."""
+    """Return where the robot is and how it is."""
     try:
         return _robot_line(draft.session.robot)
     except RobotError as problem:  # a robot over ROS 2 that is silent

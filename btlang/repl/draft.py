@@ -46,13 +46,15 @@ class Compiled(Record):
     mission: Mission
 
     def outline(self) -> Outline:
-        """The tree as `btc tree` shows it; of definitions alone only their subtrees."""
+        """Return the tree as `btc tree` shows it; of definitions alone only their subtrees."""
         whole = self.mission.__rich__()
         return whole if self.entry.has_command else whole.replace(trees=whole.trees[1:])
 
 
 class MissionDraft:
-    """Entries, with undo and redo; the words; the robot and the values, which go on from entry to entry."""
+    """A draft of a mission: entries, with undo and redo; the words; the robot and the values, which go on from entry to
+    entry.
+    """
 
     def __init__(
         self,
@@ -64,7 +66,7 @@ class MissionDraft:
         over: str | None = None,
         language: str = ENGLISH,
     ) -> None:
-        """Raises MissionError where a keyword file, the world or the robot cannot be used."""
+        """Raise MissionError where a keyword file, the world or the robot cannot be used."""
         self._robot, self._over = robot, over
         self.is_simulated = runs_on(robot, over)[1] == "simulated"
         self._keywords = keywords
@@ -81,14 +83,14 @@ class MissionDraft:
         self.use_world(world)
 
     def use_world(self, world: str | None) -> None:
-        """Puts the robot into a world of its own file, None for the one that ships. Raises MissionError."""
+        """Put the robot into a world of its own file, None for the one that ships. Raises MissionError."""
         vocabulary, world = mission_vocabulary(self._source(self.text), self._keywords, world, self.language)
         self.session = Session(self._robot, world=world, over=self._over)
         self.vocabulary = vocabulary
         self.world = world
 
     def load(self, source: Source) -> None:
-        """Changes to another mission, in its own world and with its own words if it names them. Raises MissionError.
+        """Change to another mission, in its own world and with its own words if it names them. Raises MissionError.
 
         A world that the user has chosen stays.
         """
@@ -106,13 +108,13 @@ class MissionDraft:
         self.change(entries)
 
     def reset(self) -> None:
-        """No values, and the simulated world as it was at the start; another robot stays where it is."""
+        """Forget the values, and set the simulated world as it was at the start; another robot stays where it is."""
         if self.is_simulated:
             self.session = Session(self._robot, world=self.world, over=self._over)
         self._blackboard = Blackboard()
 
     def close(self) -> None:
-        """Lets go of the robot."""
+        """Let go of the robot."""
         self.session.close()
 
     def _source(self, text: str, name: str = ENTRY) -> Source:
@@ -131,7 +133,7 @@ class MissionDraft:
         return "".join(f"{entry.text}\n" for entry in self.entries)
 
     def context(self, text: str = "") -> str:
-        """The definitions that a new entry sees: those whose names it doesn't redefine."""
+        """Return the definitions that a new entry sees: those whose names it doesn't redefine."""
         known = self.definitions
         if not known:
             return ""
@@ -140,7 +142,7 @@ class MissionDraft:
         return "".join(f"{definition}\n" for name, definition in known.items() if name not in redefined)
 
     def compile(self, text: str, suggest: bool = True) -> Compiled:
-        """Reads an entry together with the definitions above. Raises MissionError.
+        """Read an entry together with the definitions above. Raises MissionError.
 
         With `suggest` False no corrections of what is wrong are tried, which takes time. `Do that again` is the latest
         command once more.
@@ -167,7 +169,7 @@ class MissionDraft:
         return Compiled(entry, self._mission(shown, mission, own_warnings))
 
     def _rounds_more(self, text: str) -> int:
-        """How often an entry such as `Again` or `Repeat that twice` repeats the command before it, else 0."""
+        """Return how often an entry such as `Again` or `Repeat that twice` repeats the command before it, else 0."""
         first = re.match(r"\s*(\w+)", text)
         if first is None or first[1].lower() not in self.vocabulary.continuing:
             return 0  # as nearly always, at each key
@@ -179,43 +181,43 @@ class MissionDraft:
         return int(count) if count.isdigit() else 0
 
     def values(self) -> Blackboard:
-        """What entries before have set, without what was computed on the way or belongs to another mission."""
+        """Return what entries before have set, without what was computed on the way or belongs to another mission."""
         known = self._known()
         for key in [key for key in self._blackboard.keys() if key not in known]:  # noqa: SIM118 - it is no dict
             self._blackboard.unset(key)
         return self._blackboard
 
     def _known(self) -> Mapping[str, Known]:
-        """The values that entries before have set."""
+        """Return the values that entries before have set."""
         if self._known_of[0] != self.text:
             self._known_of = self.text, lexed(self._source(self.text), self.vocabulary).names.known
         return self._known_of[1]
 
     def compile_all(self) -> Mission:
-        """The whole mission. Raises MissionError, also where it holds no command."""
+        """Return the whole mission. Raises MissionError, also where it holds no command."""
         source = self._source(self.text, self.file or "<session>")
         reading = read_mission(source, self.vocabulary, self._parser, errors_of=errors_of)
         tree = compile_mission(reading.mission, self.vocabulary)
         return self._mission(tree, reading.mission, reading.warnings)
 
     def add(self, entry: DraftEntry) -> None:
-        """A definition takes the place of an older one of the same name."""
+        """Add an entry. A definition takes the place of an older one of the same name."""
         names = {name for name, _ in entry.definitions}
         kept = [old for old in self.entries if old.has_command or not {name for name, _ in old.definitions} <= names]
         self.change((*(kept if names else self.entries), entry))
 
     def change(self, entries: Sequence[DraftEntry]) -> None:
-        """Other entries; `undo` brings the present ones back."""
+        """Set other entries; `undo` brings the present ones back."""
         self._before.append(self.entries)
         self._undone.clear()
         self.entries = tuple(entries)
 
     def undo(self) -> bool:
-        """Takes back the latest change; False if there is none."""
+        """Take back the latest change; False if there is none."""
         return self._swap(self._before, self._undone)
 
     def redo(self) -> bool:
-        """Takes back the latest undo; False if there is none."""
+        """Take back the latest undo; False if there is none."""
         return self._swap(self._undone, self._before)
 
     def _swap(self, source: list[tuple[DraftEntry, ...]], target: list[tuple[DraftEntry, ...]]) -> bool:
@@ -226,7 +228,7 @@ class MissionDraft:
         return True
 
     def entries_of(self, text: str, name: str = ENTRY) -> list[DraftEntry]:
-        """The statements of a whole mission, each with the comments above it. Raises MissionError."""
+        """Return the statements of a whole mission, each with the comments above it. Raises MissionError."""
         source = Source(text, name)
         mission = read_mission(source, self.vocabulary, self._parser, errors_of=errors_of).mission
         compile_mission(mission, self.vocabulary, needs_command=False)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from btlang.repl.draft import MissionDraft
 
     class LineEditor(Protocol):
-        """What the keys act on; see screen.py."""
+        """The editor that the keys act on; see screen.py."""
 
         buffer: Buffer
         draft: MissionDraft
@@ -44,13 +44,13 @@ if TYPE_CHECKING:
 
 
 def needs_more(text: str) -> bool:
-    """Whether an entry goes on in the next line: it has opened a block that no empty line has closed."""
+    """Return whether an entry goes on in the next line: it has opened a block that no empty line has closed."""
     lines = text.split("\n")
     return _opens_block(lines[-1]) or (len(lines) > 1 and bool(lines[-1].strip()))
 
 
 def entries(lines: Iterable[str], vocabulary: Lexicon) -> Iterator[str]:
-    """The entries of a text that nobody types: a block also ends where a line stands at the margin again."""
+    """Yield the entries of a text that nobody types: a block also ends where a line stands at the margin again."""
     text = ""
     for line in lines:
         line = line.rstrip("\r\n")
@@ -72,7 +72,7 @@ def _opens_block(line: str) -> bool:
 
 
 def _goes_on(line: str, vocabulary: Lexicon) -> bool:
-    """Whether a line at the margin belongs to the statement above it."""
+    """Return whether a line at the margin belongs to the statement above it."""
     match = longest(vocabulary.trie, split(Source(line), vocabulary.orthography), 0, vocabulary.context)
     return match is not None and match.meaning.role == "otherwise"
 
@@ -81,7 +81,7 @@ _INDENT = "  "
 
 
 def key_bindings(screen: LineEditor) -> KeyBindings:
-    """Enter, Tab, Ctrl-F, 1 and 2 where there is a choice, Ctrl-C, Ctrl-D and Backspace."""
+    """Bind Enter, Tab, Ctrl-F, 1 and 2 where there is a choice, Ctrl-C, Ctrl-D and Backspace."""
     keys = KeyBindings()
     buffer = screen.buffer
 
@@ -169,7 +169,7 @@ def key_bindings(screen: LineEditor) -> KeyBindings:
 
 
 def _select(buffer: Buffer) -> None:
-    """Selects the whole entry, so that what is typed next takes its place; an arrow key keeps it."""
+    """Select the whole entry, so that what is typed next takes its place; an arrow key keeps it."""
     buffer.append_to_history()
     buffer.cursor_position = 0
     buffer.start_selection()
@@ -179,7 +179,7 @@ def _select(buffer: Buffer) -> None:
 
 
 def _new_line(event: KeyPressEvent) -> None:
-    """The next line begins where this one does, or further in where this one opens a block."""
+    """Begin the next line where this one does, or further in where this one opens a block."""
     line = event.current_buffer.document.current_line
     indent = line[: len(line) - len(line.lstrip())]
     event.current_buffer.insert_text("\n" + indent + (_INDENT if line.rstrip().endswith(":") else ""))

@@ -38,7 +38,7 @@ def run_repl(
     over: str | None = None,
     language: str = ENGLISH,
 ) -> int:
-    """Runs until the user leaves or the input ends; returns the exit code. Raises MissionError for wrong files."""
+    """Run until the user leaves or the input ends; return the exit code. Raises MissionError for wrong files."""
     with closing(MissionDraft(keywords, world, parser, include_root, robot, over, language)) as draft:
         return _talk_or_read(draft, speed)
 
@@ -67,7 +67,7 @@ class Repl:
         self._ahead: list[str] = []  # keys that were typed while a mission ran
 
     def talk(self) -> None:
-        """At the keyboard, until the user leaves."""
+        """Talk with the user at the keyboard, until they leave."""
         from btlang.repl.screen import CONTINUED, PROMPT, ReplScreen
 
         screen = ReplScreen(self._draft, self._store)
@@ -102,7 +102,7 @@ class Repl:
             show("This session is saved: after the next start, 'restore' brings it back.")
 
     def read(self, lines: Iterable[str]) -> int:
-        """From lines; returns 0, or 1 where a command failed, or 2 where an entry was wrong."""
+        """Read from lines; return 0, or 1 where a command failed, or 2 where an entry was wrong."""
         worst = 0
         for text in entries(lines, self._draft.vocabulary):
             try:
@@ -112,7 +112,7 @@ class Repl:
         return worst
 
     def _do(self, text: str) -> int:
-        """Returns the exit code that `btc run` would have. Raises Leave."""
+        """Return the exit code that `btc run` would have. Raises Leave."""
         try:
             own = command_of(text, self._draft)
             if own is not None:
@@ -152,7 +152,9 @@ class Repl:
 
 @contextmanager
 def _type_ahead() -> Iterator[None]:
-    """What is typed while the robot moves isn't shown, and is in the next line, also where there is no live view."""
+    """Give what is typed while the robot moves isn't shown, and is in the next line, also where there is no live
+    view.
+    """
     try:
         import termios
 

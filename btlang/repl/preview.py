@@ -54,7 +54,7 @@ class Preview(Record):
 
 
 def preview(draft: MissionDraft, text: str) -> Preview:
-    """Compiles the entry. Raises nothing."""
+    """Compile the entry. Raises nothing."""
     if not text.strip():
         return Preview()
     tokens = Lexer(Source(text), draft.vocabulary, explain=False).tokens
@@ -73,7 +73,7 @@ def preview(draft: MissionDraft, text: str) -> Preview:
 
 
 def continuations(draft: MissionDraft, text: str) -> list[Completion]:
-    """What may follow the text that stands before the cursor."""
+    """Return what may follow the text that stands before the cursor."""
     context = draft.context()
     found = completions(context + text, draft.vocabulary)
     return [option.replace(start=option.start - len(context)) for option in found]
@@ -84,7 +84,7 @@ def _own(error: MissionError, text: str) -> tuple[Diagnostic, ...]:
 
 
 def _with_corrections(draft: MissionDraft, text: str) -> tuple[Diagnostic, ...]:
-    """What is wrong with an entry that cannot be read."""
+    """Return what is wrong with an entry that cannot be read."""
     try:
         draft.compile(text)
     except MissionError as error:
@@ -93,21 +93,21 @@ def _with_corrections(draft: MissionDraft, text: str) -> tuple[Diagnostic, ...]:
 
 
 def _is_unfinished(problems: tuple[Diagnostic, ...], text: str, vocabulary: Lexicon) -> bool:
-    """Whether all that is wrong is at the end, or waits for it."""
+    """Return whether all that is wrong is at the end, or waits for it."""
     errors = [problem for problem in problems if problem.is_error]
     rests = (text[p.span.end :].lower().split() for p in errors if p.code not in _UNFINISHED)
     return all(vocabulary.articles.issuperset(rest) for rest in rests)
 
 
 def _goes_on(draft: MissionDraft, text: str) -> bool:
-    """Whether anything but another spelling may follow."""
+    """Return whether anything but another spelling may follow."""
     if text.count('"') % 2:
         return True
     return any(not option.spelling for option in continuations(draft, text))
 
 
 def _tree_so_far(draft: MissionDraft, text: str, tokens: list[Token]) -> Outline | None:
-    """The tree of the text without its last words, as few as possible."""
+    """Return the tree of the text without its last words, as few as possible."""
     tokens = [token for token in tokens if token.end > token.start]
     for _ in range(_MOST_TRIES):
         if tokens:
@@ -145,7 +145,7 @@ class Offers(Completer):
         self._paths = PathCompleter(expanduser=False)
 
     def get_completions(self, document: Document, complete_event: CompleteEvent) -> Iterable[MenuItem]:
-        """Of the text before the cursor."""
+        """Return what may follow the text before the cursor."""
         text = document.text_before_cursor
         if not document.current_line_before_cursor.strip() and not complete_event.completion_requested:
             return

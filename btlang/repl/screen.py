@@ -59,7 +59,9 @@ _STYLE = Style.from_dict({
 
 
 class ReplScreen:
-    """Asks for entries. `ask` returns a text that compiles, or a line for the REPL itself.
+    """The screen of the REPL, which asks for entries.
+
+    `ask` returns a text that compiles, or a line for the REPL itself.
 
     `input` and `output` are those of the terminal where none are given.
     """
@@ -93,14 +95,14 @@ class ReplScreen:
         )
 
     def ask(self, text: str = "") -> str:
-        """Lets the user type, from a text to begin with. Raises EOFError when the user wants to leave."""
+        """Let the user type, from a text to begin with. Raises EOFError when the user wants to leave."""
         self.buffer.reset(Document(text))
         self._refused, self._asked, self.note, self.leaving, self.asks = "", "", "", False, False
         self._keep()
         return self.application.run()
 
     def preview(self) -> Preview:
-        """Of the text as it is now."""
+        """Return the preview of the text as it is now."""
         text = self.buffer.text
         if self._seen[0] != text or not text:
             seen = preview(self.draft, text)
@@ -110,7 +112,7 @@ class ReplScreen:
         return self._seen[1]
 
     def refuse(self, is_whole: bool = False) -> None:
-        """Shows what is wrong with the entry although more might come: the user wants to run it.
+        """Show what is wrong with the entry although more might come: the user wants to run it.
 
         If `is_whole`, nothing of it was understood, and it is selected.
         """
@@ -126,7 +128,7 @@ class ReplScreen:
             self.note = f"Not run. Did you mean: {near}"
 
     def readings(self) -> list[tuple[int, int, str]]:
-        """The changes between which the first warning with two readings leaves a choice."""
+        """Return the changes between which the first warning with two readings leaves a choice."""
         text = self.buffer.text
         for problem in self.preview().problems:
             if len(problem.readings) == 2 and all(span.end <= len(text) for span, _ in problem.readings):
@@ -134,7 +136,7 @@ class ReplScreen:
         return []
 
     def ask_which(self) -> bool:
-        """Whether the entry has two readings, and nobody was asked yet which of them is meant."""
+        """Return whether the entry has two readings, and nobody was asked yet which of them is meant."""
         readings = self.readings()
         if not readings or self._asked == self.buffer.text:
             return False
@@ -146,14 +148,14 @@ class ReplScreen:
         return True
 
     def clear(self) -> None:
-        """Clears the terminal."""
+        """Clear the terminal."""
         output = self.application.output
         output.erase_screen()
         output.cursor_goto(0, 0)
         output.flush()
 
     def type_ahead(self, keys: str) -> None:
-        """What was typed while a mission ran: the next line gets it as if it were typed then."""
+        """Keep what was typed while a mission ran: the next line gets it as if it were typed then."""
         presses: list[KeyPress] = []
         Vt100Parser(presses.append).feed_and_flush(keys.replace("\n", "\r"))
         store_typeahead(self.application.input, presses)
@@ -205,7 +207,7 @@ class ReplScreen:
         return Layout(HSplit(rows), focused_element=line)
 
     def _problems(self) -> Group:
-        """Carets under the words, if the entry fits on one line, and what is wrong."""
+        """Return carets under the words, if the entry fits on one line, and what is wrong."""
         seen, unfinished = self.preview(), self._is_unfinished()
         parts: list[RenderableType] = []
         for problem in seen.problems[:_MOST_PROBLEMS] if not (unfinished and seen.midword) else ():
@@ -247,7 +249,7 @@ class ReplScreen:
         return ANSI("\n".join(lines(drawing, self._columns(), has_colour(sys.stdout), fold)))
 
     def fix(self) -> tuple[int, int, str] | None:
-        """The first correction that is proposed: characters from and to, and what to write there."""
+        """Return the first correction that is proposed: characters from and to, and what to write there."""
         for problem in self.preview().errors if not self._is_unfinished() else ():
             if problem.fix is not None:
                 span, words = problem.fix
@@ -256,7 +258,7 @@ class ReplScreen:
         return None
 
     def offers(self) -> bool:
-        """Whether anything may follow at the cursor."""
+        """Return whether anything may follow at the cursor."""
         return bool(continuations(self.draft, self.buffer.document.text_before_cursor))
 
     def _rows(self) -> int:
@@ -267,13 +269,13 @@ class ReplScreen:
 
 
 class _Marks(Lexer):
-    """Colours of the entry, from its preview."""
+    """The colours of the entry, from its preview."""
 
     def __init__(self, seen: Callable[[], Preview]) -> None:
         self._preview = seen
 
     def invalidation_hash(self) -> object:
-        """The same text may be coloured otherwise later, when more names are defined."""
+        """Return a new value each time: the same text may be coloured otherwise later, when more names are defined."""
         return self._preview().marks
 
     def lex_document(self, document: Document) -> Callable[[int], StyleAndTextTuples]:

@@ -29,7 +29,7 @@ class SavedDraft(Record):
 
 
 def state_folder() -> Path:
-    """The platform's folder for such things, $XDG_STATE_HOME/btlang on Linux."""
+    """Return the platform's folder for such things, $XDG_STATE_HOME/btlang on Linux."""
     return Path(user_dir("state"))
 
 
@@ -63,11 +63,11 @@ class DraftStore:
 
     @property
     def history(self) -> Path:
-        """What was typed in all sessions, in the format of prompt_toolkit's FileHistory."""
+        """The history of what was typed in all sessions, in the format of prompt_toolkit's FileHistory."""
         return self._folder / "history"
 
     def save(self, entries: list[str], draft: str, world: str | None = None) -> None:
-        """The present state of this draft, in its file before this returns: it outlives a kill at any moment."""
+        """Save the present state of this draft, in its file before this returns: it outlives a kill at any moment."""
         if self.problem:
             return
         state = {"entries": entries, "draft": draft, "world": world and os.path.abspath(world)}
@@ -80,12 +80,12 @@ class DraftStore:
             self.problem = f"{self._own}: {reason_of(error)}"
 
     def forget(self) -> None:
-        """Deletes this session's files: all of it has been saved elsewhere, or there is nothing in it."""
+        """Delete this session's files: all of it has been saved elsewhere, or there is nothing in it."""
         if not self.problem:
             _delete(self._own)
 
     def left(self) -> SavedDraft | None:
-        """The latest draft that was left with something in it."""
+        """Return the latest draft that was left with something in it."""
         kept = []
         for path in self._files():
             if path == self._own or not _is_left(path):
@@ -106,12 +106,12 @@ class DraftStore:
             return []
 
     def done_with(self, kept: SavedDraft) -> None:
-        """A draft that was taken up again is no longer kept by itself."""
+        """Forget a draft that was taken up again: it is no longer kept by itself."""
         _delete(kept.path)
 
 
 def _read(path: Path) -> SavedDraft | None:
-    """None where the draft is empty or not readable."""
+    """Read a draft; None where it is empty or not readable."""
     try:
         state = json.loads(path.read_text(encoding="ascii"))
         entries, draft, world = tuple(map(str, state["entries"])), str(state["draft"]), state.get("world")
@@ -126,7 +126,7 @@ def _delete(path: Path) -> None:
 
 
 def _lock(path: Path) -> int | None:
-    """The open lock of a draft, which ends with its process; None where one that still runs holds it."""
+    """Return the open lock of a draft, which ends with its process; None where one that still runs holds it."""
     lock = os.open(path.with_suffix(".lock"), os.O_CREAT | os.O_WRONLY, 0o600)
     if fcntl is not None:
         try:

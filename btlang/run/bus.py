@@ -61,8 +61,9 @@ class Bus:
         self._queues: list[_Queue] = []
 
     def add(self, sink: Sink) -> None:
-        """Adds a sink, which gets the events from now on. Its attribute `policy` is INLINE, BLOCK, which is usual,
-        DROP_OLDEST or NEWEST.
+        """Add a sink, which gets the events from now on.
+
+        Its attribute `policy` is INLINE, BLOCK, which is usual, DROP_OLDEST or NEWEST.
         """
         policy = getattr(sink, "policy", BLOCK)
         if policy != INLINE and self._queued:
@@ -72,7 +73,7 @@ class Bus:
         self._sinks.append(sink)
 
     def emit(self, kind: type[Event], /, *data: Any, **more: Any) -> None:
-        """Makes an event of a class and hands it to all sinks."""
+        """Make an event of a class and hands it to all sinks."""
         if self.before is not None and kind is not StatusesChanged:
             self.before()
         with self._numbering:  # for no longer: an emergency stop reports from a thread of its own
@@ -86,7 +87,7 @@ class Bus:
                 self.errors.append(problem)
 
     def emit_robot(self, kind: str, data: Mapping[str, Any]) -> None:
-        """As `emit`, of what a robot reports with its `on_event`."""
+        """Emit what a robot reports with its `on_event`, as `emit` does."""
         event = ROBOT_EVENTS.get(kind)
         if event is not None:
             self.emit(event, **data)
@@ -94,7 +95,7 @@ class Bus:
             self.emit(RobotEvent, kind, data)
 
     def close(self) -> None:
-        """Waits until the sinks have had what they are to get."""
+        """Wait until the sinks have had what they are to get."""
         self.closed = True
         for queue in self._queues:
             queue.close()
@@ -102,7 +103,7 @@ class Bus:
 
 
 class _Queue:
-    """Hands events to one sink in a thread of its own."""
+    """A queue that hands events to one sink in a thread of its own."""
 
     def __init__(self, sink: Sink, policy: str, failed: Callable[[Exception], object]) -> None:
         self._sink, self._policy, self._failed = sink, policy, failed

@@ -30,26 +30,26 @@ class Connection(Protocol):
 
     @property
     def bus(self) -> Bus:
-        """That of the run under way."""
+        """The bus of the run under way."""
 
     def bind(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
-        """How the robot itself does what an entry says; None where its `call` does. Raises MissionError."""
+        """Return how the robot itself does what an entry says; None where its `call` does. Raises MissionError."""
 
     def check(self, tree: Tree, vocabulary: Lexicon) -> None:
-        """Raises MissionError where the robot lacks what the leaves of the tree need."""
+        """Raise MissionError where the robot lacks what the leaves of the tree need."""
 
     def begin(self, bus: Bus) -> None:
-        """A new run: what the robot reports goes on this bus."""
+        """Begin a new run: what the robot reports goes on this bus."""
 
     def pace(self, speed: float, controls: Controls) -> Pace:
-        """What waits between two ticks. Raises ValueError for a speed that the robot cannot keep."""
+        """Return what waits between two ticks. Raises ValueError for a speed that the robot cannot keep."""
 
     def close(self) -> None:
-        """Lets go of the robot, at rest, within a few seconds. May be called twice."""
+        """Let go of the robot, at rest, within a few seconds. May be called twice."""
 
 
 class RunChoices:
-    """Counts the random choices of a run, and keeps the language in which it has the robot speak."""
+    """A sink that counts the random choices of a run, and keeps the language in which it has the robot speak."""
 
     policy = INLINE
 
@@ -63,11 +63,11 @@ class RunChoices:
             self._language = event.name
 
     def save(self) -> dict[str, Any]:
-        """As JSON."""
+        """Write the choices as JSON."""
         return {"choices": self._made, "language": self._language}
 
     def restore(self, saved: Mapping[str, Any], robot: Any, seed: int) -> None:
-        """Raises KeyError, TypeError or ValueError where `save` never gave that, ActionFailed where the robot can't."""
+        """Raise KeyError, TypeError or ValueError where `save` never gave that, ActionFailed where the robot can't."""
         self._made = int(saved["choices"])
         if self._made:
             robot.seed_choices(seed, self._made)

@@ -26,12 +26,14 @@ if TYPE_CHECKING:
 
 
 def disable(robot: Stoppable) -> None:
-    """Stops a robot, which then takes no command until it is enabled; one that cannot be disabled is just stopped."""
+    """Stop a robot, which then takes no command until it is enabled; one that cannot be disabled is just stopped."""
     getattr(robot, "disable", robot.stop)()
 
 
 class Controls:
-    """May be used from any thread, from keys and from signal handlers; the run takes notice before its next tick.
+    """The controls of a run.
+
+    They may be used from any thread, from keys and from signal handlers; the run takes notice before its next tick.
 
     `robot` is what an emergency stop stops.
     """
@@ -51,40 +53,40 @@ class Controls:
         """Whether it is to end where it can go on later."""
 
     def pause(self) -> None:
-        """The robot comes to rest and the time of the mission stands still."""
+        """Bring the robot to rest, and stop the time of the mission."""
         self.paused = True
         self.wake()
 
     def resume(self) -> None:
-        """Goes on where the pause began: the commands that it interrupted start again."""
+        """Go on where the pause began: the commands that it interrupted start again."""
         self.paused = False
         self._steps = 0
         self.wake()
 
     def toggle(self) -> None:
-        """Pauses, or resumes."""
+        """Pause, or resumes."""
         if self.paused:
             self.resume()
         else:
             self.pause()
 
     def step(self) -> None:
-        """One more tick, then a pause."""
+        """Run one more tick, then pause."""
         self._steps += 1
         self.pause()
 
     def stop(self) -> None:
-        """Ends the run."""
+        """End the run."""
         self.stopped = True
         self.wake()
 
     def suspend(self) -> None:
-        """Ends the run, and keeps where it was."""
+        """End the run, and keep where it was."""
         self.suspends = True
         self.stop()
 
     def emergency_stop(self) -> None:
-        """Stops the robot at once, in this thread, whatever a leaf is doing; then ends the run.
+        """Stop the robot at once, in this thread, whatever a leaf is doing; then ends the run.
 
         The robot takes no command until the next run begins, and the tree is not ticked again.
         """
@@ -95,30 +97,30 @@ class Controls:
             self.wake()
 
     def disable(self) -> None:
-        """Stops the robot, which takes no command until the next run begins, and asks for nothing else."""
+        """Stop the robot, which takes no command until the next run begins, and asks for nothing else."""
         if self.robot is not None:
             disable(self.robot)
 
     def take_emergency(self) -> bool:
-        """Whether there was an emergency stop that has not been seen to; who asks has to halt the tree."""
+        """Return whether there was an emergency stop that has not been seen to; who asks has to halt the tree."""
         found = self.emergency
         if found:
             self.emergency = self.stopped = False
         return found
 
     def take_step(self) -> bool:
-        """Whether a single step was asked for that has not been made; the run then makes it."""
+        """Return whether a single step was asked for that has not been made; the run then makes it."""
         if self._steps <= 0:
             return False
         self._steps -= 1
         return True
 
     def wait(self, seconds: float | None) -> None:
-        """Sleeps so many seconds (None: without end), or until something is asked for."""
+        """Sleep so many seconds (None: without end), or until something is asked for."""
         self._asleep.acquire(timeout=-1 if seconds is None else max(0.0, seconds))
 
     def wake(self) -> None:
-        """Ends the sleep of `wait`, or the next one."""
+        """End the sleep of `wait`, or the next one."""
         with suppress(RuntimeError):  # it is released already
             self._asleep.release()
 
@@ -133,7 +135,7 @@ _TO_END = ("SIGINT", "SIGTERM", "SIGHUP")
 def emergency_signal(
     stop: Callable[[], object], disable: Callable[[], object], patience: float = PATIENCE, quits: bool = False
 ) -> Iterator[None]:
-    r"""For as long as it lasts, the signal of Ctrl-\ (SIGQUIT) calls `stop`, in a thread of its own.
+    r"""Let, for as long as the block lasts, the signal of Ctrl-\ (SIGQUIT) calls `stop`, in a thread of its own.
 
     This works even if the main thread is busy in code that isn't Python's, where no handler of a signal runs. It does
     nothing where there is no such signal, where another thread than the main one asks, or where the signal is taken.
@@ -193,7 +195,7 @@ def emergency_signal(
 
 
 def _end(stop: Callable[[], object], code: int) -> None:
-    """Ends the process, whatever its other threads do."""
+    """End the process, whatever its other threads do."""
     try:
         stop()
         show("The mission didn't end when it was asked to: the robot was stopped.", sys.stderr)

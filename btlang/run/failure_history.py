@@ -27,7 +27,7 @@ MOST = 10
 
 
 class Attempt(Record):
-    """What a node tried in vain: its index, why it failed, when first, when the last two times, and how many times.
+    """An attempt of a node, in vain: its index, why it failed, when first, when the last two times, and how many times.
 
     `stopped` are the leaves that its latest failure halted, with the seconds that they had run. A recovery that was
     done and did not help has no reason.
@@ -43,7 +43,7 @@ class Attempt(Record):
 
 
 class Attempts(Record):
-    """Attempts by the time of their latest failure; equal ones are one. `dropped` older ones are not kept."""
+    """The attempts by the time of their latest failure; equal ones are one. `dropped` older ones are not kept."""
 
     kept: tuple[Attempt, ...] = ()
     dropped: int = 0
@@ -53,7 +53,7 @@ _NONE = Attempts()
 
 
 def combine_attempts(parts: Iterable[Attempts]) -> Attempts:
-    """All attempts, as far as they are kept."""
+    """Return all attempts, as far as they are kept."""
     parts = [part for part in parts if part.kept]
     if len(parts) == 1:
         return parts[0]
@@ -70,7 +70,7 @@ def combine_attempts(parts: Iterable[Attempts]) -> Attempts:
 
 
 def _one(old: Attempt, new: Attempt) -> Attempt:
-    """Both as one; their times may lie between each other where nodes run side by side."""
+    """Return both attempts as one; their times may lie between each other where nodes run side by side."""
     latest: Attempt = max(new, old, key=lambda attempt: attempt.last)
     other = old if latest is new else new
     before = other.last if latest.times == 1 else max(latest.before, other.last)
@@ -99,7 +99,9 @@ class FailureHistory:
 
     @property
     def tried(self) -> Attempts:
-        """What led to the failure of the mission, the failure itself included; nothing where it has not failed."""
+        """Return what led to the failure of the mission, the failure itself included; nothing where it has not
+        failed.
+        """
         return self._failed.get(-1, {}).get(0, _NONE)
 
     def __call__(self, event: Event) -> None:
@@ -156,7 +158,7 @@ class FailureHistory:
             self._tried[index] = combine_attempts((self._tried.get(index, _NONE), tried))
 
     def _recovers(self, index: int) -> bool:
-        """Whether what a node does beside its first child is to help that one."""
+        """Return whether what a node does beside its first child is to help that one."""
         kind = self._kind(index)
         return kind is not None and kind.again == ON_FAILURE and kind.most > 1
 
@@ -168,7 +170,8 @@ _LONGEST = 60  # of the words of a sentence beside a reason
 
 
 def failure_report(failure: Failure, story: FailureHistory, label: Callable[[Node], str], colour: str = "") -> str:
-    """Which sentence failed, its words underlined in a colour, at which leaf, why, and what had been tried before.
+    """Return which sentence failed, its words underlined in a colour, at which leaf, why, and what had been tried
+    before.
 
     `label` gives the words for a node.
     """
@@ -208,7 +211,9 @@ class _Report:
             yield from map(self._attempt, sorted(before.kept, key=lambda attempt: attempt.first))
 
     def _around(self) -> Iterator[str]:
-        """The nodes around the failure that add something to it, and the names that it is part of, innermost first."""
+        """Yield the nodes around the failure that add something to it, and the names that it is part of, innermost
+        first.
+        """
         reasons = {around.index: f": {around.reason}" for around in self._failure.around}
         engine = self._story.engine
         index = engine.parent(self._failure.index)
@@ -218,7 +223,7 @@ class _Report:
             index = engine.parent(index)
 
     def _apart(self, tried: Attempts) -> tuple[Attempt | None, Attempts]:
-        """The failure itself, and what came before it."""
+        """Return the failure itself, and what came before it."""
         own = [attempt for attempt in tried.kept if attempt.index == self._failure.index]
         if not own:
             return None, tried
@@ -234,12 +239,14 @@ class _Report:
         return f"{attempt.first:7.1f} s  {self._sentence(self._named(attempt.index))}: {reason}{times}"
 
     def _named(self, index: int) -> int:
-        """The node that a reason is about: that of a `not` is about what it denies, its child."""
+        """Return the node that a reason is about: that of a `not` is about what it denies, its child."""
         kind = CATALOGUE.get(self._story.engine.node(index).id)
         return index + 1 if kind is not None and len(kind.turns) == 2 else index
 
     def _sentence(self, index: int) -> str:
-        """The words of a node, cut where they are many, with their line where that is not the one of the failure."""
+        """Return the words of a node, cut where they are many, with their line where that is not the one of the
+        failure.
+        """
         words = self._words(index)
         if len(words) > _LONGEST:
             words = f"{words[: _LONGEST - 3]}..."
@@ -252,7 +259,9 @@ class _Report:
         return words if line == own.source.position(own.start)[0] else f"{words} (line {line})"
 
     def _words(self, index: int) -> str:
-        """A command or condition in the words of the vocabulary, and as it was written what is made of several."""
+        """Return a command or condition in the words of the vocabulary, and as it was written what is made of
+        several.
+        """
         engine = self._story.engine
         node, span = engine.filled(index), engine.span(index)
         if span is None or (node.span is not None and not node.children and node.id != SUBTREE):

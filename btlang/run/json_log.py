@@ -48,7 +48,10 @@ class JsonLog:
 
 
 def as_json(event: Event, label: Callable[[Node], str]) -> dict[str, Any]:
-    """The fields of an event, without those that have their default. A node is written as its id, words and ports."""
+    """Return the fields of an event, without those that have their default.
+
+    A node is written as its id, words and ports.
+    """
     written: dict[str, Any] = {"t": event.t}
     if event.tag:
         written["event"] = event.tag
@@ -66,7 +69,7 @@ def as_json(event: Event, label: Callable[[Node], str]) -> dict[str, Any]:
 
 
 def describe_event(kind: type[Event]) -> dict[str, Any]:
-    """The JSON schema of one class of events."""
+    """Return the JSON schema of one class of events."""
     properties: dict[str, Any] = {"event": {"const": kind.tag}} if kind.tag else {}
     required = list(properties)
     for name, described in _types(kind).items():

@@ -58,11 +58,13 @@ class PlainLines:
 
 
 def brief(seconds: float) -> str:
-    """Seconds with two digits that matter, however few they are."""
+    """Write seconds with two digits that matter, however few they are."""
     return f"{seconds:.2f}" if seconds >= 0.1 else f"{seconds:.2g}"
 
 
 def is_asked_wait(node: Node) -> bool:
-    """Whether a node is a wait that a sentence asks for; the timers inside `for` and `every` have no sentence."""
+    """Return whether a node is a wait that a sentence asks for; the timers inside `for` and `every` have no
+    sentence.
+    """
     kind = CATALOGUE.get(node.id)
     return kind is not None and kind.is_wait and node.span is not None

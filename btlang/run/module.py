@@ -23,7 +23,7 @@ def run_module(
     open_session: Callable[[], AbstractContextManager[RunnerSession]],
     arguments: Sequence[str] | None = None,
 ) -> int:
-    """Runs the mission in a session as `btc run` does, with its option --speed; returns its exit code."""
+    """Run the mission in a session as `btc run` does, with its option --speed; return its exit code."""
     parser = argparse.ArgumentParser(description="Runs a behavior tree on the simulated robot.")
     parser.add_argument("--speed", default="real", help="real, max, or a factor of real time")
     speed = parser.parse_args(arguments).speed

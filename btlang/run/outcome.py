@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Standstill(Record):
-    """`moving` is None where nothing reports it; `speed` says how fast.
+    """How still the robot stood at the end of a run. `moving` is None where nothing reports it; `speed` says how fast.
 
     `pending` are reasons why the robot may be moved on, such as a goal that its server did not give up. `early`: what
     was measured may be older than the motion of a goal that was given up a moment ago.
@@ -28,14 +28,14 @@ class Standstill(Record):
 
     @property
     def still(self) -> bool | None:
-        """Whether it stands still for good; None where that is not known."""
+        """Return whether it stands still for good; None where that is not known."""
         if self.moving:
             return False
         return None if self.moving is None or self.pending else True
 
     @property
     def alarming(self) -> bool:
-        """Whether people have to be warned."""
+        """Return whether people have to be warned."""
         return bool(self.moving or self.pending)
 
     def __str__(self) -> str:
@@ -50,7 +50,7 @@ class Standstill(Record):
 
 
 def standstill_of(robot: Any) -> Standstill:
-    """Of any robot: its `standstill`, else what its `moving` says."""
+    """Return the standstill of any robot: its `standstill`, else what its `moving` says."""
     found: Standstill | None = getattr(robot, "standstill", None)
     return Standstill(getattr(robot, "moving", None)) if found is None else found
 
@@ -59,17 +59,16 @@ SUSPENDED, EMERGENCY = "suspended", "emergency stop"
 
 
 class Outcome(Record, uncompared=("why", "statuses", "exceptions")):
-    """How a run ended, which `print(outcome)` says as `btc run` does.
+    """The outcome of a run, which `print(outcome)` says as `btc run` does.
 
     `why()` is why it failed, as `btc run` says it, "" where it did not; `statuses()` are those of the nodes at the end,
     by their words. `exceptions` are those that leaves have raised, except ActionFailed: the latest of each leaf, also
     where the mission went on.
 
     `stopped` is "" where the tree completed, else (status IDLE) "time limit", "interrupted", "suspended" (it can go on
-    in another run) or "emergency stop".
-    `seconds` are those of the mission, without the time in which the robot came to rest. `overruns` are the ticks that
-    took too long, `worst` the slowest leaf in one and its seconds; None where no leaf was to blame, or nobody looked.
-    `standstill` says whether the robot came to rest.
+    in another run) or "emergency stop". `seconds` are those of the mission, without the time in which the robot came to
+    rest. `overruns` are the ticks that took too long, `worst` the slowest leaf in one and its seconds; None where no
+    leaf was to blame, or nobody looked. `standstill` says whether the robot came to rest.
     """
 
     status: Status
@@ -105,5 +104,5 @@ class Outcome(Record, uncompared=("why", "statuses", "exceptions")):
 
     @property
     def succeeded(self) -> bool:
-        """Whether the mission did what it should. One that had nothing to do did, too (status SKIPPED)."""
+        """Return whether the mission did what it should. One that had nothing to do did, too (status SKIPPED)."""
         return self.status in (Status.SUCCESS, Status.SKIPPED)

@@ -15,7 +15,9 @@ from btlang.tree.node import Node
 
 
 class Pace:
-    """Sleeps between ticks. `speed` is seconds of the mission per second of real time; math.inf does not sleep at all.
+    """The pace of a run: it sleeps between ticks.
+
+    `speed` is seconds of the mission per second of real time; math.inf does not sleep at all.
 
     `late` counts the periods that were over before their sleep began. Time after a late tick is not caught up with.
     While it is `real`, what would not sleep at all keeps step with real time: something works beside the mission.
@@ -33,26 +35,30 @@ class Pace:
         self._kept_step = speed < math.inf
 
     def begin(self) -> None:
-        """A period begins now."""
+        """Begin a period now."""
         self._due = time.monotonic()
 
     def tick_begins(self) -> None:
-        """Who calls `wake` from now on means the tick after this one."""
+        """Begin a tick: whoever calls `wake` from now on means the tick after this one."""
         self._woken = False
 
     def wake(self) -> None:
-        """Ends the sleep, also one that begins before the next tick; from any thread."""
+        """End the sleep, also one that begins before the next tick; from any thread."""
         self._woken = True
         self._controls.wake()
 
     def rest(self, seconds: float) -> float:
-        """As `sleep`, whatever is asked for meanwhile: for the time after a run, in which the robot comes to rest."""
+        """Sleep as `sleep` does, whatever is asked for meanwhile: for the time after a run, in which the robot comes to
+        rest.
+        """
         if self._speed < math.inf:
             time.sleep(seconds / self._speed)
         return seconds
 
     def sleep(self, period: float, wait: float = math.inf) -> float:
-        """Sleeps through a period of so many seconds of the mission; returns how many have passed.
+        """Sleep through a period of so many seconds of the mission; return how many have passed.
+
+        Those are all of them unless it is to `wait` less from the tick's beginning on, is woken, or the run is stopped.
 
         Those are all of them unless it is to `wait` less from the tick's beginning on, is woken, or the run is stopped.
         """
@@ -88,15 +94,17 @@ _NOISE = 0.02  # seconds that anything may take on a busy computer
 
 
 def are_many(overruns: int, ticks: int) -> bool:
-    """Whether several ticks took too long, and more than one in a hundred: fewer are of no interest to people."""
+    """Return whether several ticks took too long, and more than one in a hundred: fewer are of no interest to
+    people.
+    """
     return overruns > 1 and overruns * 100 > ticks
 
 
 class Overruns:
-    """Ticks an engine that was made with a stopwatch, and reports each tick that took too long.
+    """A ticker of an engine that was made with a stopwatch, which reports each tick that took too long.
 
-    `period` is in seconds of real time. `count` is the number of such ticks, `worst` the slowest leaf in one of
-    them and its seconds.
+    `period` is in seconds of real time. `count` is the number of such ticks, `worst` the slowest leaf in one of them
+    and its seconds.
     """
 
     def __init__(self, engine: Engine, stopwatch: Stopwatch, period: float, bus: Bus) -> None:
@@ -108,7 +116,7 @@ class Overruns:
         self.worst: tuple[Node, float] | None = None
 
     def tick(self) -> int:
-        """Ticks the engine; returns its status."""
+        """Tick the engine; return its status."""
         self._stopwatch.spent.clear()
         began = perf_counter()
         status = self._engine.tick()

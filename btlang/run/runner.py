@@ -31,8 +31,10 @@ if TYPE_CHECKING:
     from btlang.run.events import Robot
 
     class Ticked(Protocol):
-        """What a run ticks: an Engine, or several that count as one. `idle` may be missing: whether there is nothing to
-        tick now, so that the robot need not be enabled yet. So may `works_beside`: whether anything works in a thread.
+        """A thing that a run ticks: an Engine, or several that count as one.
+
+        `idle` may be missing: whether there is nothing to tick now, so that the robot need not be enabled yet. So may
+        `works_beside`: whether anything works in a thread.
         """
 
         on_wake: Callable[[], object] | None
@@ -67,7 +69,8 @@ def trace_engine(
     proxies: Mapping[str, Callable[..., Any]] = {},
     hooks: Hooks | None = None,
 ) -> Engine:
-    """An engine whose status changes go on the bus, and once a run each condition that isn't known or leaf that raised.
+    """Return an engine whose status changes go on the bus, and once a run each condition that isn't known or leaf that
+    raised.
 
     The time of day and the weekday are those of the robot, where it knows.
     """
@@ -103,12 +106,12 @@ def trace_engine(
 
 
 class Runner:
-    """Ticks an engine `rate` times a second of the mission until the tree completes.
+    """A runner that ticks an engine `rate` times a second of the mission until the tree completes.
 
-    `speed` is seconds of the mission per second of real time; math.inf waits only for background leaves, in real
-    time. `pace` makes what waits between two ticks and returns how much time has passed. The next tick comes sooner if
-    a node is due before the period is over (Clock.due), and at once if the service `wake` of the engine is called.
-    Where the engine has a stopwatch, ticks that take longer than their period are events (Overrun).
+    `speed` is seconds of the mission per second of real time; math.inf waits only for background leaves, in real time.
+    `pace` makes what waits between two ticks and returns how much time has passed. The next tick comes sooner if a node
+    is due before the period is over (Clock.due), and at once if the service `wake` of the engine is called. Where the
+    engine has a stopwatch, ticks that take longer than their period are events (Overrun).
 
     A pause suspends the tree (see Engine.suspend) and brakes the robot. Then the time of the mission stands still, and
     so does a simulated world once the robot is at rest.
@@ -150,12 +153,13 @@ class Runner:
         engine.on_wake = self._pace.wake
 
     def halt(self) -> None:
-        """Halts the tree and stops the robot, outside of run(); the next tick starts the tree again."""
+        """Halt the tree and stops the robot, outside of run(); the next tick starts the tree again."""
         self._end()
 
     def tick(self, seconds: float | None = None) -> int:
-        """Ticks the tree, then, unless it completed, moves clock and robot on by `seconds`, or one period. Returns the
-        status.
+        """Tick the tree, then, unless it completed, moves clock and robot on by `seconds`, or one period.
+
+        Returns the status.
 
         After an emergency stop, also one during this tick, it halts the tree instead and returns IDLE.
         """
@@ -175,7 +179,9 @@ class Runner:
     def completed(
         self, status: Status, stopped: str = "", seconds: float | None = None, standstill: Standstill | None = None
     ) -> Outcome:
-        """The outcome of a tree that came to this status, or was `stopped`, after so many seconds, by default now."""
+        """Return the outcome of a tree that came to this status, or was `stopped`, after so many seconds, by default
+        now.
+        """
         failure = None if stopped else self._engine.failure
         count, worst = (self._overruns.count, self._overruns.worst) if self._overruns is not None else (0, None)
         standstill = Standstill() if standstill is None else standstill
@@ -184,7 +190,7 @@ class Runner:
         return Outcome(status, seconds, self.ticks, failure, stopped, count, worst, standstill, exceptions=raised)
 
     def between_ticks(self, call: Callable[[], Any]) -> Any:
-        """What `call` returns or raises, between two ticks of `run`. From any thread; waits until then."""
+        """Return what `call` returns or raises, between two ticks of `run`. From any thread; waits until then."""
         if self._thread in (0, get_ident()):
             return call()
         answered = Event()
@@ -208,7 +214,7 @@ class Runner:
         return answers[0]
 
     def end_requests(self) -> None:
-        """The run is over: from now on `between_ticks` calls at once. Does what it still waits for."""
+        """Do what still waits, as the run is over: from now on `between_ticks` calls at once."""
         self._thread = 0
         self._answer_requests()
 
@@ -217,7 +223,7 @@ class Runner:
             self._requests.popleft()()
 
     def run(self) -> Outcome:
-        """Runs to the end, the time limit, a stop or Ctrl-C; then halts the tree and brings the robot to rest.
+        """Run to the end, the time limit, a stop or Ctrl-C; then halts the tree and brings the robot to rest.
 
         An emergency stop counts also where it comes during the latter. An exception other than KeyboardInterrupt does
         the same and comes through.
@@ -272,7 +278,7 @@ class Runner:
         return status
 
     def _stand_still(self, stepped: bool) -> None:
-        """One period of a pause. After a single step a simulated world stops as it is, so that steps add up."""
+        """Spend one period of a pause. After a single step a simulated world stops as it is, so that steps add up."""
         robot = self._robot
         frozen = robot is None or not getattr(robot, "moves_by_itself", True)
         if not self._suspended and not (stepped and frozen):
@@ -291,7 +297,7 @@ class Runner:
         self.controls.wait(self._pause)
 
     def _period_left(self) -> float:
-        """The length of a period; the last one ends with the time limit."""
+        """Return the length of a period; the last one ends with the time limit."""
         left = self._began + self._limit - self._clock.now
         return min(self._period, left) if left > 0 else self._period
 
@@ -306,7 +312,7 @@ class Runner:
         self._bus.emit(PeriodPassed, self.ticks, self._pace.late, read_robot(self._robot), self._robot)
 
     def _end(self, suspends: bool = False) -> Standstill:
-        """Another Ctrl-C cuts short only the wait for the robot, not the halting."""
+        """End the run. Another Ctrl-C cuts short only the wait for the robot, not the halting."""
         try:
             if suspends and not self.controls.emergency:
                 self._engine.suspend()
@@ -330,7 +336,9 @@ class Runner:
             passed = self._pace.rest(self._period)
 
     def _enable(self) -> None:
-        """A run begins, or goes on after a pause: the one place where a robot that was stopped gets to move again."""
+        """Enable the robot as a run begins, or goes on after a pause: the one place where a robot that was stopped gets
+        to move again.
+        """
         self._disabled = False
         if self._robot is not None:
             getattr(self._robot, "enable", _nothing)()
@@ -354,11 +362,11 @@ def _place(failure: Failure) -> str:
 
 
 def _nothing() -> None:
-    """In place of what a robot does not have."""
+    """Do nothing, in place of what a robot does not have."""
 
 
 def _ending(outcome: Outcome) -> tuple[Any, ...]:
-    """The fields of Ended."""
+    """Return the fields of Ended."""
     still, failure = outcome.standstill.still, outcome.failure
     data = NAMES[outcome.status], outcome.stopped, outcome.seconds, still, "" if still else str(outcome.standstill)
     if failure is None:

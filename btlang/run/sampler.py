@@ -26,7 +26,7 @@ class Sampler:
         self._next_scan = 0.0
 
     def __call__(self, event: Event) -> None:
-        """An event of the run."""
+        """Take in an event of the run."""
         if not isinstance(event, PeriodPassed):
             return
         changed = {}

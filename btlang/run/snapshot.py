@@ -64,14 +64,14 @@ class Shape:
         return len(self.parents)
 
     def children(self, node: int) -> Iterator[int]:
-        """The children of a node in order."""
+        """Yield the children of a node in order."""
         child, end = node + 1, self.ends[node]
         while child < end:
             yield child
             child = self.ends[child]
 
     def after(self, node: int) -> int:
-        """The sibling behind a node, -1 if there is none."""
+        """Return the sibling behind a node, -1 if there is none."""
         parent, end = self.parents[node], self.ends[node]
         return end if parent >= 0 and end < self.ends[parent] else -1
 
@@ -100,7 +100,9 @@ class Snapshot(Record):
 
 
 class Doing(Record):
-    """What a robot does, in words: the number of its task (0: none), where it is going, what it said and heard last."""
+    """The activity of a robot, in words: the number of its task (0: none), where it is going, what it said and heard
+    last.
+    """
 
     task: int = 0
     goal: str = ""
@@ -120,7 +122,7 @@ class Doing(Record):
 
 
 class RunState:
-    """Follows the status changes of a run. `statuses` holds one number for each node, in preorder.
+    """The state of a run, which follows its status changes. `statuses` holds one number for each node, in preorder.
 
     A node that is started again keeps nothing of its earlier round: what it has not reached yet is IDLE again. Where
     that round was over within a tick, this is so once the new one is RUNNING (see btlang/engine/status_trace.py).
@@ -145,7 +147,7 @@ class RunState:
         self._halted: list[int] = []  # by the halts that come in a row
 
     def copy(self) -> RunState:
-        """Another one, which goes on from here by itself."""
+        """Return another one, which goes on from here by itself."""
         other = RunState.__new__(RunState)
         for name, value in vars(self).items():
             shared = name in ("shape", "_nodes") or not isinstance(value, bytearray | dict | list)
@@ -153,7 +155,7 @@ class RunState:
         return other
 
     def take(self, event: Event) -> None:
-        """An event of the run."""
+        """Take in an event of the run."""
         if isinstance(event, StatusesChanged):
             for index, status, _, reason in event.without_paths():
                 self.change(index, status, event.t, reason)
@@ -163,7 +165,7 @@ class RunState:
             self.doing = self.doing.after(event)
 
     def change(self, index: int, status: int, t: float, reason: str = "") -> None:
-        """A node has a new status."""
+        """Take in that a node has a new status."""
         self._begin_anew(index)
         before = self.statuses[index]
         if status == IDLE:
@@ -206,7 +208,9 @@ class RunState:
             self._sweep += 1
 
     def _begin_anew(self, index: int) -> None:
-        """Children report changes before their parents do, so the first change below a node begins its new run."""
+        """Begin the new run of a node: children report changes before their parents do, so the first change below it
+        does.
+        """
         over, top, parents = self._over, -1, self.shape.parents
         node = index
         while node >= 0 and self._seen[node] != self._sweep:
@@ -222,7 +226,7 @@ class RunState:
             over[top:end] = bytes(end - top)
 
     def _clear_older(self, index: int, t: float) -> None:
-        """Nothing below a node counts any more but what has just changed."""
+        """Clear all below a node but what has just changed."""
         node, end = index + 1, self.shape.ends[index]
         while node < end:
             if self.statuses[node] == RUNNING:  # which has cleared what is below it
@@ -233,7 +237,7 @@ class RunState:
             node += 1
 
     def is_leaf(self, index: int) -> bool:
-        """Whether nothing is below a node."""
+        """Return whether nothing is below a node."""
         return not self._has_children(index)
 
     def _has_children(self, index: int) -> bool:
@@ -262,12 +266,12 @@ class RunFollower:
             self._latest = event
 
     def jump(self, state: RunState) -> None:
-        """Goes on from another state of the same tree."""
+        """Go on from another state of the same tree."""
         with self._lock:
             self._state = state
 
     def snapshot(self, label: Callable[[Node], str]) -> Snapshot:
-        """The state now; `label` gives the words of a command."""
+        """Return the state now; `label` gives the words of a command."""
         with self._lock:
             state, latest = self._state, self._latest
             if state is None or latest is None:
@@ -282,12 +286,12 @@ class RunFollower:
         return Snapshot(run, number, t, _status(codes[0]), reached, running, said, robot)
 
     def codes(self) -> bytes:
-        """The status of each node in preorder, also HALTED and SUSPENDED; nothing before the first event."""
+        """Return the status of each node in preorder, also HALTED and SUSPENDED; nothing before the first event."""
         with self._lock:
             return bytes(self._state.statuses) if self._state is not None else b""
 
     def statuses(self, label: Callable[[Node], str]) -> dict[str, Status]:
-        """The status of each node by its words."""
+        """Return the status of each node by its words."""
         with self._lock:
             codes = list(self._state.statuses) if self._state is not None else []
         found: dict[str, Status] = {}

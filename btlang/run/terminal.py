@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from btlang.run.live.view import LiveView, ViewKey
 
     class PreparedRun(Protocol):
-        """See btlang.session.Run."""
+        """A run as the terminal needs it; see btlang.session.Run."""
 
         @property
         def sink_errors(self) -> list[Exception]: ...
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
         def execute(self) -> Outcome: ...
 
     class RunnerSession(Protocol):
-        """See btlang.session.Session."""
+        """A session as the terminal needs it; see btlang.session.Session."""
 
         def map(self, unicode: bool) -> Map | None: ...
 
@@ -52,14 +52,14 @@ if TYPE_CHECKING:
         def prepare(self) -> Callable[..., PreparedRun]: ...
 
     class Monitor(Protocol):
-        """See btlang.monitor.groot.GrootMonitor."""
+        """A monitor of a run; see btlang.monitor.groot.GrootMonitor."""
 
         hooks: Any
 
         def watch_run(self, run: Any, mission: Any) -> None: ...
 
     class RunnableMission(Protocol):
-        """What can be run from the command line; see btlang.api.Mission."""
+        """A mission that can be run from the command line; see btlang.api.Mission."""
 
         @property
         def tree(self) -> Tree: ...
@@ -97,7 +97,7 @@ def run_mission(
     scans: float | None = None,
     open_monitors: Iterable[Callable[[Controls], AbstractContextManager[Monitor]]] = (),
 ) -> int:
-    """Runs and reports; returns the exit code. Raises MissionError where the log cannot be opened (BT009).
+    """Run and report; return the exit code. Raises MissionError where the log cannot be opened (BT009).
 
     A log that cannot be written to the end does not change the mission: it is said after it, and a mission that
     succeeded has the exit code 2. On a terminal it shows the live view, whose tree stays at the end or not and which
@@ -160,7 +160,7 @@ def run_mission(
 
 
 def warn_of_motion(standstill: Standstill) -> bool:
-    """Warns on standard error where the robot does not stand still for good; returns whether it moves."""
+    """Warn on standard error where the robot does not stand still for good; return whether it moves."""
     if standstill.alarming:
         show(f"WARNING: {standstill}.", sys.stderr)
     return bool(standstill.moving)
@@ -168,7 +168,7 @@ def warn_of_motion(standstill: Standstill) -> bool:
 
 @contextmanager
 def interrupted_by_signals() -> Iterator[list[int]]:
-    """A signal to end, or that the terminal is gone, halts the robot as Ctrl-C does; a caller's own handler stays.
+    """Let a signal to end, or that the terminal is gone, halts the robot as Ctrl-C does; a caller's own handler stays.
 
     The list keeps those that came.
     """
@@ -196,7 +196,7 @@ def live_view(
     keys: Callable[[], Sequence[ViewKey]] | None = None,
     world_input: WorldInput | None = None,
 ) -> LiveView | None:
-    """None where standard output is no terminal in which it can be shown."""
+    """Make the live view; None where standard output is no terminal in which it can be shown."""
     output = sys.stdout
     if output is None or not can_draw(output):
         return None

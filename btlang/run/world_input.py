@@ -32,7 +32,7 @@ class WorldInput:
         """The open question, "" while there is none."""
 
     def __call__(self, event: Event) -> None:
-        """An event of the run."""
+        """Take in an event of the run."""
         if isinstance(event, Asked):
             self.question = event.text or "..."
             if (answer := self._scripted(event.text.lower())) is not None:
@@ -46,11 +46,11 @@ class WorldInput:
             self.question = ""
 
     def type(self, text: str) -> None:
-        """Somebody answers."""
+        """Answer for somebody who types."""
         self._calls.append(lambda robot: robot.hear(text))
 
     def invite(self) -> None:
-        """A visitor comes, where the world is simulated."""
+        """Let a visitor come, where the world is simulated."""
         self._calls.append(lambda robot: robot.invite() if hasattr(robot, "invite") else None)
 
     def _scripted(self, question: str) -> str | None:

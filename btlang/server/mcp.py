@@ -39,7 +39,7 @@ understand, with its forms and names, and show the person the `reading` of every
 
 
 def serve(options: argparse.Namespace) -> int:
-    """Serves until standard input ends. Raises MissionError, also where the package `mcp` is missing (BT082)."""
+    """Serve until standard input ends. Raises MissionError, also where the package `mcp` is missing (BT082)."""
     if find_spec("mcp") is None:
         raise MissionError([diagnostic("BT082", Span(Source("", "btc mcp"), 0, 0))])
     from mcp.server import MCPServer
@@ -53,7 +53,7 @@ def serve(options: argparse.Namespace) -> int:
 
 
 def _answering(tool: Callable[..., dict[str, object]]) -> Callable[..., dict[str, object]]:
-    """The tool, which answers with the messages where a text can't be used."""
+    """Return the tool, which answers with the messages where a text can't be used."""
 
     @wraps(tool)
     def answer(*given: Any, **named: Any) -> dict[str, object]:
@@ -66,27 +66,30 @@ def _answering(tool: Callable[..., dict[str, object]]) -> Callable[..., dict[str
 
 
 class Tools:
-    """What a model may ask for. Every answer is data, also where a mission is wrong."""
+    """The tools of a model. Every answer is data, also where a mission is wrong."""
 
     def __init__(self, keywords: Sequence[Any] = (), world: str | None = None, language: str = "en") -> None:
         self._options: dict[str, Any] = {"keywords": tuple(keywords), "world": world, "language": language}
         self._vocabulary = world_vocabulary(keywords, world, language)
 
     def words(self, search: str = "") -> dict[str, object]:
-        """What missions can say: a topic, or phrases with these words. Without a search, the topics."""
+        """Return what missions can say: a topic, or phrases with these words. Without a search, the topics."""
         lines = listing(self._vocabulary, search) if search.strip() else overview(self._vocabulary, command="words")
         return {"ok": True, "lines": lines}
 
     @_answering
     def check(self, text: str) -> dict[str, object]:
-        """The messages about a mission. A `fix` replaces the characters at its place; of `readings` choose one."""
+        """Return the messages about a mission.
+
+        A `fix` replaces the characters at its place; of `readings` choose one.
+        """
         mission = self._mission(text)
         mission.check()
         return {"ok": True, "messages": _messages(mission.warnings)}
 
     @_answering
     def explain(self, text: str) -> dict[str, object]:
-        """How each sentence of a mission is understood, with brackets, and as a behavior tree."""
+        """Return how each sentence of a mission is understood, with brackets, and as a behavior tree."""
         mission = self._mission(text)
         return {"ok": True, "explanation": mission.explain(), "messages": _messages(mission.warnings)}
 
@@ -100,7 +103,7 @@ class Tools:
 
     @_answering
     def simulate(self, text: str, seconds: float = 600.0, ticks: int = 12_000) -> dict[str, object]:
-        """Runs a mission on the simulated robot as fast as possible, for at most so many seconds and ticks.
+        """Run a mission on the simulated robot as fast as possible, for at most so many seconds and ticks.
 
         Returns what happened, the status at the end, what stopped it if it didn't end by itself, and why it failed.
         """
@@ -123,7 +126,9 @@ class Tools:
         }
 
     def grammar(self, to: str = "gbnf") -> dict[str, object]:
-        """The grammar of missions, to constrain the output of a model: gbnf, ebnf, or json-schema for trees as JSON."""
+        """Return the grammar of missions, to constrain the output of a model: gbnf, ebnf, or json-schema for trees as
+        JSON.
+        """
         from btlang.backends.grammar.targets import GRAMMARS
 
         if to not in GRAMMARS:
@@ -131,7 +136,7 @@ class Tools:
         return {"ok": True, "grammar": GRAMMARS[to](self._vocabulary)}
 
     def _mission(self, text: str) -> Mission:
-        """Compiles a text, which can include no file. Raises MissionError."""
+        """Compile a text, which can include no file. Raises MissionError."""
         source = Source(text, _NAME, folder="", roots=())
         if len(text.encode("utf-8", "surrogatepass")) > MOST_BYTES:
             reason = f"it has more than {MOST_BYTES:,} bytes"

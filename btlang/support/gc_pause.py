@@ -10,7 +10,9 @@ _LOOK_AFTER = 1_000_000  # objects that were made in pauses: garbage in cycles a
 
 
 class _Pause:
-    """Stays paused until the last of those that asked for it is done, in whatever thread; then collects as before."""
+    """A pause that lasts until the last of those that asked for it is done, in whatever thread; then Python collects as
+    before.
+    """
 
     def __init__(self) -> None:
         self._lock = allocate_lock()

@@ -14,8 +14,9 @@ if TYPE_CHECKING:
 
 @contextmanager
 def interrupts_later() -> Iterator[None]:
-    """Ctrl-C within it counts at its end: an import that is broken off can't be begun again. Only the main thread is
-    interrupted, so that in others there is nothing to do.
+    """Let Ctrl-C within the block count at its end: an import that is broken off can't be begun again.
+
+    Only the main thread is interrupted, so that in others there is nothing to do.
     """
     handler = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or not callable(handler):

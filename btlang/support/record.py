@@ -23,7 +23,9 @@ _REQUIRED = object()
 
 
 class _RecordMeta(type):
-    """Turns the annotations of a class body into slots and a positional constructor, in the order written."""
+    """The metaclass that turns the annotations of a class body into slots and a positional constructor, in the order
+    written.
+    """
 
     def __new__(
         mcs, name: str, bases: tuple[type, ...], body: dict[str, Any], uncompared: tuple[str, ...] = ()
@@ -45,8 +47,8 @@ class _RecordMeta(type):
 
 
 def _make_new(open_class: type, fields: tuple[str, ...], defaults: dict[str, Any]) -> Any:
-    """A constructor that fills an instance of a class with the same slots that is not frozen, then makes it one of the
-    frozen class: writing past a frozen `__setattr__` costs ten times as much for each field.
+    """Return a constructor that fills an instance of a class with the same slots that is not frozen, then makes it one
+    of the frozen class: writing past a frozen `__setattr__` costs ten times as much for each field.
     """
     code = _new_code(len(fields))
     names = {f"field_{at}": field for at, field in enumerate(fields)}
@@ -60,7 +62,9 @@ def _make_new(open_class: type, fields: tuple[str, ...], defaults: dict[str, Any
 
 @cache
 def _new_code(count: int) -> CodeType:
-    """Shared by all classes with as many fields: compiling it for each would be a tenth of `btc check`."""
+    """Compile the code of a constructor, shared by all classes with as many fields: compiling it for each would be a
+    tenth of `btc check`.
+    """
     arguments = "".join(f", field_{at}" for at in range(count))
     lines = "\n".join(f"    made.field_{at} = field_{at}" for at in range(count))
     scope: dict[str, FunctionType] = {}
@@ -71,7 +75,7 @@ def _new_code(count: int) -> CodeType:
 
 @dataclass_transform(frozen_default=True)
 class Record(metaclass=_RecordMeta):
-    """Base of frozen values. Equality and hashing are loops, so that depth does not matter.
+    """The base of frozen values. Equality and hashing are loops, so that depth does not matter.
 
     `class X(Record, uncompared=("span",))` leaves fields out of comparison. Setting a field raises AttributeError.
     """
@@ -99,11 +103,11 @@ class Record(metaclass=_RecordMeta):
         return f"{type(self).__name__}({', '.join(_brief(self, f) for f in self.fields)})"
 
     def replace(self, **changes: Any) -> Any:
-        """A copy with the named fields changed."""
+        """Return a copy with the named fields changed."""
         return type(self)(**{f: changes.get(f, getattr(self, f)) for f in self.fields})
 
     def as_dict(self, without: Container[str] = ()) -> dict[str, Any]:
-        """Its fields by their names, as they are."""
+        """Return its fields by their names, as they are."""
         return {f: getattr(self, f) for f in self.fields if f not in without}
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Record:
@@ -125,7 +129,7 @@ def _holds_records(value: object) -> bool:
 
 
 def _equal(left: object, right: object) -> bool:
-    """Structural equality with an explicit stack."""
+    """Compare structure with an explicit stack."""
     stack = [(left, right)]
     while stack:
         a, b = stack.pop()
@@ -145,7 +149,7 @@ def _equal(left: object, right: object) -> bool:
 
 
 def _flat(record: Record) -> tuple[object, ...]:
-    """Every compared atom in a fixed order, with types and lengths as marks."""
+    """Return every compared atom in a fixed order, with types and lengths as marks."""
     atoms: list[object] = []
     stack: list[object] = [record]
     while stack:

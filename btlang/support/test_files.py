@@ -5,5 +5,5 @@ ENDING = ".test.txt"
 
 
 def is_test_file(path: str) -> bool:
-    """Whether a file has tests, by its name."""
+    """Return whether a file has tests, by its name."""
     return path.endswith(ENDING)

@@ -13,7 +13,7 @@ _LINUX = {
 
 
 def user_dir(kind: str) -> str:
-    """The platform's folder for files, "cache", "data" or "state": $XDG_CACHE_HOME/btlang on Linux."""
+    """Return the platform's folder for files, "cache", "data" or "state": $XDG_CACHE_HOME/btlang on Linux."""
     if sys.platform == "linux":  # spelt out, because platformdirs takes longer to import than a cache may save
         variable, usual = _LINUX[kind]
         set_to = os.environ.get(variable, "")

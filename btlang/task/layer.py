@@ -136,11 +136,11 @@ class TaskLayer:
         )
 
     def now(self) -> float:
-        """Seconds since 1970, as the robot's day goes."""
+        """Return the seconds since 1970, as the robot's day goes."""
         return time.time() if self._real else self._begins + float(self.session.robot.time)
 
     def handle(self, command: Command | dict[str, Any], person: str = "") -> Answer:
-        """Does a command (see btlang.task.messages), or its JSON, from any thread. A refusal is an answer, too."""
+        """Do a command (see btlang.task.messages), or its JSON, from any thread. A refusal is an answer, too."""
         try:  # also one that is a command already, since its texts may be anything
             command = read_command(as_json(command) if isinstance(command, Command) else command)
         except MissionError as error:
@@ -150,31 +150,31 @@ class TaskLayer:
         return answer
 
     def add(self, mission: MissionText, person: str = "", **fields: Any) -> Task:
-        """Queues a mission of the robot's owner, with these fields of its task. Raises MissionError."""
+        """Queue a mission of the robot's owner, with these fields of its task. Raises MissionError."""
         self._admitted(mission)
         return self.handler.add(mission, person, **fields)
 
     def stop(self, person: str) -> None:
-        """The emergency stop, from any thread; nothing delays it."""
+        """Stop the robot at once, from any thread, and latch the stop; nothing delays it."""
         self.emergency.stop(person)
 
     def disable(self) -> None:
-        """Stops the robot, from any thread, without a latch: for one that is about to end."""
+        """Stop the robot, from any thread, without a latch: for one that is about to end."""
         disable(self.session.robot)
 
     def start(self) -> None:
-        """Takes up what was left, and begins to work. May be called again after `halt`."""
+        """Take up what was left, and begin to work. May be called again after `halt`."""
         self.executor.start()
 
     def halt(self) -> bool:
-        """Ends the mission under way, as its task says for a restart; commands are still taken.
+        """End the mission under way, as its task says for a restart; commands are still taken.
 
         False if a command of the mission hangs: the robot was stopped, but the mission isn't over.
         """
         return self.executor.halt()
 
     def close(self) -> bool:
-        """As `halt`, then lets go of the robot and of the store. May be called twice."""
+        """Halt, then let go of the robot and of the store. May be called twice."""
         ended = self.executor.halt()
         if ended:
             self.session.close()
@@ -194,7 +194,7 @@ class TaskLayer:
         self.close()
 
     def _needs(self, text: MissionText) -> tuple[str, ...]:
-        """Nothing for a mission that can't be read any more: its task will say so."""
+        """Return what a mission needs; nothing for one that can't be read any more, which its task will say."""
         try:
             mission = self.reader.read(text)
         except MissionError:
@@ -209,7 +209,7 @@ class TaskLayer:
         }  # fmt: skip
 
     def _admitted(self, text: MissionText) -> Mission:
-        """A mission that this robot can do. Raises MissionError with all reasons why it can't."""
+        """Return a mission that this robot can do. Raises MissionError with all reasons why it can't."""
         self.reader.check(text.keywords)
         mission = self.reader.read(text)
         mission.check()
@@ -223,7 +223,7 @@ class TaskLayer:
 
 
 def _over(robot: str | Connect, over: str | None) -> str:
-    """What the robot runs on."""
+    """Return what the robot runs on."""
     return runs_on(robot, over)[1] if isinstance(robot, str) else getattr(robot, "over", "simulated")
 
 
@@ -239,7 +239,7 @@ class ScheduleFileError(DataFileError):
 
 
 def read_schedules(path: str) -> tuple[AddSchedule, ...]:
-    """The schedules in a file, `[[schedule]]` each. Raises MissionError (BT191)."""
+    """Return the schedules in a file, `[[schedule]]` each. Raises MissionError (BT191)."""
     try:
         return load_data(path, "a schedule", _schedules, ScheduleFileError)
     except ScheduleFileError as error:
@@ -249,8 +249,8 @@ def read_schedules(path: str) -> tuple[AddSchedule, ...]:
 def make_robot_layer(
     robot: Connector, reader: MissionReader, *, rules: str | None = None, schedules: str | None = None, **options: Any
 ) -> TaskLayer:
-    """The task layer of a robot, with the missions, schedules and rules of its file where none are given, and further
-    options of TaskLayer. Raises MissionError.
+    """Return the task layer of a robot, with the missions, schedules and rules of its file where none are given, and
+    further options of TaskLayer. Raises MissionError.
     """
     body = robot.body
     path = schedules or body.schedules
@@ -265,7 +265,7 @@ def make_robot_layer(
 
 
 def _furnish(layer: TaskLayer, missions: str, wanted: list[AddSchedule]) -> None:
-    """Puts the missions of a folder, "" for none, into the robot's library, and makes these its schedules in place of
+    """Put the missions of a folder, "" for none, into the robot's library, and make these its schedules in place of
     those that a file has made before. Others stay. Raises MissionError.
     """
     for name in sorted(os.listdir(missions)) if missions else ():
@@ -283,12 +283,12 @@ def _furnish(layer: TaskLayer, missions: str, wanted: list[AddSchedule]) -> None
 
 
 def _do(layer: TaskLayer, command: Command) -> None:
-    """Raises MissionError where it is refused."""
+    """Do a command. Raises MissionError if it's refused."""
     layer.handler.do(command, LABEL)
 
 
 def _is_of(command: AddSchedule, schedule: Schedule, layer: TaskLayer) -> bool:
-    """Whether a command would make the same schedule."""
+    """Return whether a command would make the same schedule."""
     text = layer.store.text(command.name)
     return text is not None and (
         (str(read_rule(command.rule, command.zone)), command.zone, text.text, command.priority, command.labels)
@@ -326,7 +326,7 @@ def _schedule(table: Table) -> AddSchedule:
 
 
 def _plain(error: MissionError) -> str:
-    """The first message with its advice, as part of a sentence."""
+    """Return the first message with its advice, as part of a sentence."""
     first = error.diagnostics[0]
     return f"{first.message} {first.hint}".strip().rstrip(".")
 
@@ -335,8 +335,10 @@ _SWITCH = 0.0002  # seconds after which a thread that is at work lets another on
 
 
 def keep_ticks_in_time() -> None:
-    """To be called once the robot is up. What there is then is never searched for garbage again (up to 50 ms),
-    and a tick that is due waits for other threads much less than is usual.
+    """Let ticks begin in time, once the robot is up.
+
+    What there is then is never searched for garbage again (up to 50 ms), and a tick that is due waits for other threads
+    much less than is usual.
     """
     gc.collect()
     gc.freeze()

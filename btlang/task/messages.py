@@ -340,12 +340,12 @@ class Answer(Record):
     code: str = ""
 
     def as_json(self) -> dict[str, Any]:
-        """Its fields."""
+        """Return its fields."""
         return {"ok": self.ok, "text": self.text, "data": dict(self.data), "code": self.code}
 
 
 def read_command(data: object) -> Command:
-    """A command from its JSON. Raises MissionError (BT198) if it isn't one."""
+    """Read a command from its JSON. Raises MissionError (BT198) if it isn't one."""
     if not isinstance(data, dict):
         raise wrong("", "it must be an object")
     name = data.get("command")
@@ -367,7 +367,7 @@ def read_command(data: object) -> Command:
 
 
 def as_json(command: Command) -> dict[str, Any]:
-    """A command as `read_command` takes it, without the fields that have their defaults."""
+    """Write a command as `read_command` takes it, without the fields that have their defaults."""
     written: dict[str, Any] = {"command": command.tag}
     for field in command.fields:
         value = getattr(command, field)
@@ -391,5 +391,5 @@ def _checked(kind: type[Command], field: str, value: Any) -> Any:
 
 
 def wrong(name: str, reason: str) -> MissionError:
-    """BT198: a command, or a part of it, isn't as it must be."""
+    """Make the error BT198: a command, or a part of it, isn't as it must be."""
     return MissionError([diagnostic("BT198", NOWHERE, name=name, reason=reason)])

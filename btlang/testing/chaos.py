@@ -51,7 +51,7 @@ class Chaos:
         self._stopped_at: float | None = None
 
     def __call__(self, event: Event) -> None:
-        """An event of the run."""
+        """Take in an event of the run."""
         if not isinstance(event, PeriodPassed):
             return
         while self._pending and self._pending[0][0] <= event.t:
@@ -67,7 +67,7 @@ class Chaos:
                 self._controls.stop()
 
     def end(self) -> None:
-        """The run is over: the robot stands, and keeps standing."""
+        """Check a run that is over: the robot stands, and keeps standing."""
         before = self._robot.travelled
         for _ in range(20):
             self._robot.step(0.05)
@@ -75,7 +75,7 @@ class Chaos:
             self.broken = "it moved after the mission was over"
 
     def _rules(self, now: float) -> Iterator[str]:
-        """What does not hold now."""
+        """Yield what does not hold now."""
         body, (linear, angular) = self._robot.body, self._robot.velocity
         if abs(linear) > body.driving.top_speed * _TOLERANCE:
             yield f"after {now:.1f} s it drove at {linear:.2f} m/s, faster than its body allows"
@@ -93,7 +93,7 @@ class Chaos:
         return set(entry.resources) if entry is not None and entry.sort == "action" else set()
 
     def _planned(self, limit: float) -> Iterator[Trouble]:
-        """In the order of time."""
+        """Plan faults in the order of time."""
         at = 0.0
         end = self._random.uniform(0.0, min(limit, 120.0)) if self._random.random() < _STOPS else limit
         while (at := at + self._random.expovariate(1 / _PACE)) < end:

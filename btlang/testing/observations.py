@@ -23,7 +23,7 @@ from btlang.run.events import (
     StatusesChanged,
 )
 from btlang.run.outcome import Outcome
-from btlang.testing.test import MissionTest, TestedCommand
+from btlang.testing.test import MissionTest, NamedCommand
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.dump import outline
 from btlang.tree.node import Node, Tree
@@ -35,7 +35,7 @@ class Observations:
 
     policy = INLINE
 
-    def __init__(self, commands: Mapping[str, TestedCommand]) -> None:
+    def __init__(self, commands: Mapping[str, NamedCommand]) -> None:
         self.now = 0.0
         """Seconds of mission time."""
         self.outcome: Outcome | None = None
@@ -80,19 +80,19 @@ class Observations:
             self.drops += 1
 
     def said_times(self, text: str) -> int:
-        """How often the robot has begun to say it."""
+        """Return how often the robot has begun to say it."""
         return self._said.count(_plain(text))
 
     def printed_times(self, text: str) -> int:
-        """How often it was shown."""
+        """Return how often it was shown."""
         return self._printed.count(_plain(text))
 
     def times(self, text: str, status: int) -> int:
-        """How often a command has ended with SUCCESS or FAILURE, or has begun (RUNNING)."""
+        """Return how often a command has ended with SUCCESS or FAILURE, or has begun (RUNNING)."""
         return self._times.get((text, status), 0)
 
     def is_doing(self, text: str) -> bool:
-        """Whether a command runs."""
+        """Return whether a command runs."""
         command = self._commands[text]
         return any(command.matches(node) for node in self.running.values())
 
@@ -130,7 +130,10 @@ _ENDS = {SUCCESS: endings.SUCCESS, FAILURE: endings.FAILURE}
 
 
 def statuses_seen(tree: Tree, observed: Observations) -> tuple[int, ...]:
-    """Of each node in the order of `Tree.walk` the statuses that it had: a bit for each. Uses of a subtree are one."""
+    """Return, for each node in the order of `Tree.walk`, the statuses that it had: a bit for each.
+
+    Uses of a subtree are one.
+    """
     seen: dict[int, int] = {}
     for index, bits in observed.seen.items():
         key = id(observed.nodes[index])
@@ -139,7 +142,7 @@ def statuses_seen(tree: Tree, observed: Observations) -> tuple[int, ...]:
 
 
 class Coverage:
-    """What the tests of one mission have seen of it."""
+    """The coverage of one mission by its tests."""
 
     def __init__(self, mission: Mission) -> None:
         self._mission = mission
@@ -148,12 +151,12 @@ class Coverage:
         self._ends = _possible(mission.tree)
 
     def add(self, seen: Sequence[int]) -> None:
-        """What one test has seen."""
+        """Add what one test has seen."""
         if len(seen) == len(self._seen):
             self._seen = [before | bits for before, bits in zip(self._seen, seen, strict=True)]
 
     def lines(self, name: str) -> list[str]:
-        """The counts of the mission with this name, and its tree with what never happened."""
+        """Return the counts of the mission with this name, and its tree with what never happened."""
         missing = {id(node): self._missing(at) for at, node in enumerate(self._nodes)}
         ran = sum(bool(bits) for bits in self._seen)
         possible = sum(len(self._outcomes(at)) for at in range(len(self._nodes)))
@@ -169,7 +172,7 @@ class Coverage:
         return [counts, *outline(self._mission.tree, label).splitlines()]
 
     def _outcomes(self, at: int) -> list[int]:
-        """The ways in which a node can end that count."""
+        """Return the ways in which a node can end that count."""
         ends = self._ends.get(id(self._nodes[at]), endings.SUCCESS | endings.FAILURE)
         return [one for one, bit in _ENDS.items() if ends & bit]
 
@@ -182,7 +185,7 @@ class Coverage:
 
 
 def _possible(tree: Tree) -> dict[int, Ends]:
-    """How each node can end, by its identity."""
+    """Return how each node can end, by its identity."""
     found: dict[int, Ends] = {}
     named: dict[str, Ends] = {}
 
@@ -197,7 +200,9 @@ def _possible(tree: Tree) -> dict[int, Ends]:
 
 
 def measure_coverage(tests: Iterable[tuple[MissionTest, Sequence[int]]]) -> dict[str, Coverage]:
-    """The coverage of each mission by the name of its file; one that stands in a test has the place of the test."""
+    """Return the coverage of each mission by the name of its file; one that stands in a test has the place of the
+    test.
+    """
     found: dict[str, Coverage] = {}
     for test, seen in tests:
         name = test.place if test.is_inline or test.mission.syntax is None else test.mission.syntax.span.source.name

@@ -7,7 +7,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import lexed, read_mission
 from btlang.passes import compile_mission
-from btlang.testing.statements import TestStatement
+from btlang.testing.statements import ScriptStatement
 from btlang.testing.test import (
     ALWAYS,
     BEFORE,
@@ -19,7 +19,7 @@ from btlang.testing.test import (
     USUAL_LIMIT,
     WITHIN,
     Fake,
-    TestStep,
+    ScriptStep,
     find_command,
 )
 from btlang.text.source import Source, Span
@@ -41,7 +41,7 @@ _OF_COMMANDS = frozenset((
 
 
 class MissionEnglish:
-    """Gathers what the statements of one test say, in the words of tests and of its mission."""
+    """A reader of what the statements of one test say, in the words of tests and of its mission."""
 
     def __init__(self, text: Words, vocabulary: Lexicon, mission: Mission) -> None:
         self._text, self._mission = text, mission
@@ -51,16 +51,16 @@ class MissionEnglish:
         )
         self.setup: list[Tree] = []
         self.fakes: list[Fake] = []
-        self.steps: list[TestStep] = []
+        self.steps: list[ScriptStep] = []
         self.texts: list[str] = []
         """The commands of the mission that conditions ask for."""
 
-    def limit(self, run: TestStatement) -> tuple[float, bool]:
-        """How long the test may take, and whether it is cut then."""
+    def limit(self, run: ScriptStatement) -> tuple[float, bool]:
+        """Return how long the test may take, and whether it is cut then."""
         return (USUAL_LIMIT, True) if run.seconds is None else (run.seconds, run.at_most)
 
-    def add(self, one: TestStatement, *, before: bool) -> None:
-        """One more statement, which stands before that which runs the mission or not. Raises MissionError."""
+    def add(self, one: ScriptStatement, *, before: bool) -> None:
+        """Read one more statement, which stands before that which runs the mission or not. Raises MissionError."""
         if one.kind not in _ANYWHERE and before != (one.kind in _BEFORE_RUN):
             reason = "this line must stand behind 'run'" if before else "this line must stand before 'run'"
             raise MissionError([diagnostic("BT181", one.span, reason=reason, example='run "patrol.txt"')])
@@ -71,24 +71,24 @@ class MissionEnglish:
         elif one.kind not in ("run", *_BEFORE_RUN):
             self.steps.append(self._step(one))
 
-    def _step(self, one: TestStatement) -> TestStep:
+    def _step(self, one: ScriptStatement) -> ScriptStep:
         seconds = one.seconds or 0.0
         if one.kind == "before":
             other = self._condition(one.head, one.first - 1)
-            return TestStep(BEFORE, one.span, self._condition(one.first, one.last), other=other)
+            return ScriptStep(BEFORE, one.span, self._condition(one.first, one.last), other=other)
         if one.kind == "when":
             condition = self._condition(one.head, one.first - 1)
-            return TestStep(EVENT, one.span, condition, event=self._event(one.first, one.last))
+            return ScriptStep(EVENT, one.span, condition, event=self._event(one.first, one.last))
         if one.kind in _KINDS:
             condition = self._condition(one.first, one.last, is_denied=one.kind == "never")
-            return TestStep(_KINDS[one.kind], one.span, condition, seconds)
+            return ScriptStep(_KINDS[one.kind], one.span, condition, seconds)
         match = longest(self._vocabulary.trie, self._text, one.first, self._vocabulary.context)
         if match is not None and match.meaning.role == "command":
-            return TestStep(EVENT, one.span, None, seconds, event=self._event(one.first, one.last))
-        return TestStep(HOLDS, one.span, self._condition(one.first, one.last), seconds)
+            return ScriptStep(EVENT, one.span, None, seconds, event=self._event(one.first, one.last))
+        return ScriptStep(HOLDS, one.span, self._condition(one.first, one.last), seconds)
 
     def _condition(self, first: int, last: int, *, is_denied: bool = False) -> Tree:
-        """A condition in these words, or its negation. Raises MissionError."""
+        """Return a condition in these words, or its negation. Raises MissionError."""
         check, no = self._vocabulary.word("check"), self._vocabulary.word("not")
         tree = self._read(first, last, f"{check} {no} (" if is_denied else f"{check} ", ")" * is_denied)
         for node in tree.walk():
@@ -103,7 +103,7 @@ class MissionEnglish:
         self.texts.append(text)
 
     def _event(self, first: int, last: int) -> Tree:
-        """What happens in the world. Raises MissionError, also for a command to the robot (BT182)."""
+        """Return what happens in the world. Raises MissionError, also for a command to the robot (BT182)."""
         tree = self._read(first, last)
         for node in tree.walk():
             entry = self._vocabulary.entry(node.id)
@@ -116,7 +116,7 @@ class MissionEnglish:
         return tree
 
     def _read(self, first: int, last: int, opener: str = "", end: str = "") -> Tree:
-        """The tree of a part of the text as a mission of its own, in which places are the same."""
+        """Return the tree of a part of the text as a mission of its own, in which places are the same."""
         if first >= last:
             span = self._text.span(first - 1, first)
             raise MissionError([diagnostic("BT180", span, words=span.text, wanted="finally the mission succeeds")])
@@ -130,8 +130,8 @@ class MissionEnglish:
         except MissionError as error:
             raise MissionError([move_problem(problem, whole, part) for problem in error.diagnostics]) from None
 
-    def _fakes(self, one: TestStatement) -> list[Fake]:
-        """`"grasp" fails twice, then succeeds`: each part stands in for the command after the one before it."""
+    def _fakes(self, one: ScriptStatement) -> list[Fake]:
+        """Read `"grasp" fails twice, then succeeds`: each part stands in for the command after the one before it."""
         words = self._text.words[one.first : one.last]
         name = words[0][1:]
         command = find_command(name, self._mission)
@@ -152,7 +152,7 @@ class MissionEnglish:
             raise self._unread_fake(one)
         return found
 
-    def _outcome(self, one: TestStatement, at: int) -> tuple[bool, float, int]:
+    def _outcome(self, one: ScriptStatement, at: int) -> tuple[bool, float, int]:
         word, following = self._text.words[at], self._text.words[at + 1]
         if word == "is" and following in ("true", "false"):
             return following == "true", 0.0, at + 2
@@ -166,7 +166,7 @@ class MissionEnglish:
             return word != "fails", found[0], found[2]
         return word == "succeeds", 0.0, at + 1
 
-    def _times(self, one: TestStatement, at: int) -> tuple[int, int]:
+    def _times(self, one: ScriptStatement, at: int) -> tuple[int, int]:
         word = self._text.words[at]
         if at >= one.last or word in (",", "then", "and"):
             return 0, at
@@ -177,7 +177,7 @@ class MissionEnglish:
             raise self._unread_fake(one)
         return int(number[0]), number[1] + 1
 
-    def _unread_fake(self, one: TestStatement) -> MissionError:
+    def _unread_fake(self, one: ScriptStatement) -> MissionError:
         return MissionError(
             [diagnostic("BT180", one.span, words=one.span.text, wanted='"grasp the cup" fails twice, then succeeds')]
         )
@@ -188,7 +188,7 @@ class MissionEnglish:
 
 
 def move_problem(problem: Diagnostic, source: Source, part: Span | None = None) -> Diagnostic:
-    """A problem with a part of a text that was read by itself, with its places in the whole text."""
+    """Return a problem with a part of a text that was read by itself, with its places in the whole text."""
 
     def place(span: Span) -> Span:
         if span.source.name != source.name:

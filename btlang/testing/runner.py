@@ -31,8 +31,8 @@ from btlang.testing.test import (
     NEVER,
     Fakes,
     MissionTest,
-    TestedCommand,
-    TestStep,
+    NamedCommand,
+    ScriptStep,
     find_command,
     make_fake,
 )
@@ -57,7 +57,7 @@ _EXACT = 1e-9  # seconds
 class Broken(Record):
     """A line that did not hold, when, and why, and the commands that were under way."""
 
-    step: TestStep
+    step: ScriptStep
     seconds: float
     reason: str
     doing: tuple[Node, ...] = ()
@@ -87,11 +87,11 @@ class Script:
         self._since = 0.0
         self._unmet = ""  # why the line that is waited for does not hold
         for tree in test.setup:
-            self._happen(TestStep(EVENT, test.span, event=tree), 0.0)
+            self._happen(ScriptStep(EVENT, test.span, event=tree), 0.0)
 
     @property
     def is_done(self) -> bool:
-        """Whether there is nothing left to wait for."""
+        """Return whether there is nothing left to wait for."""
         return self._at >= len(self._steps)
 
     def __call__(self, event: Event) -> None:
@@ -102,7 +102,7 @@ class Script:
                 self._controls.stop()
 
     def end(self, seconds: float) -> None:
-        """The mission is over, and its outcome is known."""
+        """Deal with the end of the mission, whose outcome is known."""
         if self.broken is None:
             self._follow(seconds)
             self._watch(seconds)
@@ -113,12 +113,12 @@ class Script:
             self._expect(step, seconds)
 
     def _follow(self, now: float) -> None:
-        """Deals with all lines whose time has come."""
+        """Deal with all lines whose time has come."""
         while self._at < len(self._steps) and self.broken is None and self._deal(self._steps[self._at], now):
             self._at += 1
 
-    def _deal(self, step: TestStep, now: float) -> bool:
-        """Whether the line is over, and the next one begins."""
+    def _deal(self, step: ScriptStep, now: float) -> bool:
+        """Return whether the line is over, and the next one begins."""
         passed = now - self._since
         due = passed >= step.seconds - _EXACT
         if step.kind in (EVENT, HOLDS):
@@ -151,37 +151,37 @@ class Script:
             if self._at >= begins and self.broken is None:
                 self._expect(step, now)
 
-    def _expect(self, step: TestStep, now: float) -> None:
+    def _expect(self, step: ScriptStep, now: float) -> None:
         assert step.condition is not None
         reason = self._ask(step.condition)
         if reason:
             self._break(step, now, reason)
 
-    def _happen(self, step: TestStep, now: float) -> None:
+    def _happen(self, step: ScriptStep, now: float) -> None:
         assert step.event is not None
         reason = self._ask(step.event)
         if reason:
             self._break(step, now, reason)
 
-    def _break(self, step: TestStep, now: float, reason: str) -> None:
+    def _break(self, step: ScriptStep, now: float, reason: str) -> None:
         self.broken = Broken(step, now, reason, tuple(self._observed.running.values()))
 
 
-def _before(watch: TestStep, steps: tuple[TestStep, ...]) -> int:
-    """How many lines of the script a line that always holds stands behind."""
+def _before(watch: ScriptStep, steps: tuple[ScriptStep, ...]) -> int:
+    """Return how many lines of the script a line that always holds stands behind."""
     before = steps[: next(at for at, step in enumerate(steps) if step is watch)]
     return sum(step.kind not in (ALWAYS, NEVER, FINALLY) for step in before)
 
 
 class _Questions:
-    """Asks conditions, and makes happen what trees of events say; each has an engine that lasts."""
+    """The conditions of a test, and what trees of events make happen; each has an engine that lasts."""
 
     def __init__(self, test: MissionTest, services: Mapping[str, Any], values: Blackboard) -> None:
         self._vocabulary, self._services, self._values = test.vocabulary, services, values
         self._engines: dict[int, Engine] = {}
 
     def ask(self, tree: Tree) -> str:
-        """ "" where it is true, or done; else why not."""
+        """Ask a condition; return "" where it is true, or done, else why not."""
         engine = self._engines.get(id(tree))
         if engine is None:
             try:
@@ -204,11 +204,11 @@ class _Questions:
 
 
 class Result(Record):
-    """How a test ended: `problem` is "" where it passed, else what did not hold; `place` is its file:line.
+    """The result of a test: `problem` is "" where it passed, else what did not hold; `place` is its file:line.
 
     `seconds` are those of the mission; with `is_cut` the test took too long. `seen` are the statuses that each node of
-    the mission had; see observations.py. `troubles` are what chaos made of the world. `line` is what did not
-    hold, `at` what the mission was doing then, or what of it failed.
+    the mission had; see observations.py. `troubles` are what chaos made of the world. `line` is what did not hold, `at`
+    what the mission was doing then, or what of it failed.
     """
 
     name: str
@@ -224,12 +224,12 @@ class Result(Record):
 
     @property
     def passed(self) -> bool:
-        """Whether all that the test says did hold."""
+        """Return whether all that the test says did hold."""
         return not self.problem
 
 
 class _Connect(Record):
-    """Connects to the simulated robot of a test; fakes stand in for some of its words."""
+    """A connection to the simulated robot of a test; fakes stand in for some of its words."""
 
     body: Body
     fakes: Fakes
@@ -257,8 +257,9 @@ def run_test(
     sinks: Iterable[Sink] = (),
     controls: Controls | None = None,
 ) -> Result:
-    """Runs the mission of a test, or another one in its place; `controls` may end it. Raises MissionError where it
-    can't run at all.
+    """Run the mission of a test, or another one in its place; `controls` may end it.
+
+    Raises MissionError where it can't run at all.
     """
     mission, controls = mission or test.mission, controls or Controls()
     observed, values, fakes = Observations(_commands(test)), Blackboard(), Fakes(test.fakes)
@@ -289,7 +290,7 @@ def run_test(
 
 
 def run_chaos(test: MissionTest, seed: int, sinks: Iterable[Sink] = ()) -> Result:
-    """Runs the mission of a test while the world goes wrong, and watches the rules of safety (see Chaos).
+    """Run the mission of a test while the world goes wrong, and watches the rules of safety (see Chaos).
 
     What the test expects doesn't count, but its events at the start and its fakes do. Raises MissionError.
     """
@@ -309,20 +310,20 @@ def run_chaos(test: MissionTest, seed: int, sinks: Iterable[Sink] = ()) -> Resul
 
 
 def _executed(run: Run, controls: Controls) -> Outcome:
-    """Raises KeyboardInterrupt at Ctrl-C, which ends all tests and not only this one."""
+    """Raise KeyboardInterrupt at Ctrl-C, which ends all tests and not only this one."""
     outcome = run.execute()
     if outcome.stopped == "interrupted" and not controls.stopped:
         raise KeyboardInterrupt
     return outcome
 
 
-def _commands(test: MissionTest) -> dict[str, TestedCommand]:
+def _commands(test: MissionTest) -> dict[str, NamedCommand]:
     found = ((text, find_command(text, test.mission)) for text in test.texts)
     return {text: command for text, command in found if command is not None}
 
 
 def _problem(broken: Broken, mission: Mission, outcome: Outcome | None) -> str:
-    """The line that did not hold, when and why, and what the mission did."""
+    """Return the line that did not hold, when and why, and what the mission did."""
     span = broken.step.span
     lines = [f"{span.place.rpartition(':')[0]}: {span.text}", f"  after {brief_time(broken.seconds)}: {broken.reason}"]
     doing = sorted({mission.label(node) for node in broken.doing})
@@ -341,6 +342,6 @@ def _at(broken: Broken, outcome: Outcome | None) -> Span | None:
 
 
 def brief_time(seconds: float) -> str:
-    """`2 min 5.0 s`."""
+    """Write a time such as `2 min 5.0 s`."""
     minutes, rest = divmod(round(seconds, 1), 60)
     return f"{minutes:.0f} min {rest:.1f} s" if minutes else f"{rest:.1f} s"

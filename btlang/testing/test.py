@@ -26,8 +26,9 @@ if TYPE_CHECKING:
     from btlang.vocabulary.entry import Entry
 
 
-class TestedCommand(Record):
-    """Nodes of a mission: those with one of these ids and, where the words say them, these values of ports.
+class NamedCommand(Record):
+    """A command of a mission that a test names: the nodes with one of these ids and, where the words say them, these
+    values of ports.
 
     With `is_denied` the words say the opposite of a condition: `nobody is near`.
     """
@@ -37,12 +38,12 @@ class TestedCommand(Record):
     is_denied: bool = False
 
     def matches(self, node: Node) -> bool:
-        """Whether a node, with its values filled in, is meant."""
+        """Return whether a node, with its values filled in, is meant."""
         return node.id in self.ids and all(node.port(name) == text for name, text in self.ports)
 
 
-def find_command(text: str, mission: Mission) -> TestedCommand | None:
-    """What the words name: a definition of the mission, a whole command, or the first words of commands.
+def find_command(text: str, mission: Mission) -> NamedCommand | None:
+    """Return what the words name: a definition of the mission, a whole command, or the first words of commands.
 
     None where the mission has no such command.
     """
@@ -54,20 +55,20 @@ def find_command(text: str, mission: Mission) -> TestedCommand | None:
     name = " ".join(wanted)
     for known, _ in mission.tree.subtrees:
         if known.lower() == name:
-            return TestedCommand(frozenset((SUBTREE,)), (("ID", known),))
+            return NamedCommand(frozenset((SUBTREE,)), (("ID", known),))
     match = longest(vocabulary.trie, words, 0, vocabulary.context)
     if match is not None and match.last == len(wanted) and match.meaning.entry is not None:
         ports = tuple((value.name, value.text) for value in match.values)
         is_denied = match.meaning.role == "negated"
-        return _if_there(TestedCommand(frozenset((match.meaning.entry.id,)), ports, is_denied), mission)
+        return _if_there(NamedCommand(frozenset((match.meaning.entry.id,)), ports, is_denied), mission)
     entries = [entry for same in vocabulary.entries.values() for entry in same]
     ids = {entry.id for entry in entries if _begins(entry.phrases, wanted, vocabulary.articles)}
     ids |= {id for id in vocabulary.entries if id.lower() == "".join(wanted)}
-    return _if_there(TestedCommand(frozenset(ids)), mission)
+    return _if_there(NamedCommand(frozenset(ids)), mission)
 
 
 def _begins(phrases: tuple[str, ...], wanted: list[str], articles: frozenset[str]) -> bool:
-    """Whether a way to say one of the phrases begins with these words."""
+    """Return whether a way to say one of the phrases begins with these words."""
     for phrase in phrases:
         for form in forms(phrase, articles):
             first = form[: len(wanted)]
@@ -76,8 +77,11 @@ def _begins(phrases: tuple[str, ...], wanted: list[str], articles: frozenset[str
     return False
 
 
-def _if_there(command: TestedCommand, mission: Mission) -> TestedCommand | None:
-    """The values that the mission takes from its blackboard are only known while it runs."""
+def _if_there(command: NamedCommand, mission: Mission) -> NamedCommand | None:
+    """Return the command if the mission has it.
+
+    Values that the mission takes from its blackboard are only known while it runs.
+    """
     for node in mission.tree.walk():
         ports = tuple((name, text) for name, text in command.ports if not node.port(name).startswith("{"))
         if node.id in command.ids and command.replace(ports=ports).matches(node):
@@ -89,10 +93,12 @@ FAKED = "the test lets it fail"
 
 
 class Fake(Record):
-    """`succeeds` after `seconds`, or fails, `times` times (0: always); then comes the next fake, or the command."""
+    """A fake of a command: it `succeeds` after `seconds`, or fails, `times` times (0: always); then comes the next
+    fake, or the command.
+    """
 
     words: str
-    command: TestedCommand
+    command: NamedCommand
     succeeds: bool
     seconds: float = 0.0
     times: int = 0
@@ -106,11 +112,11 @@ class Fakes:
         self._left = [fake.times for fake in fakes]
 
     def has(self, node_id: str) -> bool:
-        """Whether one may stand in for nodes with this id."""
+        """Return whether one may stand in for nodes with this id."""
         return any(node_id in fake.command.ids for fake in self._fakes)
 
     def take(self, node_id: str, values: dict[str, Any]) -> Fake | None:
-        """The fake for a call with these values, which counts it; None where the real one is to be called."""
+        """Return the fake for a call with these values, which counts it; None where the real one is to be called."""
         for number, fake in enumerate(self._fakes):
             if node_id not in fake.command.ids or (fake.times and not self._left[number]):
                 continue
@@ -130,8 +136,9 @@ def _is_same(value: Any, text: str) -> bool:
 
 
 def make_fake(own: LeafBinding | None, entry: Entry, vocabulary: Lexicon, fakes: Fakes, clock: Clock) -> LeafBinding:
-    """How a leaf is bound that fakes may stand in for. It takes the ports of the real one, which need not exist: the
-    robot's `own`, or that of its `call`.
+    """Return how a leaf is bound that fakes may stand in for.
+
+    It takes the ports of the real one, which need not exist: the robot's `own`, or that of its `call`.
     """
     take = partial(fakes.take, entry.id)
     real = own or (bind_leaf(entry.id, vocabulary) if entry.call else None)
@@ -142,7 +149,7 @@ def make_fake(own: LeafBinding | None, entry: Entry, vocabulary: Lexicon, fakes:
 
 
 def _unreal(take: Callable[..., Fake | None], clock: Clock) -> Callable[..., Any]:
-    """In place of a command that nothing here can do."""
+    """Make a leaf in place of a command that nothing here can do."""
 
     def act(**values: Any) -> Any:
         fake = take(values)
@@ -162,7 +169,7 @@ def _unreal_condition(take: Callable[..., Fake | None]) -> Callable[..., Any]:
 
 
 def _answer(fake: Fake, clock: Clock) -> Any:
-    """A generator: takes its time, then ends as the fake says."""
+    """Return a generator: takes its time, then ends as the fake says."""
     until = clock.now + fake.seconds
     while clock.now < until - 1e-9:
         yield
@@ -179,7 +186,7 @@ def _generator(call: Callable[..., Any], take: Callable[..., Fake | None], clock
 
 
 def _function(call: Callable[..., Any], take: Callable[..., Fake | None], clock: Clock) -> Callable[..., Any]:
-    """Of a function, whose fake answers at once."""
+    """Fake a function, which answers at once."""
 
     @wraps(call)
     def act(**values: Any) -> Any:
@@ -238,7 +245,7 @@ EVENT, HOLDS, WITHIN, FOR, BEFORE, ALWAYS, NEVER, FINALLY = (
 )  # fmt: skip
 
 
-class TestStep(Record):
+class ScriptStep(Record):
     """A line of a test behind `run`; times count from the end of the step before it.
 
     `EVENT`: after `seconds`, and once `condition` is true, `event` happens in the world. `HOLDS`: after `seconds` the
@@ -256,7 +263,9 @@ class TestStep(Record):
 
 
 class MissionTest(Record):
-    """`setup` are the events before the first tick; `limit` is in seconds of mission time, and the test ends then.
+    """A test of a mission.
+
+    `setup` are the events before the first tick; `limit` is in seconds of mission time, and the test ends then.
 
     With `is_cut` that is too long: a test that gets there has failed. `vocabulary` has the words of its conditions.
     `texts` are the commands in quotes that its conditions ask for, as they are written. `robot` is the path of a robot
@@ -269,7 +278,7 @@ class MissionTest(Record):
     vocabulary: Lexicon
     setup: tuple[Tree, ...] = ()
     fakes: tuple[Fake, ...] = ()
-    steps: tuple[TestStep, ...] = ()
+    steps: tuple[ScriptStep, ...] = ()
     texts: tuple[str, ...] = ()
     limit: float = USUAL_LIMIT
     is_cut: bool = True
@@ -277,11 +286,11 @@ class MissionTest(Record):
 
     @property
     def is_inline(self) -> bool:
-        """Whether its mission stands in it."""
+        """Return whether its mission stands in it."""
         syntax = self.mission.syntax
         return syntax is not None and syntax.span.source.name == self.span.source.name
 
     @property
     def place(self) -> str:
-        """`file:line` of the test."""
+        """The place `file:line` of the test."""
         return self.span.place.rpartition(":")[0]

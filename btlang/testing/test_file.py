@@ -25,7 +25,7 @@ from btlang.robots.registry import body_of
 from btlang.support.record import Record
 from btlang.task.execution.missions import read_house_rules
 from btlang.testing.pieces import MissionEnglish, move_problem
-from btlang.testing.statements import TestStatement, statements_of
+from btlang.testing.statements import ScriptStatement, statements_of
 from btlang.testing.test import MissionTest
 from btlang.text.source import Source, Span
 from btlang.text.words import Line, Words, split
@@ -44,8 +44,10 @@ WORDS = os.path.join(os.path.dirname(__file__), "words.toml")
 
 
 def read_tests(source: Source, given: Given = lambda name, world: None) -> tuple[MissionTest, ...]:
-    """The tests of a file, with their missions. `given` has missions that aren't read from files: by the name that
-    follows `run`, and the path of the world that the test names, if it does. Raises MissionError with what is wrong.
+    """Return the tests of a file, with their missions.
+
+    `given` has missions that aren't read from files: by the name that follows `run`, and the path of the world that the
+    test names, if it does. Raises MissionError with what is wrong.
     """
     vocabulary = load_vocabulary([WORDS])
     text = split(source, vocabulary.orthography)
@@ -64,12 +66,12 @@ def read_tests(source: Source, given: Given = lambda name, world: None) -> tuple
 
 
 def check_tests(source: Source) -> list[Diagnostic]:
-    """The warnings of the missions of a file of tests. Raises MissionError with all that is wrong."""
+    """Return the warnings of the missions of a file of tests. Raises MissionError with all that is wrong."""
     return [warning for test in read_tests(source) for warning in test.mission.warnings]
 
 
 def format_tests(source: Source) -> str:
-    """The text in the canonical layout of missions. Raises MissionError where its tests can't be read."""
+    """Return the text in the canonical layout of missions. Raises MissionError where its tests can't be read."""
     read_tests(source)
     return laid_out(source, load_vocabulary().orthography)
 
@@ -83,7 +85,7 @@ class _Block(Record):
 
 
 def _blocks(text: Words, problems: list[Diagnostic]) -> Iterator[_Block]:
-    """The tests of a text, by their first lines."""
+    """Yield the tests of a text, by their first lines."""
     heads = [number for number, line in enumerate(text.lines) if line.indent <= text.lines[0].indent]
     for at, number in enumerate(heads):
         line = text.lines[number]
@@ -101,7 +103,7 @@ def _problem(code: str, span: Span, reason: str, example: str) -> Diagnostic:
 
 
 class _TestFileReader:
-    """Reads one test: first its mission, whose words its other lines use."""
+    """A reader of one test: first its mission, whose words its other lines use."""
 
     def __init__(self, text: Words, block: _Block, vocabulary: Lexicon, given: Given) -> None:
         self._text, self._block, self._source, self._given = text, block, text.source, given
@@ -112,7 +114,7 @@ class _TestFileReader:
         self._world: str | None = None
 
     def test(self) -> MissionTest:
-        """Raises MissionError."""
+        """Raise MissionError."""
         runs = [one for one in self._statements if one.kind == "run"]
         if len(runs) != 1:
             span = runs[1].span if runs else self._block.span
@@ -145,7 +147,7 @@ class _TestFileReader:
             tuple(pieces.steps), tuple(pieces.texts), *pieces.limit(runs[0]), self._robot,
         )  # fmt: skip
 
-    def _mission(self, run: TestStatement) -> Mission:
+    def _mission(self, run: ScriptStatement) -> Mission:
         world = self._named_file("world") or None
         self._robot = self._named_file("robot")
         if self._robot:
@@ -163,15 +165,15 @@ class _TestFileReader:
         return self._parsed(_only(self._source, run.block))
 
     def _parsed(self, source: Source) -> Mission:
-        """In the words of the robot and the names of the world of the test. Raises MissionError."""
+        """Parse a mission in the words of the robot and the names of the world of the test. Raises MissionError."""
         return parse_tree(source, keywords=self._robot_words, world=self._world)
 
     def _named_file(self, kind: str) -> str:
-        """The path that the first statement of a kind names; "" where none does."""
+        """Return the path that the first statement of a kind names; "" where none does."""
         return next((self._path(one.file) for one in self._statements if one.kind == kind), "")
 
     def _path(self, named: Span | None) -> str:
-        """Where a file lies that the test names. Raises MissionError where that is no folder of the user's."""
+        """Return where a file lies that the test names. Raises MissionError where that is no folder of the user's."""
         assert named is not None
         path, real = included_path(_named(named), self._source)
         if not self._source.roots or not any(is_below(real, root) for root in (*self._source.roots, "")):
@@ -190,6 +192,6 @@ def _root(source: Source) -> str | None:
 
 
 def _only(source: Source, span: Span) -> Source:
-    """A text in which all but a part is blank, so that places in it are the same."""
+    """Return a text in which all but a part is blank, so that places in it are the same."""
     before = "".join(character if character == "\n" else " " for character in source.text[: span.start])
     return Source(before + span.text, source.name, source.folder, source.roots, may_load=source.may_load)

@@ -135,7 +135,7 @@ def test_a_robot_comes_up_with_what_its_library_has(
         made.append((robot, reader.world))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("btlang.cli.robot.furnished_layer", layer)
+    monkeypatch.setattr("btlang.cli.robot.make_robot_layer", layer)
     named = ("--robot", "library:q", "--world", "library:q")
     btc(*up, *named)
     [(connect, world)] = made

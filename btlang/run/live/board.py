@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from btlang.tree.node import Node, Tree
 
     class Map(Protocol):
-        """See btlang.pictures.terminal_map.TerminalMap."""
+        """A map of a world in the cells of a terminal; see btlang.pictures.terminal_map.TerminalMap."""
 
         def note(self, robot: RobotState | None) -> None: ...
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
         def lines(self, robot: RobotState | None, width: int, height: int) -> list[frame.Line]: ...
 
     class Viewed(Protocol):
-        """What the live view asks of a mission."""
+        """The part of a mission that the live view needs."""
 
         @property
         def tree(self) -> Tree: ...
@@ -49,7 +49,9 @@ _MOST_WAITING = 50_000  # events; a terminal may be slower than the run, or be h
 
 
 class Board:
-    """`note` may be called from any thread and takes no time; all else is for one thread, that which draws.
+    """The state of a run and the lines about it, for the live view.
+
+    `note` may be called from any thread and takes no time; all else is for one thread, that which draws.
 
     `changes` grows with each event. Raises EngineError for a tree that cannot be compiled.
     """
@@ -72,7 +74,7 @@ class Board:
         self.hides_map = False
 
     def note(self, event: Event | str) -> None:
-        """Keeps an event, or a line that was printed."""
+        """Keep an event, or a line that was printed."""
         if isinstance(event, PeriodPassed):
             self._period, self._begun = event, True
         else:
@@ -81,14 +83,14 @@ class Board:
         self.changes += 1
 
     def jump(self, state: RunState) -> None:
-        """The run goes on from another state; what has been noted before is still written."""
+        """Go on from another state; what has been noted before is still written."""
         self._waiting.append(state)
         self._noted += 1
         self._begun = True
         self.changes += 1
 
     def take(self) -> list[str]:
-        """Brings the state up to date; returns the lines of what happened since the last time."""
+        """Bring the state up to date; return the lines of what happened since the last time."""
         noted = self._noted  # before the count, so that an event that comes just now is not taken for lost
         count = len(self._waiting)
         lost = noted - self._taken - self._lost - count
@@ -109,7 +111,9 @@ class Board:
     def frame(
         self, width: int, height: int, doing: str, keys: Sequence[tuple[str, str]], explained: bool = False
     ) -> list[frame.Line]:
-        """At most `height` lines (7 or more) while the run goes on. `doing` says what it does, "" that it has ended.
+        """Return at most `height` lines (7 or more) while the run goes on.
+
+        `doing` says what it does, "" that it has ended.
 
         `keys` are what frame.keys_line says; `explained` adds what the signs mean, as far as there is room. A run that
         ended before it began leaves nothing to show.
@@ -128,13 +132,13 @@ class Board:
         return [frame.header(self._title, state, doing, signs), *shown, *below]
 
     def _beside(self, width: int, rows: int) -> list[Line]:
-        """The tree, and the map to the right of it."""
+        """Return the tree, and the map to the right of it."""
         columns, lines = self._map_size(width * _MAP_PART // 100, rows)
         left = width - columns - _APART if columns else width
         return frame.side_by_side(self._tree(left, rows), self._map(columns, lines), left + _APART)
 
     def _above_each_other(self, width: int, rows: int) -> list[Line]:
-        """The tree, and the map in the rows that it leaves, or in half of them."""
+        """Return the tree, and the map in the rows that it leaves, or in half of them."""
         tree = self._tree(width, rows)
         columns, lines = self._map_size(width, max(rows // 2, rows - len(tree)))
         if len(tree) > rows - lines:

@@ -60,7 +60,7 @@ class ViewWords:
         self._known: dict[int, tuple[str, str]] = {}
 
     def of(self, index: int) -> tuple[str, str]:
-        """What a node is called, and the sentence it came from, "" where that says no more."""
+        """Return what a node is called, and the sentence it came from, "" where that says no more."""
         found = self._known.get(index)
         if found is None:
             node = self._nodes[index]
@@ -83,19 +83,19 @@ def _asked(nodes: Sequence[Node], parents: Sequence[int]) -> list[bool]:
 
 
 def _heads_a_block(node: Node, line: str) -> bool:
-    """Whether the first line of a node's text is about all of it: `repeat 3 times:`."""
+    """Return whether the first line of a node's text is about all of it: `repeat 3 times:`."""
     inner, outer = node.children[0].span, node.span
     return line.endswith(":") and not (inner is not None and outer is not None and inner.start == outer.start)
 
 
 def header(title: str, state: RunState, doing: str, signs: Signs) -> Line:
-    """Mission file, time, and what the run is doing."""
+    """Return mission file, time, and what the run is doing."""
     style = {"running": "bold cyan", "paused": "bold yellow", "emergency stop": "bold red"}.get(doing, "bold")
     return ((title, "bold"), (f"{signs.apart}{state.now:.1f} s{signs.apart}", "dim"), (doing, style))
 
 
 def tree_lines(state: RunState, words: ViewWords, height: int, width: int, over: bool, signs: Signs) -> list[Line]:
-    """At most `height` lines, but at least 3, none wider than `width`. `over` says that the run has ended."""
+    """Return at most `height` lines, but at least 3, none wider than `width`. `over` says that the run has ended."""
     rows = choose_rows(state.shape, state.statuses, max(height, LEAST_HEIGHT))
     step = 4 if min(state.shape.depth, height) * 4 <= width // 2 else 2  # the same throughout a run
     heads = _heads([row.depth for row in rows], step, signs)
@@ -117,7 +117,7 @@ def tree_lines(state: RunState, words: ViewWords, height: int, width: int, over:
 
 
 def side_by_side(left: Sequence[Line], right: Sequence[Line], column: int) -> list[Line]:
-    """The lines of one beside those of another one, which begin at a column."""
+    """Return the lines of one beside those of another one, which begin at a column."""
     lines: list[Line] = []
     for at in range(max(len(left), len(right))):
         line = left[at] if at < len(left) else ()
@@ -128,7 +128,7 @@ def side_by_side(left: Sequence[Line], right: Sequence[Line], column: int) -> li
 
 
 def robot_line(state: RunState, signs: Signs) -> Line:
-    """Pose, battery, what it holds, its last words."""
+    """Return pose, battery, what it holds, its last words."""
     robot = state.robot or RobotState()
     parts: list[str] = []
     if robot.pose is not None:
@@ -145,7 +145,7 @@ def robot_line(state: RunState, signs: Signs) -> Line:
 
 
 def counts_line(state: RunState, signs: Signs) -> Line:
-    """Ticks, and overruns if there are many."""
+    """Tick, and overruns if there are many."""
     ticks = (("ticks ", "dim"), (str(state.ticks), ""))
     if not are_many(state.overruns, state.ticks):
         return ticks
@@ -153,7 +153,7 @@ def counts_line(state: RunState, signs: Signs) -> Line:
 
 
 def legend_lines(width: int, signs: Signs) -> list[Line]:
-    """What the signs in front of the nodes mean."""
+    """Return what the signs in front of the nodes mean."""
     lines: list[Line] = [()]
     for status, meaning in _MEANINGS.items():
         piece = ((f"{signs.statuses[status]} ", _STYLES[status]), (f"{meaning}  ", "dim"))
@@ -164,7 +164,7 @@ def legend_lines(width: int, signs: Signs) -> list[Line]:
 
 
 def keys_line(paused: bool, keys: Sequence[tuple[str, str]], signs: Signs) -> Line:
-    """What each key does."""
+    """Return what each key does."""
     pieces: list[tuple[str, str]] = []
     for key, deed in keys:
         deed = "resume" if paused and deed == "pause" else deed
@@ -174,7 +174,7 @@ def keys_line(paused: bool, keys: Sequence[tuple[str, str]], signs: Signs) -> Li
 
 
 def prompt_line(question: str, typed: str, width: int, signs: Signs) -> Line:
-    """What the robot asks, and the answer so far."""
+    """Return what the robot asks, and the answer so far."""
     answer = f" {typed}_"
     asked = fit_text(one_line(question), max(8, width - len(answer) - 1), signs)
     return ((asked, "bold yellow"), (answer[-width:], "bold"))
@@ -202,7 +202,7 @@ def _node(
 
 
 def _note(state: RunState, row: Row, words: ViewWords, status: int) -> tuple[str, str]:
-    """What is to be said of the end of a node, with its style."""
+    """Return what is to be said of the end of a node, with its style."""
     if status == FAILURE:
         reason = one_line(_reason(state, row, words))
         return (f"  {reason}" if reason else ""), "dim" if words.asked[row.node] else "red"
@@ -211,7 +211,7 @@ def _note(state: RunState, row: Row, words: ViewWords, status: int) -> tuple[str
 
 
 def _seconds(state: RunState, node: int, status: int) -> str:
-    """The time in a status that lasts, or the time that the node took."""
+    """Return the time in a status that lasts, or the time that the node took."""
     began = state.started.get(node)
     if began is None or status in (IDLE, SKIPPED):
         return ""
@@ -220,7 +220,7 @@ def _seconds(state: RunState, node: int, status: int) -> str:
 
 
 def _reason(state: RunState, row: Row, words: ViewWords) -> str:
-    """Why a node failed; where it is folded up, which leaf in it failed and why."""
+    """Return why a node failed; where it is folded up, which leaf in it failed and why."""
     node, shape = row.node, state.shape
     while row.inside and (failed := [child for child in shape.children(node) if state.statuses[child] == FAILURE]):
         node = failed[-1]
@@ -232,7 +232,7 @@ def _reason(state: RunState, row: Row, words: ViewWords) -> str:
 
 
 def _heads(depths: list[int], step: int, signs: Signs) -> list[str]:
-    """The branches in front of each row, drawn from the last row up.
+    """Return the branches in front of each row, drawn from the last row up.
 
     Not by rich.tree: it has no narrow branches, and takes 5 ms for 48 rows of a frame (this: 0.04 ms).
     """
@@ -250,7 +250,7 @@ def _heads(depths: list[int], step: int, signs: Signs) -> list[str]:
 
 
 def fit_text(text: str, width: int, signs: Signs) -> str:
-    """The text, its end replaced by an ellipsis where it is wider."""
+    """Return the text, its end replaced by an ellipsis where it is wider."""
     if cell_len(text) <= width:
         return text
     room = width - len(signs.more)
@@ -258,6 +258,6 @@ def fit_text(text: str, width: int, signs: Signs) -> str:
 
 
 def _zero(value: float, digits: int) -> str:
-    """Without the sign of a zero that comes from rounding."""
+    """Return a number without the sign of a zero that comes from rounding."""
     text = f"{value:.{digits}f}"
     return text.removeprefix("-") if not text.strip("-0.") else text

@@ -29,7 +29,7 @@ _PATIENCE = 0.2  # seconds until a process in the background looks again
 
 
 class Keys:
-    """Calls `pressed` with each key between `begin` and `end`; those of Ctrl-C and Ctrl-Z stay signals.
+    """A thread that calls `pressed` with each key between `begin` and `end`; those of Ctrl-C and Ctrl-Z stay signals.
 
     Raises OSError where the terminal cannot be read key by key.
     """
@@ -48,7 +48,7 @@ class Keys:
         self._thread = threading.Thread(target=self._read, name="btlang keys", daemon=True)
 
     def begin(self) -> None:
-        """Keys come at once and are not shown. May be called again, after a stop of the process."""
+        """Let keys come at once without being shown. May be called again, after a stop of the process."""
         if self.in_front and not self._ended:
             with suppress(termios.error):  # the terminal is gone
                 tty.setcbreak(self._descriptor, termios.TCSANOW)
@@ -56,13 +56,13 @@ class Keys:
             self._thread.start()
 
     def restore(self) -> None:
-        """Restores the modes of the terminal."""
+        """Restore the modes of the terminal."""
         if self.in_front:
             with suppress(termios.error):
                 termios.tcsetattr(self._descriptor, termios.TCSANOW, self._modes)
 
     def end(self) -> None:
-        """Restores the terminal, and reads no further key."""
+        """Restore the terminal, and read no further key."""
         self._ended = True
         try:
             self.restore()
@@ -75,7 +75,7 @@ class Keys:
 
     @property
     def in_front(self) -> bool:
-        """Whether this process may use the terminal; one in the background would be stopped."""
+        """Return whether this process may use the terminal; one in the background would be stopped."""
         try:
             return os.tcgetpgrp(self._descriptor) == os.getpgrp()
         except OSError:  # not the terminal that controls this process, so nothing would stop it

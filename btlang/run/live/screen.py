@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Capture(io.TextIOBase):
-    """Stands in for a stream: hands on each line that is written to it, without its end.
+    """A stand-in for a stream: it hands on each line that is written to it, without its end.
 
     All else that is asked of the stream, such as its encoding, is that of the real one.
     """
@@ -33,38 +33,38 @@ class Capture(io.TextIOBase):
 
     @property
     def encoding(self) -> str:  # type: ignore[override]
-        """That of the real stream."""
+        """The encoding of the real stream."""
         return self._real.encoding
 
     @property
     def errors(self) -> str | None:  # type: ignore[override]
-        """That of the real stream."""
+        """The error handling of the real stream."""
         return self._real.errors
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._real, name)
 
     def fileno(self) -> int:
-        """That of the real stream."""
+        """Return the number of the real stream."""
         return self._real.fileno()
 
     def isatty(self) -> bool:
-        """As the real stream says."""
+        """Return what the real stream does."""
         return self._real.isatty()
 
     def writable(self) -> bool:
-        """True."""
+        """Return True."""
         return True
 
     def write(self, text: str) -> int:
-        """Hands on the lines that are complete now."""
+        """Hand on the lines that are complete now."""
         *lines, self._begun = (self._begun + text).split("\n")
         for line in lines:
             self._line(line)
         return len(text)
 
     def finish(self) -> None:
-        """Hands on a line that has no end yet."""
+        """Hand on a line that has no end yet."""
         if self._begun:
             self._line(self._begun)
             self._begun = ""
@@ -72,7 +72,7 @@ class Capture(io.TextIOBase):
 
 @contextmanager
 def capture_output(output: TextIO, line: Callable[[str], object]) -> Iterator[None]:
-    """Standard output, and standard error where it is a terminal, go to `line`; `output` is the real output."""
+    """Let standard output, and standard error where it is a terminal, go to `line`; `output` is the real output."""
     out, err = sys.stdout, sys.stderr
     captures = [Capture(output, line)]
     sys.stdout = captures[0]
@@ -95,11 +95,13 @@ _CONTROL = re.compile("\x1b\\[[0-9;]*m")
 
 
 class LiveScreen:
-    """Draws frames at the end of what a terminal shows. Lines that did not change are not written again.
+    """A part of a terminal, below what it shows, in which frames are drawn.
+
+    Lines that did not change are not written again.
 
     Not by rich.live, which erases every line before it writes the frame: measured at 120 x 50, two of five reads of the
-    terminal end in a frame with lines missing, and 20 frames a second cost 9% of a core (here: none, and 4%).
-    Used by one thread at a time.
+    terminal end in a frame with lines missing, and 20 frames a second cost 9% of a core (here: none, and 4%). Used by
+    one thread at a time.
     """
 
     def __init__(self, output: TextIO, size: Callable[[], os.terminal_size]) -> None:
@@ -111,16 +113,19 @@ class LiveScreen:
         self._known: dict[tuple[Line, int], str] = {}
 
     def size(self) -> tuple[int, int]:
-        """Columns that may be used, and rows. The last column stays free: some terminals wrap when it is written."""
+        """Return columns that may be used, and rows.
+
+        The last column stays free: some terminals wrap when it is written.
+        """
         columns, rows = self._size()
         return max(columns - 1, 1), max(rows, 1)
 
     def begin(self) -> None:
-        """Hides the cursor."""
+        """Hide the cursor."""
         self._write(_HIDE_CURSOR)
 
     def draw(self, above: Sequence[str], frame: Sequence[Line]) -> None:
-        """Shows a frame in place of the one before, and further lines that stay above it."""
+        """Show a frame in place of the one before, and further lines that stay above it."""
         width, rows = self.size()
         known, self._known = self._known, {}
         lines: list[str] = []
@@ -139,18 +144,18 @@ class LiveScreen:
         self._write("".join(parts))
 
     def leave(self) -> None:
-        """What is shown now stays, and the next frame begins on a line of its own."""
+        """Let what is shown now stay; the next frame begins on a line of its own."""
         if self._drawn:
             self._write("\r\n")
         self._drawn, self._known = [], {}
 
     def end(self) -> None:
-        """Shows the cursor again; does nothing where the terminal is gone."""
+        """Show the cursor again; does nothing where the terminal is gone."""
         with suppress(OSError, ValueError):
             self._write(_SHOW_CURSOR)
 
     def _changes(self, lines: list[str], redraw: bool) -> Iterator[str]:
-        """From the first line of the frame to its last; what is as before is passed over."""
+        """Yield what to write from the first line of the frame to its last; what is as before is passed over."""
         for at, line in enumerate(lines):
             if at:
                 yield "\r\n"
@@ -160,7 +165,7 @@ class LiveScreen:
             yield _ERASE_BELOW
 
     def _to_the_top(self, width: int) -> str:
-        """To the first line of the frame. A terminal that became narrower has wrapped its lines, as most do."""
+        """Move to the first line of the frame. A terminal that became narrower has wrapped its lines, as most do."""
         if not self._drawn:
             return "\r"
         columns = width + 1
@@ -181,7 +186,9 @@ class LiveScreen:
 
 
 def _staying(line: str, columns: int) -> str:
-    """A line above the frame. It erases what it is written over: what is erased at once, tmux keeps in its history.
+    """Return a line above the frame.
+
+    It erases what it is written over: what is erased at once, tmux keeps in its history.
 
     Nothing is erased after a line that fills the last column, where the cursor still stands on its last character.
     """

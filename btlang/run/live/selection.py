@@ -11,7 +11,7 @@ from btlang.support.record import Record
 
 
 def first_visible(shape: Shape, before: int, following: int) -> int:
-    """The first node that needs a row of its own; what is below a folded node needs none."""
+    """Return the first node that needs a row of its own; what is below a folded node needs none."""
     if before < 0:
         return 0
     end = shape.ends[before]
@@ -19,7 +19,7 @@ def first_visible(shape: Shape, before: int, following: int) -> int:
 
 
 class NodeChoice:
-    """Nodes that are shown, in preorder; it never needs more rows than there are."""
+    """A choice of nodes that are shown, in preorder; it never needs more rows than there are."""
 
     def __init__(self, shape: Shape, height: int) -> None:
         self.nodes: list[int] = []
@@ -35,7 +35,7 @@ class NodeChoice:
         return self.room <= 0
 
     def add(self, node: int) -> bool:
-        """Shows a node where its row, and those for what is then left out around it, fit; else does nothing."""
+        """Show a node where its row, and those for what is then left out around it, fit; else does nothing."""
         at = bisect_left(self.nodes, node)
         following = self.nodes[at] if at < len(self.nodes) else len(self._shape)
         if following == node:
@@ -49,7 +49,10 @@ class NodeChoice:
         return True
 
     def add_all(self, nodes: Sequence[int]) -> bool:
-        """All of them or none. They are the children of a node that is shown folded up: each needs a row, no more."""
+        """Add all of them or none. They are the children of a node that is shown folded up: each needs a row, no more.
+
+        They are the children of a node that is shown folded up: each needs a row, no more.
+        """
         if len(nodes) > self.room:
             return False
         at = bisect_left(self.nodes, nodes[0])
@@ -58,12 +61,12 @@ class NodeChoice:
         return True
 
     def folded(self, node: int) -> bool:
-        """Whether nothing below a node that is shown is shown."""
+        """Return whether nothing below a node that is shown is shown."""
         at = bisect_left(self.nodes, node) + 1
         return at == len(self.nodes) or self.nodes[at] >= self._shape.ends[node]
 
     def without_small_gaps(self) -> list[int]:
-        """The nodes, and in place of each row that would stand for a single one, that one."""
+        """Return the nodes, and in place of each row that would stand for a single one, that one."""
         nodes: list[int] = []
         before = -1
         for following in (*self.nodes, len(self._shape)):
@@ -75,7 +78,7 @@ class NodeChoice:
         return nodes[:-1]
 
     def _gap(self, before: int, following: int) -> int:
-        """The rows for what is left out between two nodes that are shown: 1 or 0."""
+        """Return the rows for what is left out between two nodes that are shown: 1 or 0."""
         return int(first_visible(self._shape, before, following) < following)
 
 
@@ -101,10 +104,10 @@ class Row(Record):
 
 
 def choose_rows(shape: Shape, statuses: bytearray, height: int) -> list[Row]:
-    """At most `height` (3 or more) rows, in the order of the tree; every node is in one of them.
+    """Choose at most `height` (3 or more) rows, in the order of the tree; every node is in one of them.
 
-    In the order of their importance: the deepest of what runs, the root, all else that runs with what is above it,
-    the siblings around it, what failed, is to come or is done. What is finished is folded up first.
+    In the order of their importance: the deepest of what runs, the root, all else that runs with what is above it, the
+    siblings around it, what failed, is to come or is done. What is finished is folded up first.
     """
     if len(shape) <= height:
         return _rows(shape, statuses, range(len(shape)))
@@ -124,7 +127,9 @@ def choose_rows(shape: Shape, statuses: bytearray, height: int) -> list[Row]:
 
 
 def focus(shape: Shape, statuses: bytearray, most: int) -> list[int]:
-    """What matters most, the deepest first: the running (else suspended) leaves, else the leaf that failed the tree."""
+    """Return what matters most, the deepest first: the running (else suspended) leaves, else the leaf that failed the
+    tree.
+    """
     for status in (RUNNING, SUSPENDED):
         tips = list(_tips(shape, statuses, status))
         if tips:
@@ -140,7 +145,7 @@ def focus(shape: Shape, statuses: bytearray, most: int) -> list[int]:
 
 
 def _tips(shape: Shape, statuses: bytearray, status: int) -> Iterator[int]:
-    """The nodes of a status that have none of it below."""
+    """Yield the nodes of a status that have none of it below."""
     node = statuses.find(status)
     while node >= 0:
         following = statuses.find(status, node + 1)
@@ -150,7 +155,7 @@ def _tips(shape: Shape, statuses: bytearray, status: int) -> Iterator[int]:
 
 
 def _upward(shape: Shape, tips: Sequence[int], most: int) -> Iterator[int]:
-    """What is above the tips, the nearest first, as far as there can be room for it."""
+    """Yield what is above the tips, the nearest first, as far as there can be room for it."""
     nodes = list(tips)
     for _ in range(most):
         nodes = [shape.parents[node] for node in nodes if shape.parents[node] > 0]
@@ -159,7 +164,7 @@ def _upward(shape: Shape, tips: Sequence[int], most: int) -> Iterator[int]:
 
 
 def _around(shape: Shape, choice: NodeChoice) -> Iterator[int]:
-    """The siblings of what is shown, nearer ones first, where their parent is shown."""
+    """Yield the siblings of what is shown, nearer ones first, where their parent is shown."""
     rings = [(node, node) for node in reversed(choice.nodes) if node and shape.parents[node] in choice]
     while rings:
         wider: list[tuple[int, int]] = []
@@ -176,7 +181,7 @@ def _around(shape: Shape, choice: NodeChoice) -> Iterator[int]:
 
 
 def _unfold(shape: Shape, statuses: bytearray, choice: NodeChoice) -> None:
-    """Opens branches while there is room: failed ones, those to come, the others; at last a part of a long one."""
+    """Open branches while there is room: failed ones, those to come, the others; at last a part of a long one."""
     order = {FAILURE: 0, IDLE: 1, RUNNING: 1}
     long: list[int] = []
     nodes = list(choice.nodes)

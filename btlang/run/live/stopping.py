@@ -11,7 +11,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def stoppable(leave: Callable[[], object], come_back: Callable[[], object]) -> Iterator[None]:
-    """Calls `leave` before the process is stopped and `come_back` when it goes on, from the main thread.
+    """Call `leave` before the process is stopped and `come_back` when it goes on, from the main thread.
 
     In another thread, or where there are no such signals, it does nothing.
     """

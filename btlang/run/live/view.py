@@ -44,7 +44,7 @@ _OTHER_LINES = 6  # one row in so many shows what happened, above the frame
 
 
 class ViewKey(Record):
-    """What a key does: how it is shown, what it does in words, and what each key calls (see Keys)."""
+    """A key: how it is shown, what it does in words, and what each key calls (see Keys)."""
 
     shown: str
     does: str
@@ -52,7 +52,7 @@ class ViewKey(Record):
 
 
 def usual_keys(controls: Controls) -> list[ViewKey]:
-    """The keys of a run that goes on; the pause comes first."""
+    """Return the keys of a run that goes on; the pause comes first."""
     return [
         ViewKey("space", "pause", {" ": controls.toggle}),
         ViewKey("s", "step", {"s": controls.step}),
@@ -115,21 +115,21 @@ class LiveView:
 
     @property
     def unicode(self) -> bool:
-        """Whether the terminal has more than the signs of ASCII."""
+        """Return whether the terminal has more than the signs of ASCII."""
         return self._board.signs is frame.UNICODE
 
     def show_map(self, world: Map | None) -> None:
-        """Shows the world beside the tree, or below it, while the mission runs; m hides and shows it."""
+        """Show the world beside the tree, or below it, while the mission runs; m hides and shows it."""
         self._board.map = world
 
     def __call__(self, event: Event) -> None:
-        """Notes an event."""
+        """Note an event."""
         self._board.note(event)
         if isinstance(event, PeriodPassed) and time.monotonic() >= self._due:
             self._wake.set()
 
     def jump(self, state: RunState) -> None:
-        """The run goes on from another state."""
+        """Go on from another state of the run."""
         self._board.jump(state)
         self._wake.set()
 
@@ -176,7 +176,7 @@ class LiveView:
             self._due = now + rest
 
     def _draw(self) -> None:
-        """Draws a frame where there is anything new."""
+        """Draw a frame where there is anything new."""
         width, height = self._screen.size()
         doing = self._doing()
         question = self._question
@@ -193,7 +193,7 @@ class LiveView:
         self._screen.draw(above, lines)
 
     def _keys_shown(self, doing: str) -> Sequence[tuple[str, str]]:
-        """As frame.keys_line takes it."""
+        """Return the keys as frame.keys_line takes them."""
         if self._keys is None:
             return frame.SIGNALS
         typing = self._type_ahead is not None and doing != "paused"
@@ -234,17 +234,17 @@ class LiveView:
 
     @property
     def _question(self) -> str:
-        """What the robot asks and somebody at this keyboard can answer."""
+        """Return what the robot asks and somebody at this keyboard can answer."""
         return self._world_input.question if self._world_input is not None and self._keys is not None else ""
 
     def _takes_answers(self) -> bool:
-        """Whether keys are an answer: also when the question has just gone, so that its rest stops no robot."""
+        """Return whether keys are an answer: also when the question has just gone, so that its rest stops no robot."""
         now = time.monotonic()
         self._asked = now if self._question else self._asked
         return now - self._asked < _GRACE or bool(self._typed)
 
     def _answer(self, key: str) -> None:
-        """A key of the answer; Enter sends it."""
+        """Take a key of the answer; Enter sends it."""
         if key in "\r\n":
             if self._typed and self._question and self._world_input is not None:
                 self._world_input.type(self._typed)
@@ -275,7 +275,7 @@ class LiveView:
         self._board.hides_map = not self._board.hides_map
 
     def _leave(self) -> None:
-        """Gives the terminal back for as long as the process is stopped."""
+        """Give the terminal back for as long as the process is stopped."""
         with self._drawing:
             self._left = True
             self._screen.leave()

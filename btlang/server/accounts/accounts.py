@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class UserRole(StrEnum):
-    """Each may do what those before it may."""
+    """A role of a user. Each may do what those before it may."""
 
     VIEWER = "viewer"
     OPERATOR = "operator"
@@ -36,7 +36,7 @@ class UserRole(StrEnum):
     ADMINISTRATOR = "administrator"
 
     def covers(self, other: UserRole) -> bool:
-        """Whether it may do what the other one may."""
+        """Return whether it may do what the other one may."""
         order = list(UserRole)
         return order.index(self) >= order.index(other)
 
@@ -101,7 +101,7 @@ _STEPS = [
 
 
 class User(Record):
-    """`password` is a hash. `created` is in seconds since 1970."""
+    """A user. `password` is a hash. `created` is in seconds since 1970."""
 
     name: str
     role: UserRole
@@ -120,7 +120,7 @@ class Login(Record):
 
 
 class AccessToken(Record):
-    """Lets a program in. `id` is the hash of what it sends, `used` when it did so last."""
+    """A token that lets a program in. `id` is the hash of what it sends, `used` when it did so last."""
 
     id: str
     name: str
@@ -130,7 +130,7 @@ class AccessToken(Record):
 
 
 class TrailEntry(Record):
-    """What somebody did or tried."""
+    """An entry of the trail: what somebody did or tried."""
 
     time: float
     user: str
@@ -140,7 +140,7 @@ class TrailEntry(Record):
 
 
 class Identity(Record):
-    """Who asks: `id` is that of a session or token, which ends when it is revoked."""
+    """The identity of who asks: `id` is that of a session or token, which ends when it is revoked."""
 
     user: str
     role: UserRole
@@ -149,7 +149,9 @@ class Identity(Record):
 
 
 class Accounts:
-    """In a folder of the server. From any thread and several processes at once; methods raise StoreError (BT195).
+    """The accounts of a server, in a folder.
+
+    They may be used from any thread and by several processes at once; methods raise StoreError (BT195).
 
     `changed` is called after a change that may end somebody's access. `clock` gives seconds since 1970.
     """
@@ -167,19 +169,19 @@ class Accounts:
         self._changed, self._clock = changed, clock
 
     def close(self) -> None:
-        """Ends its connections."""
+        """End its connections."""
         self.database.close()
 
     def users(self) -> list[User]:
-        """All, by name."""
+        """Return all users, by name."""
         return self._all(User, "user", "1 = 1 ORDER BY name")
 
     def user(self, name: str) -> User | None:
-        """None if there is no such user."""
+        """Return a user; None if there is no such user."""
         return self._one(User, "user", "name = ?", name)
 
     def add(self, name: str, role: UserRole, password: str) -> User:
-        """A new user with the hash of a password. Raises MissionError (BT187) if there is one of that name."""
+        """Add a user with the hash of a password. Raises MissionError (BT187) if there is one of that name."""
         added = User(name, role, password, self._clock())
         with self.database.transaction(Mode.ALONE) as execute:
             if execute("SELECT 1 FROM user WHERE name = ?", (name,)):
@@ -188,19 +190,25 @@ class Accounts:
         return added
 
     def set_password(self, name: str, password: str) -> None:
-        """Another hash; whoever is logged in with the password before is no longer. Raises MissionError (BT187)."""
+        """Set another hash; whoever is logged in with the password before is logged out.
+
+        Raises MissionError (BT187).
+        """
         self._change(name, "UPDATE user SET password = ? WHERE name = ? RETURNING name", password)
         self.log_out(name)
 
     def set_role(self, name: str, role: UserRole) -> None:
-        """Raises MissionError (BT187), also for the last administrator."""
+        """Set the role of a user. Raises MissionError (BT187), also for the last administrator."""
         if role is not UserRole.ADMINISTRATOR:
             self._keep_an_administrator(name)
         self._change(name, "UPDATE user SET role = ? WHERE name = ? RETURNING name", role.value)
         self._changed()
 
     def remove(self, name: str) -> None:
-        """Ends all that a user has. Raises MissionError (BT187), also for the last administrator."""
+        """Remove a user, and end all sessions and tokens.
+
+        Raises MissionError (BT187), also for the last administrator.
+        """
         self._keep_an_administrator(name)
         self._change(name, "DELETE FROM user WHERE name = ? RETURNING name")
         with self.database.transaction() as execute:
@@ -208,7 +216,7 @@ class Accounts:
         self.log_out(name)
 
     def log_in(self, user: str, address: str) -> str:
-        """Begins a session; returns what its cookie has."""
+        """Begin a session; return what its cookie has."""
         secret, now = secrets.token_urlsafe(32), self._clock()
         with self.database.transaction() as execute:
             execute("DELETE FROM session WHERE used < ? OR created < ?", (now - IDLE, now - LONGEST))
@@ -216,13 +224,13 @@ class Accounts:
         return secret
 
     def log_out(self, user: str, id: str = "") -> None:
-        """Ends a session of a user, or all."""
+        """End a session of a user, or all."""
         with self.database.transaction() as execute:
             execute("DELETE FROM session WHERE user = ? AND (id = ? OR ? = '')", (user, id, id))
         self._changed()
 
     def add_token(self, user: str, name: str) -> str:
-        """Makes a token; returns what a program sends. Raises MissionError (BT187): no such user, or a name in use."""
+        """Make a token; return what a program sends. Raises MissionError (BT187): no such user, or a name in use."""
         if self.user(user) is None:
             raise refusal_error(f"The user '{user}'", "isn't known")
         secret = _TOKEN + secrets.token_urlsafe(32)
@@ -233,18 +241,18 @@ class Accounts:
         return secret
 
     def tokens(self, user: str) -> list[AccessToken]:
-        """Those of a user, by name."""
+        """Return the tokens of a user, by name."""
         return self._all(AccessToken, "token", "user = ? ORDER BY name", user)
 
     def revoke(self, user: str, name: str) -> None:
-        """Ends a token. Raises MissionError (BT187)."""
+        """End a token. Raises MissionError (BT187)."""
         with self.database.transaction() as execute:
             if not execute("DELETE FROM token WHERE user = ? AND name = ? RETURNING name", (user, name)):
                 raise refusal_error(f"The token '{name}' of '{user}'", "isn't known")
         self._changed()
 
     def identity(self, secret: str) -> Identity | None:
-        """Who brings a secret, of a cookie or of a program; None for nobody."""
+        """Return who brings a secret, of a cookie or of a program; None for nobody."""
         now, id = self._clock(), hash_secret(secret)
         if secret.startswith(_TOKEN):
             token = self._one(AccessToken, "token", "id = ?", id)
@@ -261,31 +269,34 @@ class Accounts:
         return self._identified(login.user, id, is_session=True)
 
     def still(self, identity: Identity) -> Identity | None:
-        """The same one as it is now, perhaps with another role; None if it was revoked."""
+        """Return the same identity as it is now, perhaps with another role; None if it was revoked."""
         table = "session" if identity.is_session else "token"
         with self.database.transaction(Mode.READ) as execute:
             found = execute(f"SELECT 1 FROM {table} WHERE id = ?", (identity.id,))
         return self._identified(identity.user, identity.id, is_session=identity.is_session) if found else None
 
     def log(self, user: str, address: str, what: str, outcome: str) -> None:
-        """Adds to the trail, from which the oldest entries go: who tries again and again can't fill the disk."""
+        """Add to the trail, from which the oldest entries go: who tries again and again can't fill the disk."""
         with self.database.transaction() as execute:
             insert(execute, "entry", TrailEntry(self._clock(), user, address, what, outcome))
             execute("DELETE FROM entry WHERE number <= (SELECT max(number) FROM entry) - ?", (MOST_ENTRIES,))
 
     def entries(self, limit: int = 100) -> list[TrailEntry]:
-        """The trail, the newest first."""
+        """Return the trail, the newest first."""
         return self._all(TrailEntry, "entry", "1 = 1 ORDER BY number DESC LIMIT ?", limit)
 
     def backup(self, path: str) -> None:
-        """Writes all but the sessions into a new SQLite file for its owner alone, as it is at one moment. Raises
-        StoreError, also if there's such a file already.
+        """Write all but the sessions into a new SQLite file for its owner alone, as it is at one moment.
+
+        Raises StoreError, also if there's such a file already.
         """
         write_backup(self.database, path, _STEPS, _NOT_COPIED)
 
     def restore(self, path: str) -> None:
-        """Takes over what `backup` wrote, also that of an older btlang. Raises MissionError (BT196) if it's that of a
-        newer one, and StoreError if there are users here or the file is no backup; then nothing is changed.
+        """Take over what `backup` wrote, also that of an older btlang.
+
+        Raises MissionError (BT196) if it's that of a newer one, and StoreError if there are users here or the file is
+        no backup; then nothing is changed.
         """
         fill_from_backup(self.database, path, _STEPS, _NOT_COPIED)
         self._changed()
@@ -323,5 +334,5 @@ class Accounts:
 
 
 def hash_secret(secret: str) -> str:
-    """Fast, since nobody guesses 256 random bits."""
+    """Hash a secret fast: nobody guesses 256 random bits."""
     return hashlib.sha256(secret.encode("utf-8", "surrogatepass")).hexdigest()

@@ -33,7 +33,7 @@ _DAYS, _RENEWED = 365, 30  # days that one is valid, and before its end when it 
 
 
 class Certificate(Record):
-    """Paths of PEM files, and the SHA-256 of the certificate as people compare it."""
+    """A certificate: paths of PEM files, and the SHA-256 as people compare it."""
 
     certificate: str
     key: str
@@ -41,7 +41,8 @@ class Certificate(Record):
 
 
 def load_certificate(folder: str, host: str, now: datetime | None = None) -> Certificate:
-    """That of a folder: the one that is there, if it is for this host and not about to end. Raises OSError.
+    """Load the certificate of a folder, or make one: the one that is there, if it is for this host and not about to
+    end. Raises OSError.
 
     The key stays the same when it is renewed, so that whoever pinned it needs nothing new.
     """
@@ -56,23 +57,25 @@ def load_certificate(folder: str, host: str, now: datetime | None = None) -> Cer
 
 
 def fingerprint_of(path: str) -> str:
-    """That of the first certificate in a PEM file. Raises OSError or ValueError."""
+    """Return the fingerprint of the first certificate in a PEM file. Raises OSError or ValueError."""
     with open(path, "rb") as file:
         return fingerprint(x509.load_pem_x509_certificate(file.read()))
 
 
 def fingerprint(certificate: x509.Certificate) -> str:
-    """Its SHA-256, as pairs of digits."""
+    """Return the SHA-256 of a certificate, as pairs of digits."""
     return certificate.fingerprint(hashes.SHA256()).hex(":").upper()
 
 
 def pin(certificate: bytes) -> bytes:
-    """What robots know a server by: the SHA-256 of the public key in its certificate (DER), which outlives that."""
+    """Return what robots know a server by: the SHA-256 of the public key in its certificate (DER), which outlives
+    that.
+    """
     return _pin(x509.load_der_x509_certificate(certificate))
 
 
 def pin_of(path: str) -> bytes:
-    """That of the first certificate in a PEM file. Raises OSError or ValueError."""
+    """Return the pin of the first certificate in a PEM file. Raises OSError or ValueError."""
     with open(path, "rb") as file:
         return _pin(x509.load_pem_x509_certificate(file.read()))
 
@@ -110,7 +113,7 @@ def _is_for(certificate: x509.Certificate, host: str) -> bool:
 
 
 def _names(host: str) -> list[x509.GeneralName]:
-    """Of this computer, and the one under which the server listens as the last one."""
+    """Return the names of this computer, and the one under which the server listens as the last one."""
     names: list[x509.GeneralName] = [x509.DNSName("localhost"), x509.IPAddress(ipaddress.ip_address("127.0.0.1"))]
     names += [x509.IPAddress(ipaddress.ip_address("::1"))]
     with suppress(ValueError):

@@ -37,12 +37,12 @@ def _nobody() -> str:
 
 
 def hash_password(password: str) -> str:
-    """The hash to keep. Takes some hundredths of a second."""
+    """Return the hash to keep. Takes some hundredths of a second."""
     return _hasher().hash(password.encode("utf-8", "surrogatepass"))
 
 
 def fits(password: str, kept: str) -> bool:
-    """Whether it is the password of a hash."""
+    """Return whether it is the password of a hash."""
     from argon2.exceptions import InvalidHashError, VerificationError
 
     try:
@@ -52,31 +52,31 @@ def fits(password: str, kept: str) -> bool:
 
 
 def problem(password: str, name: str) -> str:
-    """Why it can't be the password of a user, "" if it can."""
+    """Return why it can't be the password of a user, "" if it can."""
     if not SHORTEST <= len(password) <= LONGEST:
         return f"it must have from {SHORTEST} to {LONGEST} characters"
     return "it must not be the name" if password.casefold() == name.casefold() else ""
 
 
 def random_password() -> str:
-    """One that nobody guesses, for people to type."""
+    """Make a password that nobody guesses, for people to type."""
     letters = "abcdefghijkmnpqrstuvwxyz23456789"  # none that look alike
     return "-".join("".join(secrets.choice(letters) for _ in range(5)) for _ in range(4))
 
 
 class BusyError(Exception):
-    """Too many people log in at once."""
+    """The error that too many people log in at once."""
 
 
 class Verifier:
-    """Compares passwords for an event loop. An unknown user takes as long as a known one."""
+    """A verifier of passwords for an event loop. An unknown user takes as long as a known one."""
 
     def __init__(self) -> None:
         self._threads = ThreadPoolExecutor(_AT_ONCE, "btlang passwords")
         self._waiting = 0
 
     async def fits(self, password: str, kept: str | None) -> bool:
-        """Whether it is the password of a hash; None for a user who isn't there. Raises BusyError."""
+        """Return whether it is the password of a hash; None for a user who isn't there. Raises BusyError."""
         if self._waiting >= _MOST_WAITING:
             raise BusyError
         self._waiting += 1
@@ -89,7 +89,7 @@ class Verifier:
         return same and kept is not None and len(password) <= LONGEST
 
     def close(self) -> None:
-        """Ends its threads."""
+        """End its threads."""
         self._threads.shutdown(cancel_futures=True)
 
 
@@ -101,7 +101,9 @@ _MOST_KNOWN = 10_000
 
 
 class Throttle:
-    """Counts wrong passwords in a row of one kind of thing. Each one after the first few doubles the time to wait.
+    """A counter of wrong passwords in a row, for one kind of thing.
+
+    Each one after the first few doubles the time to wait.
 
     It forgets who was wrong least recently when too many are known. `clock` gives seconds.
     """
@@ -111,7 +113,7 @@ class Throttle:
         self._wrong: OrderedDict[str, tuple[int, float]] = OrderedDict()  # how many, and when the last one was
 
     def wait(self, key: str) -> float:
-        """Seconds until somebody may try again, 0 if at once."""
+        """Return the seconds until somebody may try again, 0 if at once."""
         count, last = self._known(key)
         if count < FREE:
             return 0.0
@@ -119,7 +121,7 @@ class Throttle:
         return max(0.0, last + pause - self._clock())
 
     def wrong(self, key: str) -> None:
-        """Somebody was wrong."""
+        """Count that somebody was wrong."""
         count, _ = self._known(key)
         self._wrong[key] = (count + 1, self._clock())
         self._wrong.move_to_end(key)
@@ -127,13 +129,13 @@ class Throttle:
             self._wrong.popitem(last=False)
 
     def right(self, key: str) -> int:
-        """Somebody was right: counting starts again. Returns how many were wrong."""
+        """Count from zero again, as somebody was right. Returns how many were wrong."""
         count, _ = self._known(key)
         self._wrong.pop(key, None)
         return count
 
     def forgive(self, key: str, count: int) -> None:
-        """So many wrong ones count no more."""
+        """Let so many wrong ones count no more."""
         if key in self._wrong:
             known, last = self._wrong[key]
             self._wrong[key] = (max(0, known - count), last)

@@ -42,7 +42,9 @@ _REFUSED = 2
 
 
 class DialerSettings(Record):
-    """`robot` is the name on this computer, `kept` the path of a file for the key; `code` may be ""."""
+    """The settings of a dialer: `robot` is the name on this computer, `kept` the path of a file for the key; `code` may
+    be "".
+    """
 
     robot: str
     address: str
@@ -51,7 +53,7 @@ class DialerSettings(Record):
 
 
 class Key(Record):
-    """What makes a robot known to a server: `pin` is in hexadecimal digits, `code` the one it was made with."""
+    """A key that makes a robot known to a server: `pin` is in hexadecimal digits, `code` the one it was made with."""
 
     pin: str
     key: str
@@ -59,11 +61,14 @@ class Key(Record):
 
 
 class RefusedError(Exception):
-    """Trying again won't help; the reason, in words."""
+    """A refusal after which trying again won't help; the reason, in words."""
 
 
 def key_for(settings: DialerSettings) -> Key:
-    """The one that was kept, or a new one for a new code, kept before it is used. Raises RefusedError and OSError."""
+    """Return the one that was kept, or a new one for a new code, kept before it is used.
+
+    Raises RefusedError and OSError.
+    """
     known = _kept(settings.kept)
     if known is not None and settings.code in ("", known.code):
         return known
@@ -84,7 +89,7 @@ def _kept(path: str) -> Key | None:
 
 
 class Dialer:
-    """Keeps one connection to a server. `report` gets each change of its state, as a line."""
+    """A program that keeps one connection to a server. `report` gets each change of its state, as a line."""
 
     def __init__(self, settings: DialerSettings, key: Key, report: Callable[[str], object]) -> None:
         self._settings, self._key, self._report = settings, key, report
@@ -97,7 +102,7 @@ class Dialer:
         self._watching: dict[int, asyncio.Task[None]] = {}
 
     async def dial(self) -> None:
-        """Until it is cancelled. Raises RefusedError if the server doesn't want it."""
+        """Keep the connection until cancelled. Raises RefusedError if the server doesn't want it."""
         wait, problem = _FIRST, ""
         while True:
             try:
@@ -110,7 +115,7 @@ class Dialer:
             wait = min(2 * wait, _LONGEST)
 
     async def _talk(self) -> None:
-        """One connection, until it ends."""
+        """Serve one connection, until it ends."""
         async with connect(f"{self._settings.address}/api/join", ssl=_tls()) as connection:
             self._check_pin(connection)
             join = {"type": "join", "key": self._key.key, "code": self._key.code, "instance": self._instance}
@@ -133,7 +138,7 @@ class Dialer:
         self._report(f"The connection to {self._settings.address} broke.")
 
     def _check_pin(self, connection: ClientConnection) -> None:
-        """Nothing secret was sent until now."""
+        """Check the server's key before anything secret is sent."""
         channel = connection.transport.get_extra_info("ssl_object")
         if pin(channel.getpeercert(binary_form=True)).hex() != self._key.pin:
             raise ConnectionError("its certificate isn't that of the server which invited this robot; nothing was sent")
@@ -175,7 +180,7 @@ class Dialer:
         await self._send(answer)
 
     async def _read(self, id: str, message: dict[str, Any]) -> None:
-        """Which recordings the robot has, or a piece of one: only files that are in its folder by their names."""
+        """Send which recordings the robot has, or a piece of one: only files that are in its folder by their names."""
         answer: dict[str, Any] = {}
         try:
             if message["type"] == "recordings" or self._folder is None:
@@ -193,7 +198,7 @@ class Dialer:
         await self._send({"id": id, "answer": answer})
 
     async def _recordings(self) -> str:
-        """The folder of the recordings, "" if the robot makes none."""
+        """Return the folder of the recordings, "" if the robot makes none."""
         async with asyncio.timeout(_PATIENCE), self._sockets.watching({"rate": 1.0}) as reader:
             return str(json.loads(await reader.readline())["recordings"])
 
@@ -205,7 +210,7 @@ class Dialer:
             await self._send({"id": id})
 
     async def _forward_all(self, stream: int, request: dict[str, Any]) -> None:
-        """What happens on the robot, as fast as the connection takes it."""
+        """Forward what happens on the robot, as fast as the connection takes it."""
         number = stream.to_bytes(STREAM, "big")
         with suppress(OSError, WebSocketException):
             async with self._sockets.watching(request) as reader:
@@ -227,7 +232,7 @@ def _tls() -> ssl.SSLContext:
 
 
 def main() -> int:
-    """Until standard input ends; returns the exit code if the server doesn't want the robot."""
+    """Dial until standard input ends; return the exit code if the server doesn't want the robot."""
     settings = DialerSettings(**json.loads(sys.stdin.readline()))
     threading.Thread(target=_end_with_robot, daemon=True).start()
     try:

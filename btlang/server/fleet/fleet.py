@@ -23,7 +23,10 @@ _BEGIN, _SECRET, _PIN = "btr_", 16, 32  # of a code; the bytes in it
 
 
 class FleetRobot(Record):
-    """`code` and `key` are hashes of what it sends, `key` is "" until it joins. Times are in seconds since 1970."""
+    """A robot of another computer.
+
+    `code` and `key` are hashes of what it sends, `key` is "" until it joins. Times are in seconds since 1970.
+    """
 
     name: str
     code: str
@@ -33,7 +36,9 @@ class FleetRobot(Record):
 
 
 class Fleet:
-    """In the database of the accounts. From any thread and several processes; methods raise StoreError (BT195).
+    """The robots that may join, in the database of the accounts.
+
+    Usable from any thread and several processes; methods raise StoreError (BT195).
 
     `changed` is called after a robot was invited or revoked.
     """
@@ -44,7 +49,7 @@ class Fleet:
         self._database, self._changed, self._clock = database, changed, clock
 
     def robots(self) -> list[FleetRobot]:
-        """All that were invited, by name."""
+        """Return all robots that were invited, by name."""
         return self._found("1 = 1 ORDER BY name")
 
     def invite(self, name: str, pin: bytes) -> str:
@@ -61,15 +66,16 @@ class Fleet:
         return code
 
     def revoke(self, name: str) -> None:
-        """Its key is good no longer. Raises MissionError (BT187)."""
+        """Revoke the key of a robot. Raises MissionError (BT187)."""
         with self._database.transaction() as execute:
             if not execute("DELETE FROM robot WHERE name = ? RETURNING name", (name,)):
                 raise refusal_error(f"The robot '{name}'", "isn't known")
         self._changed()
 
     def admitted(self, key: str, code: str) -> FleetRobot | None:
-        """Whose key it is; that of a good code becomes known. None for nobody's. The same again is no second use, since
-        the first answer may have been lost.
+        """Return the robot whose key it is, None for nobody's; that of a good code becomes known.
+
+        The same again is no second use, since the first answer may have been lost.
         """
         known = self._found("key = ?", hash_secret(key))
         if known:
@@ -83,7 +89,7 @@ class Fleet:
         return joined[0] if joined else None
 
     def saw(self, name: str) -> None:
-        """It is here now."""
+        """Note that a robot is here now."""
         with self._database.transaction() as execute:
             execute("UPDATE robot SET seen = ? WHERE name = ?", (self._clock(), name))
 
@@ -94,7 +100,7 @@ class Fleet:
 
 
 def pin_in(code: str) -> bytes:
-    """That of the server which made a code. Raises ValueError if it isn't one."""
+    """Return the pin of the server which made a code. Raises ValueError if it isn't one."""
     data = base64.b64decode(code.removeprefix(_BEGIN), altchars=b"-_", validate=True)
     if len(data) != _SECRET + _PIN:
         raise ValueError("a code is longer, or shorter")

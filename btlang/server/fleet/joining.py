@@ -71,7 +71,10 @@ class Dialed:
                 await self._send({"type": "watch", "stream": number, "request": None})
 
     async def serve(self, socket: WebSocket, instance: str) -> None:
-        """As long as the robot is here. A newer socket takes over from an older one, whose other end may be gone."""
+        """Serve the robot as long as it is here.
+
+        A newer socket takes over from an older one, whose other end may be gone.
+        """
         before, self.socket = self.socket, socket
         if before is not None:
             self._closing = asyncio.create_task(_close(before, FORBIDDEN))
@@ -90,7 +93,7 @@ class Dialed:
                     reader.feed_eof()
 
     async def _settle(self, instance: str) -> None:
-        """What was under way when the connection broke."""
+        """Settle what was under way when the connection broke."""
         if instance != self._instance:
             self._instance = instance
             self._lose("command")  # it may have been done: who knew that is gone
@@ -158,7 +161,7 @@ class Joins:
         self._throttle = Throttle()  # of the trail: nobody guesses a code
 
     async def check(self) -> None:
-        """Looks again which robots may be here; the sockets of others are closed."""
+        """Look again which robots may be here; the sockets of others are closed."""
         try:
             now = {robot.name: robot for robot in await asyncio.to_thread(self._fleet.robots)}
         except MissionError:
@@ -178,7 +181,7 @@ class Joins:
                 self._robots.add(RobotFeed(name, way, robot.seen))
 
     async def serve(self, socket: WebSocket) -> None:
-        """One robot that dials in, until it is gone."""
+        """Serve one robot that dials in, until it is gone."""
         address = address_of(socket)
         await socket.accept()
         with suppress(WebSocketDisconnect, RuntimeError, OSError):

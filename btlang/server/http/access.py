@@ -34,7 +34,7 @@ _MOST_KNOWN = 2000
 
 
 class AccessError(Exception):
-    """Nobody comes in: the HTTP status, a reason in words, and the seconds to wait before the next try."""
+    """A refusal: the HTTP status, a reason in words, and the seconds to wait before the next try."""
 
     def __init__(self, status: int, reason: str, wait: float = 0.0) -> None:
         super().__init__(reason)
@@ -42,7 +42,9 @@ class AccessError(Exception):
 
 
 class Access:
-    """Decides by the accounts. `key` signs CSRF tokens. `cookie` is the name of the cookie of sessions.
+    """The access of requests, decided by the accounts.
+
+    `key` signs CSRF tokens. `cookie` is the name of the cookie of sessions.
 
     The disk is only touched in threads, and not for somebody who was here a moment ago: it may be slow, and everybody
     may stop the robot at any time.
@@ -58,7 +60,10 @@ class Access:
         self._by_account, self._by_address, self._by_both = Throttle(clock), Throttle(clock), Throttle(clock)
 
     async def log_in(self, name: str, password: str, address: str) -> tuple[Identity, str]:
-        """Who it is, and the secret for a cookie. Raises AccessError, an unknown user's after as long as others."""
+        """Log a user in; return who it is, and the secret for a cookie.
+
+        Raises AccessError, an unknown user's after as long as others.
+        """
         both = f"{address} {name}"
         wait = max(self._by_account.wait(name), self._by_address.wait(address))
         if wait:
@@ -85,17 +90,17 @@ class Access:
         return identity, secret
 
     async def note(self, user: str, address: str, what: str, outcome: str) -> None:
-        """Adds to the trail, as soon as the disk takes it."""
+        """Add to the trail, as soon as the disk takes it."""
         with suppress(MissionError):
             await asyncio.to_thread(self.accounts.log, user, address, what, outcome)
 
     def forget(self) -> None:
-        """Something has changed: everybody is looked up again."""
+        """Look everybody up again: something has changed."""
         self._known.clear()
 
     async def identify(self, headers: Mapping[str, str], *, changes: bool) -> Identity:
-        """Who sends a request: by a token (Authorization: Bearer) or a cookie; with a cookie, what `changes` anything
-        needs the CSRF token too. Raises AccessError (401, 403).
+        """Identify who sends a request: by a token (Authorization: Bearer) or a cookie; with a cookie, what `changes`
+        anything needs the CSRF token too. Raises AccessError (401, 403).
         """
         kind, _, token = headers.get("authorization", "").partition(" ")
         if kind:
@@ -111,16 +116,16 @@ class Access:
         return identity
 
     async def by_token(self, token: str) -> Identity | None:
-        """Who brings a token, None for nobody."""
+        """Return who brings a token, None for nobody."""
         identity = await self._identity(token)
         return None if identity is None or identity.is_session else identity
 
     def csrf(self, identity: Identity) -> str:
-        """What a page sends with each request that changes something."""
+        """Return what a page sends with each request that changes something."""
         return self._signer.get_signature(identity.id).decode()
 
     def close(self) -> None:
-        """Ends its threads."""
+        """End its threads."""
         self._verifier.close()
 
     async def _identity(self, secret: str) -> Identity | None:
@@ -142,13 +147,13 @@ class Access:
 
 
 def is_same_site(headers: Mapping[str, str]) -> bool:
-    """Whether a browser sent a request from a page of this host. Programs send no Origin."""
+    """Return whether a browser sent a request from a page of this host. Programs send no Origin."""
     origin = headers.get("origin")
     return origin is None or (origin != "null" and urlsplit(origin).netloc == headers.get("host"))
 
 
 def address_of(connection: HTTPConnection) -> str:
-    """Where somebody is who sends a request, or has a socket."""
+    """Return where somebody is who sends a request, or has a socket."""
     return connection.client.host if connection.client is not None else ""
 
 
@@ -166,7 +171,7 @@ _PATIENCE = 15.0  # seconds for it
 
 
 class JsonResponse(Response):
-    """In ASCII: half a character of UTF-16, which a client may have sent, has no other encoding."""
+    """A response in ASCII: half a character of UTF-16, which a client may have sent, has no other encoding."""
 
     media_type = "application/json"
 
@@ -175,7 +180,7 @@ class JsonResponse(Response):
 
 
 async def json_object(request: Request) -> dict[str, Any]:
-    """The body, which has to be an object. Raises AccessError (400, 413, 415)."""
+    """Return the body, which has to be an object. Raises AccessError (400, 413, 415)."""
     if request.headers.get("content-encoding", "identity") != "identity":  # a few bytes may become gigabytes
         raise AccessError(415, "The body must not be compressed.")
     if request.headers.get("content-type", "").partition(";")[0].strip().casefold() != "application/json":
@@ -195,7 +200,7 @@ async def json_object(request: Request) -> dict[str, Any]:
 
 
 def read_object(text: bytes | str) -> dict[str, Any]:
-    """Raises AccessError (400)."""
+    """Raise AccessError (400)."""
     try:
         data = load_json(text)
     except ValueError:
@@ -206,7 +211,7 @@ def read_object(text: bytes | str) -> dict[str, Any]:
 
 
 def text_in(data: dict[str, Any], name: str) -> str:
-    """A field that has to be a text. Raises AccessError (400)."""
+    """Return a field that has to be a text. Raises AccessError (400)."""
     value = data.get(name)
     if not isinstance(value, str):
         raise AccessError(400, f"'{name}' must be a text.")

@@ -58,8 +58,10 @@ _HEADERS = {
 
 
 class Api:
-    """What the routes do. `ros` are the names of the ROS 2 graph that are allowed. Texts are read with `words`, if they
-    are given, in place of those of a robot.
+    """The API of the server: what its routes do.
+
+    `ros` are the names of the ROS 2 graph that are allowed. Texts are read with `words`, if they are given, in place of
+    those of a robot.
     """
 
     def __init__(
@@ -79,11 +81,11 @@ class Api:
         self.joins = Joins(Fleet(accounts.database), self.robots, self.access)
 
     def app(self) -> ASGIApp:
-        """The ASGI application."""
+        """Return the ASGI application."""
         return _Headers(Starlette(routes=self.routes(), lifespan=self._life, exception_handlers={404: _not_found}))
 
     def routes(self) -> list[BaseRoute]:
-        """All that it answers."""
+        """Return all routes."""
         return [
             self._route("/api/login", self._log_in, "POST"),
             self._route("/api/logout", self._log_out, "POST"),
@@ -113,12 +115,12 @@ class Api:
         ]
 
     async def check(self) -> None:
-        """The accounts have changed: who may no longer be here is sent away."""
+        """Send away who may no longer be here: the accounts have changed."""
         await self.sockets.check()
         await self.joins.check()
 
     async def send(self, identity: Identity, robot: str, command: Command, address: str) -> Answer:
-        """A command to a robot, by somebody who may. Raises AccessError."""
+        """Return a command to a robot, by somebody who may. Raises AccessError."""
         if not identity.role.covers(NEEDED[type(command)]):
             await self.access.note(identity.user, address, command.tag, "refused")
             raise AccessError(403, f"Only {NEEDED[type(command)]}s may do this.")
@@ -131,7 +133,7 @@ class Api:
             raise AccessError(503, str(error)) from None
 
     def link(self, robot: str) -> RobotFeed:
-        """Raises AccessError (404, 409) if there is no such robot, or several where none was named."""
+        """Raise AccessError (404, 409) if there is no such robot, or several where none was named."""
         link = self.robots.get(robot)
         if link is None and robot:
             raise AccessError(404, f"There's no robot '{robot}'.")
@@ -188,7 +190,7 @@ class Api:
 
     @property
     def _cookie(self) -> dict[str, Any]:
-        """Over plain HTTP, browsers take no cookie of the name that needs TLS."""
+        """Return the name of the cookie: over plain HTTP, browsers take none of the name that needs TLS."""
         name = self.access.cookie
         return {"key": name, "secure": name == COOKIE, "httponly": True, "samesite": "strict"}
 
@@ -266,7 +268,7 @@ class Api:
         return FileResponse(path, media_type="application/octet-stream")
 
     async def _shown(self, show: Callable[..., bytes], others: tuple[str, ...], request: Request) -> Response:
-        """What a page shows of a recording, and of the `others` that the query names."""
+        """Return what a page shows of a recording, and of the `others` that the query names."""
         link = await self._recorder(request)
         names = [request.path_params["name"], *(request.query_params.get(other, "") for other in others)]
         async with AsyncExitStack() as stack:
@@ -288,7 +290,7 @@ class Api:
             yield path
 
     async def _recorder(self, request: Request) -> RobotFeed:
-        """The robot whose recordings are asked for."""
+        """Return the robot whose recordings are asked for."""
         await self._who(request)
         link = self.link(request.query_params.get("robot", ""))
         if link.is_elsewhere and not link.is_up:
@@ -340,7 +342,9 @@ class Api:
 
 
 class _Headers:
-    """What every answer says to browsers, also one that went wrong; and how long the head of a request may be."""
+    """The middleware that adds headers to every answer, also to one that went wrong, and limits the head of a
+    request.
+    """
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app

@@ -33,7 +33,7 @@ _MOST_FRAME = 256 * 1024  # bytes
 
 
 class _Protocol(H11Protocol):
-    """Hangs up on who connects and says nothing: uvicorn would wait for ever."""
+    """A protocol that hangs up on who connects and says nothing: uvicorn would wait for ever."""
 
     def connection_made(self, transport: Any) -> None:
         super().connection_made(transport)
@@ -54,7 +54,7 @@ class _Protocol(H11Protocol):
 
 
 def open_listener(host: str, port: int) -> socket.socket:
-    """A socket that others can connect to. Raises MissionError (BT201)."""
+    """Open a socket that others can connect to. Raises MissionError (BT201)."""
     try:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
         door = socket.create_server((host, port), family=family, backlog=1024)
@@ -69,7 +69,10 @@ def open_listener(host: str, port: int) -> socket.socket:
 def serve(
     api: Api, door: socket.socket, certificate: Certificate | None, control: str, ready: Callable[[], object]
 ) -> None:
-    """Until SIGINT or SIGTERM. Whoever connects to the Unix socket `control` says that the accounts have changed."""
+    """Serve until SIGINT or SIGTERM.
+
+    Whoever connects to the Unix socket `control` says that the accounts have changed.
+    """
     asyncio.run(_serve(api, web_server(api, certificate), door, control, ready))
 
 
@@ -112,7 +115,7 @@ async def _serve(
 
 
 def tls(certificate: Certificate) -> ssl.SSLContext:
-    """TLS 1.2 and later. Raises OSError or ssl.SSLError for files that can't be used."""
+    """Make a context for TLS 1.2 and later. Raises OSError or ssl.SSLError for files that can't be used."""
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     context.minimum_version = ssl.TLSVersion.TLSv1_2
     # A client that reads in one thread and writes in another (websockets.sync) may lose its request to a ticket that
@@ -123,7 +126,7 @@ def tls(certificate: Certificate) -> ssl.SSLContext:
 
 
 def load_key(folder: str) -> str:
-    """A secret of the server, made when it is first asked for. Raises OSError."""
+    """Load a secret of the server, made when it is first asked for. Raises OSError."""
     path = os.path.join(folder, "secret.key")
     if not os.path.exists(path) or os.path.getsize(path) == 0:  # an empty one would be no secret
         write_private(path, secrets.token_hex(32).encode())

@@ -104,7 +104,7 @@ _OPEN = ("/api/login", "/live", "/ready", "/openapi.json")
 
 @cache
 def document() -> dict[str, Any]:
-    """OpenAPI 3.1."""
+    """Make the OpenAPI 3.1 document."""
     commands = {key: value for key, value in schema().items() if key != "$schema"}
     for each in commands["oneOf"]:
         each["properties"]["robot"] = _TEXT

@@ -23,7 +23,7 @@ _POLICY = (
 
 
 def page_routes(access: Access, built: Path = BUILT) -> list[BaseRoute]:
-    """Those that browsers ask for; who isn't logged in is led to the log-in."""
+    """Make the routes of pages that browsers ask for; who isn't logged in is led to the log-in."""
     is_built = (built / "index.html").is_file()
     folder, log_in = (built, "index.html") if is_built else (PLAIN, "login.html")
 
@@ -43,7 +43,7 @@ def page_routes(access: Access, built: Path = BUILT) -> list[BaseRoute]:
 
 
 class _HashedFiles(StaticFiles):
-    """Files with a hash in their names, so that browsers may keep them forever."""
+    """The files with a hash in their names, which browsers may keep forever."""
 
     async def get_response(self, path: str, scope: Scope) -> Response:
         response = await super().get_response(path, scope)
@@ -53,7 +53,7 @@ class _HashedFiles(StaticFiles):
 
 
 def _html(path: Path) -> Response:
-    """With a nonce, which lets the editor of the page add its styles."""
+    """Serve HTML with a nonce, which lets the editor of the page add its styles."""
     nonce = secrets.token_urlsafe(16)
     text = path.read_text(encoding="utf-8").replace("NONCE", nonce)
     return Response(text, media_type="text/html", headers={"content-security-policy": _POLICY.format(nonce=nonce)})

@@ -39,20 +39,23 @@ class RobotNews:
 
     @property
     def text(self) -> str:
-        """As JSON."""
+        """The message as JSON."""
         if not self._text:
             self._text = json.dumps({"robot": self.robot, **self.message}, separators=(",", ":"), default=str)
         return self._text
 
     def after(self, before: RobotNews) -> RobotNews:
-        """These statuses together with earlier ones of the same run, where these count."""
+        """Merge these statuses with earlier ones of the same run, where these count."""
         if self._merged is None or self._merged[0] is not before:
             self._merged = before, RobotNews(self.robot, merge_statuses(before.message, self.message))
         return self._merged[1]
 
 
 class ClientQueue:
-    """Used by one event loop. `put` never waits; `wait` waits until there is something to `take`."""
+    """A queue of what is on its way to one client, for one event loop.
+
+    `put` never waits; `wait` waits until there is something to `take`.
+    """
 
     def __init__(self) -> None:
         self._queue: deque[str] = deque()
@@ -66,7 +69,7 @@ class ClientQueue:
         self._news, self._answers, self._taken = asyncio.Event(), asyncio.Event(), asyncio.Event()
 
     def put(self, news: RobotNews) -> None:
-        """Adds a message of a robot."""
+        """Add a message of a robot."""
         kind = news.message["type"]
         if kind in _TOPIC and _TOPIC[kind] not in self.topics:
             return
@@ -83,14 +86,14 @@ class ClientQueue:
         self._news.set()
 
     def say(self, text: str) -> None:
-        """Adds an answer, which is never left out."""
+        """Add an answer, which is never left out."""
         self._queue.append(text)
         self._length += len(text)
         self._news.set()
         self._answers.set()
 
     def keep(self, topic: str, text: str, most: int) -> None:
-        """Adds a text of a topic. Its newest `most` texts wait; fewer, but at least one, if much waits already."""
+        """Add a text of a topic. Its newest `most` texts wait; fewer, but at least one, if much waits already."""
         waiting = self._topics.setdefault(topic, deque())
         while waiting and (len(waiting) >= most or self._length > _MUCH):
             self._length -= len(waiting.popleft())
@@ -99,28 +102,28 @@ class ClientQueue:
         self._news.set()
 
     async def wait(self) -> None:
-        """Until there is something."""
+        """Wait until there is something."""
         await self._news.wait()
 
     async def wait_for_answer(self, seconds: float) -> None:
-        """Until there is an answer, but no longer than that."""
+        """Wait until there is an answer, but no longer than that."""
         with suppress(TimeoutError):
             async with asyncio.timeout(seconds):
                 await self._answers.wait()
 
     async def wait_for_room(self) -> None:
-        """Until a client that asks for much has read most of what he got."""
+        """Wait until a client that asks for much has read most of what it got."""
         while not self._is_closed and (len(self._queue) > _MOST // 2 or self._length > _MUCH):
             self._taken.clear()
             await self._taken.wait()
 
     def close(self) -> None:
-        """Nobody reads any more: so nobody waits for room, and what was asked before is still done."""
+        """Let nobody wait for room any more, as nobody reads; what was asked before is still done."""
         self._is_closed = True
         self._taken.set()
 
     def take(self) -> list[str]:
-        """What there is, in the order of its coming; statuses come last, each the newest."""
+        """Take what there is, in the order of its coming; statuses come last, each the newest."""
         self._news.clear()
         self._answers.clear()
         for robot in tuple(self._statuses):
@@ -149,7 +152,7 @@ class ClientQueue:
         self._statuses[news.robot] = news.after(before) if before is not None and same else news
 
     def _settle(self, robot: str, *, is_up: bool) -> None:
-        """States come before the news that their robot is away, and those from before it came up count no more."""
+        """Put states before the news that their robot is away; those from before it came up count no more."""
         for key in [key for key in self._states if key[0] == robot]:
             state = self._states.pop(key)
             if not is_up:

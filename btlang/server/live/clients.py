@@ -32,8 +32,9 @@ _PAUSE = 0.2  # seconds between two lists of people
 
 
 class PageView(Record):
-    """What a page shows. `mission` is the name of the one that is open, "" for none; `is_changing` says that it isn't
-    saved.
+    """The view of a page.
+
+    `mission` is the name of the one that is open, "" for none; `is_changing` says that it isn't saved.
     """
 
     robot: str
@@ -43,7 +44,10 @@ class PageView(Record):
 
 
 class PagePresence:
-    """In one event loop. All pages that say what they show are sent the list of people whenever it changes."""
+    """The people who are here, for one event loop.
+
+    All pages that say what they show get the list whenever it changes.
+    """
 
     def __init__(self) -> None:
         self._pages: dict[ConnectedClient, tuple[int, PageView]] = {}
@@ -51,7 +55,7 @@ class PagePresence:
         self._sending: asyncio.TimerHandle | None = None
 
     def show(self, visitor: ConnectedClient, data: dict[str, Any]) -> int:
-        """A page shows something else. Returns its number in the list. Raises AccessError (400, 403, 429)."""
+        """Note that a page shows something else. Returns its number in the list. Raises AccessError (400, 403, 429)."""
         if not visitor.identity.is_session:
             raise AccessError(403, "Only pages say what they show: a program isn't a person.")
         place = _place_in(data)
@@ -65,7 +69,7 @@ class PagePresence:
         return number
 
     def leave(self, visitor: ConnectedClient) -> None:
-        """The socket of a page has ended."""
+        """Forget a page whose socket has ended."""
         if self._pages.pop(visitor, None) is not None:
             self._changed()
 
@@ -109,7 +113,7 @@ _MOST_AT_ONCE = 8  # commands of a client that wait for their answers
 
 
 class ClientProtocol:
-    """A `btlang.server.live.sockets.Subprotocol`. `do` does a command of somebody for a robot."""
+    """The subprotocol of clients (see Subprotocol). `do` does a command of somebody for a robot."""
 
     def __init__(self, robots: RobotFeeds, do: Do) -> None:
         self.greeting: dict[str, Any] | None = {"type": "auth_required"}
@@ -175,8 +179,8 @@ class ClientProtocol:
         return answer.as_json()
 
     def _subscribe(self, visitor: ConnectedClient, data: dict[str, Any]) -> dict[str, Any]:
-        """{"robots": [...], "topics": [...], "rate": N, "after": {...}}: by default all that all robots publish, at
-        their rate, and only what comes from now on.
+        """Subscribe to {"robots": [...], "topics": [...], "rate": N, "after": {...}}: by default all that all robots
+        publish, at their rate, and only what comes from now on.
         """
         robots, rate, after = data.get("robots"), data.get("rate", 0), data.get("after", {})
         topics = data.get("topics", list(TOPICS))

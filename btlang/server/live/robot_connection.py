@@ -15,22 +15,22 @@ if TYPE_CHECKING:
     from typing import Any, Protocol
 
     class RobotConnection(Protocol):
-        """A way to a robot. What it raises is an OSError, or a TimeoutError; who calls has his own patience."""
+        """A connection to a robot. What it raises is an OSError, or a TimeoutError; who calls sets the time to wait."""
 
         async def ask(self, message: dict[str, Any]) -> Any:
-            """Its answer to a command in JSON."""
+            """Send a command in JSON; return the answer."""
 
         async def stop(self) -> None:
-            """The emergency stop; when it returns the robot has it."""
+            """Send the emergency stop; when it returns, the robot has it."""
 
         def watching(self, request: dict[str, Any]) -> AbstractAsyncContextManager[asyncio.StreamReader]:
-            """What happens (btlang.task.live.feed), a line of JSON each."""
+            """Give what happens (see task/live/feed.py), a line of JSON each."""
 
     class RemoteConnection(RobotConnection, Protocol):
-        """A way to a robot of another computer."""
+        """A connection to a robot of another computer."""
 
         async def read(self, message: dict[str, Any]) -> Any:
-            """What the program beside the robot says of its recordings: see `btlang.server.fleet.dialer`."""
+            """Return what the program beside the robot says of its recordings: see server/fleet/dialer.py."""
 
 
 LONGEST = 32_000_000
@@ -40,7 +40,7 @@ STREAM = 4
 
 
 class LocalConnection:
-    """The way to a robot of this computer."""
+    """A connection to a robot of this computer, over its Unix sockets."""
 
     def __init__(self, name: str) -> None:
         self._name = name

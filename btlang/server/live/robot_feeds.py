@@ -32,7 +32,10 @@ RATE = 20.0
 
 
 class RobotFeed:
-    """One robot. In one event loop. `reach` is the way to it, over the sockets of this computer if it isn't given."""
+    """The feed of one robot, for one event loop.
+
+    `connection` leads to it, over the sockets of this computer by default.
+    """
 
     def __init__(self, name: str, reach: RemoteConnection | None = None, seen: float | None = None) -> None:
         self.name = name
@@ -53,21 +56,21 @@ class RobotFeed:
 
     @property
     def is_up(self) -> bool:
-        """Whether it can be spoken to."""
+        """Return whether it can be spoken to."""
         return self._up.is_set()
 
     @property
     def is_watched(self) -> bool:
-        """Whether a client gets its updates."""
+        """Return whether a client gets its updates."""
         return bool(self._outlets)
 
     @property
     def latest(self) -> dict[str, Any]:
-        """What is known of the robot itself: pose, battery, what keeps it from working."""
+        """The latest state of the robot itself: pose, battery, what keeps it from working."""
         return self._view.states.get("robot", {})
 
     async def send(self, command: Command, person: str) -> Answer:
-        """What it answers. Raises ConnectionError if it isn't up, or doesn't answer."""
+        """Send a command; return the answer. Raises ConnectionError if the robot isn't up, or doesn't answer."""
         try:
             async with asyncio.timeout(_PATIENCE):
                 answer = await self._reach.ask({**as_json(command), "as": person})
@@ -77,7 +80,10 @@ class RobotFeed:
             raise ConnectionError(text) from error
 
     async def read(self, message: dict[str, Any]) -> Any:
-        """What a robot elsewhere says of its recordings, also if the link breaks meanwhile. Raises ConnectionError."""
+        """Return what a robot elsewhere says of its recordings, also if the link breaks meanwhile.
+
+        Raises ConnectionError.
+        """
         text = f"The robot '{self.name}' isn't up, or doesn't send its recordings."
         if self._elsewhere is None:
             raise ConnectionError(text)
@@ -88,7 +94,10 @@ class RobotFeed:
             raise ConnectionError(text) from error
 
     async def stop(self) -> None:
-        """The emergency stop, past all commands. Raises ConnectionError if the robot doesn't say that it has it."""
+        """Send the emergency stop, past all commands.
+
+        Raises ConnectionError if the robot doesn't say that it has it.
+        """
         try:
             async with asyncio.timeout(_STOPPED):
                 await self._reach.stop()
@@ -97,8 +106,9 @@ class RobotFeed:
             raise ConnectionError(text) from error
 
     def add(self, outlet: ClientQueue, after: int | None = None) -> None:
-        """Adds a client that gets the present state, then all updates. One that was here before first gets the changes
-        of tasks `after` the last one that it knows.
+        """Add a client that gets the present state, then all updates.
+
+        One that was here before first gets the changes of tasks `after` the last one that it knows.
         """
         for message in self._view.messages():
             outlet.put(RobotNews(self.name, message))
@@ -107,14 +117,14 @@ class RobotFeed:
             self._catching_up[outlet] = asyncio.create_task(self._catch_up(outlet, after))
 
     def discard(self, outlet: ClientQueue) -> None:
-        """Removes a client: it gets no more updates."""
+        """Remove a client: it gets no more updates."""
         self._outlets.discard(outlet)
         catching_up = self._catching_up.pop(outlet, None)
         if catching_up is not None:
             catching_up.cancel()
 
     async def follow(self) -> None:
-        """Reads what happens, until it is cancelled; goes on after the last change when the robot is up again."""
+        """Read what happens, until it is cancelled; goes on after the last change when the robot is up again."""
         while True:
             with suppress(*_BROKEN):
                 async with aclosing(self._messages(self._view.change)) as messages:
@@ -124,13 +134,13 @@ class RobotFeed:
             await asyncio.sleep(_AGAIN)
 
     def leave(self) -> None:
-        """It is no longer up."""
+        """Mark the robot as no longer up."""
         if self.is_up:
             self._up.clear()
             self._publish({"type": "away"})
 
     async def _messages(self, after: int | None) -> AsyncGenerator[dict[str, Any]]:
-        """What the robot sends to a watcher, until it ends."""
+        """Yield what the robot sends to a watcher, until it ends."""
         async with self._reach.watching({"rate": RATE, "after": after}) as reader:
             while True:
                 async with asyncio.timeout(_SILENT):  # which, unlike wait_for, takes all that is there in one go
@@ -140,7 +150,7 @@ class RobotFeed:
                 yield json.loads(line)
 
     async def _catch_up(self, outlet: ClientQueue, after: int) -> None:
-        """Sends a client the changes after one, until it has all that were sent to others."""
+        """Send a client the changes after one, until it has all that were sent to others."""
         while True:
             await self._up.wait()
             latest = self._view.change or 0
@@ -155,7 +165,7 @@ class RobotFeed:
         del self._catching_up[outlet]
 
     async def _page(self, outlet: ClientQueue, after: int) -> tuple[int, bool]:
-        """Sends a client some changes after one; returns the number of the last, and whether others have no more."""
+        """Send a client some changes after one; return the number of the last, and whether others have no more."""
         end = after + _PAGE
         with suppress(*_BROKEN):
             async with aclosing(self._messages(after)) as messages:
@@ -192,7 +202,7 @@ class RobotFeed:
 
 
 class RobotFeeds:
-    """All that are up on this computer, as long as `follow` goes on, and those that joined.
+    """The feeds of all robots that are up on this computer, as long as `follow` goes on, and of those that joined.
 
     `came` is called with one that is new.
     """
@@ -203,31 +213,31 @@ class RobotFeeds:
         self._following: dict[str, asyncio.Task[None]] = {}
 
     def get(self, name: str) -> RobotFeed | None:
-        """That of a name; "" for the only one that is up."""
+        """Return the feed of a name; "" for the only one that is up."""
         if name:
             return self.links.get(name)
         up = [link for link in self.links.values() if link.is_up]
         return up[0] if len(up) == 1 else None
 
     def add(self, link: RobotFeed) -> None:
-        """Follows a robot from now on."""
+        """Follow a robot from now on."""
         self.links[link.name] = link
         self._following[link.name] = asyncio.create_task(link.follow())
         self.came(link)
 
     def remove(self, name: str) -> None:
-        """There is no such robot any more."""
+        """Remove a robot that is no longer there."""
         self._following.pop(name).cancel()
         self.links.pop(name).leave()
 
     def look(self) -> None:
-        """Adds the robots that are up on this computer."""
+        """Add the robots that are up on this computer."""
         for name in names_up():
             if name not in self.links:
                 self.add(RobotFeed(name))
 
     async def follow(self) -> None:
-        """Looks for robots again and again, until it is cancelled."""
+        """Look for robots again and again, until it is cancelled."""
         try:
             while True:
                 self.look()
@@ -238,7 +248,7 @@ class RobotFeeds:
 
 
 def metrics(links: Iterable[RobotFeed], clients: int) -> str:
-    """Those of the robots, and how many sockets are open."""
+    """Write the figures of the robots, and how many sockets are open."""
     rows: list[tuple[str, str, str, float]] = []
     for link in links:
         known = link.latest

@@ -34,7 +34,7 @@ _ENDING = 4.0  # seconds for it to end by itself
 
 
 class BridgeProcess:
-    """See `btlang.ros.bridge`. In one event loop.
+    """The process of `btlang.ros.bridge`, for one event loop.
 
     `heard` gets both parts of each line that it writes, `ended` its reason, if it gave one, when it is gone.
     """
@@ -46,7 +46,7 @@ class BridgeProcess:
         self._turn = asyncio.Lock()
 
     async def start(self) -> None:
-        """Starts it, unless it is up. Raises OSError."""
+        """Start it, unless it is up. Raises OSError."""
         async with self._turn:
             if self._process is None:
                 command = (sys.executable, "-P", "-m", "btlang.ros.bridge")
@@ -56,12 +56,12 @@ class BridgeProcess:
                 self._reading = asyncio.create_task(self._read(self._process))
 
     def write(self, data: dict[str, Any]) -> None:
-        """A line for it; does nothing if it is gone."""
+        """Write a line for it; do nothing if it is gone."""
         if self._process is not None and self._process.stdin is not None:
             self._process.stdin.write(json.dumps(data).encode() + b"\n")
 
     async def drain(self) -> None:
-        """Until it has taken most of what was written. One that takes nothing any more is ended."""
+        """Wait until it has taken most of what was written. One that takes nothing any more is ended."""
         process = self._process
         if process is None or process.stdin is None:
             return
@@ -74,7 +74,7 @@ class BridgeProcess:
             return
 
     async def close(self) -> None:
-        """Ends it: it lets go of the robot first."""
+        """End it: it lets go of the robot first."""
         process, reading = self._process, self._reading
         if process is None or process.stdin is None or reading is None:
             return
@@ -131,7 +131,7 @@ OPERATIONS = {
 
 
 class Rosbridge:
-    """A `btlang.server.live.sockets.Subprotocol`. `allowed` are names, with * and ? as in file names."""
+    """The subprotocol of rosbridge (see Subprotocol). `allowed` are names, with * and ? as in file names."""
 
     def __init__(self, access: Access, allowed: Sequence[str]) -> None:
         self.greeting: dict[str, Any] | None = None
@@ -167,11 +167,11 @@ class Rosbridge:
             self._bridge.write({"client": number, "op": "leave"})
 
     async def close(self) -> None:
-        """Ends the process."""
+        """End the process."""
         await self._bridge.close()
 
     async def _take(self, visitor: ConnectedClient, number: int, text: str) -> list[dict[str, Any]]:
-        """Hands an operation on; what to answer at once."""
+        """Hand an operation on; what to answer at once."""
         try:
             data = read_object(text)
             if data.get("op") == "auth":  # a page with a cookie may send that, too
@@ -218,7 +218,7 @@ class Rosbridge:
 
 
 def _check_form(data: dict[str, Any]) -> None:
-    """Raises AccessError (400)."""
+    """Raise AccessError (400) for what isn't an operation of rosbridge."""
     op = data.get("op")
     if not isinstance(op, str) or op not in OPERATIONS:
         shown = one_line(str(op)[:_SHOWN])

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from typing import Any, Protocol
 
     class Subprotocol(Protocol):
-        """What is spoken over a socket. A message of None isn't sent."""
+        """A protocol spoken over a socket. A message of None isn't sent."""
 
         greeting: dict[str, Any] | None
         """For somebody who isn't logged in yet."""
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
         """For somebody whose first message doesn't log him in."""
 
         def token(self, data: dict[str, Any]) -> object:
-            """What a first message logs in with."""
+            """Return the token that a first message logs in with."""
 
         def welcome(self, identity: Identity) -> dict[str, Any] | None:
-            """For somebody who is logged in now."""
+            """Return the message for somebody who is logged in now."""
 
         async def talk(self, visitor: ConnectedClient) -> None:
-            """Until he leaves (WebSocketDisconnect), or has to (CancelledError)."""
+            """Talk until the client leaves (WebSocketDisconnect), or has to (CancelledError)."""
 
 
 _LOG_IN = 10.0  # seconds that somebody has for that
@@ -41,7 +41,7 @@ _UNSUPPORTED = 1003  # the code for what isn't text
 
 
 class ConnectedClient:
-    """Somebody who is logged in, on one socket, with what is on its way to him."""
+    """A client that is logged in, on one socket, with what is on its way to it."""
 
     def __init__(self, socket: WebSocket, identity: Identity) -> None:
         self.socket, self.identity = socket, identity
@@ -52,15 +52,15 @@ class ConnectedClient:
 
     @property
     def address(self) -> str:
-        """Where he is."""
+        """The address of the client."""
         return address_of(self.socket)
 
     async def receive(self) -> str:
-        """The next text. Raises WebSocketDisconnect."""
+        """Return the next text. Raises WebSocketDisconnect."""
         return await _text(self.socket)
 
     async def talk(self, subprotocol: Subprotocol) -> None:
-        """Until one of both ends it."""
+        """Talk until one of both ends it."""
         sending = asyncio.create_task(self._send())
         self._talk = asyncio.create_task(subprotocol.talk(self))
         if self._code:
@@ -79,7 +79,7 @@ class ConnectedClient:
             await self.socket.close(self._code)
 
     async def leave(self, code: int, last: str = "") -> None:
-        """Ends what he does; his socket is closed with a code, after a last text."""
+        """End what the client does; its socket is closed with a code, after a last text."""
         self._code, self._last = code, last
         if self._talk is not None:
             self._talk.cancel()
@@ -100,7 +100,7 @@ class ConnectedClient:
 
 
 class Sockets:
-    """All that are open."""
+    """The sockets that are open."""
 
     def __init__(self, access: Access) -> None:
         self._access = access
@@ -110,7 +110,7 @@ class Sockets:
         return len(self._visitors)
 
     async def serve(self, subprotocol: Subprotocol, socket: WebSocket) -> None:
-        """One socket, until it ends."""
+        """Serve one socket, until it ends."""
         if not is_same_site(socket.headers):  # a page of another site, with our cookie
             await socket.close(FORBIDDEN)
             return
@@ -130,7 +130,7 @@ class Sockets:
             return
 
     async def check(self) -> None:
-        """Ends the sockets of those who may no longer be here, and gives the others their present role."""
+        """End the sockets of those who may no longer be here, and give the others their present role."""
         self._access.forget()
         for visitor in tuple(self._visitors):
             await self._look(visitor)

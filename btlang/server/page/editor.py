@@ -42,8 +42,10 @@ if TYPE_CHECKING:
 
 
 class EditorFiles:
-    """Of these the one that `words` belong to can be saved, and the file of its tests beside it; the others, which it
-    includes, are shown.
+    """The files of an editor.
+
+    The one that `words` belong to can be saved, and the file of its tests beside it; the others, which it includes, are
+    shown.
 
     A revision is a hash of the content, "" for a file that isn't there. Methods raise MissionError for one that can't
     be read (BT001, BT002) or written (BT009), and AccessError (403, 404).
@@ -56,14 +58,14 @@ class EditorFiles:
         self._tests = "" if is_test_file(self.path) else stem + ENDING
 
     def listed(self) -> list[dict[str, Any]]:
-        """All, the one that was opened first, and its tests last."""
+        """List all, the one that was opened first, and its tests last."""
         saved = self._saved()
         names = [self.name, *(name for name in self._included() if name not in saved), *list(saved)[1:]]
         return [{"name": name, "saves": name in saved} for name in names]
 
     def read(self, name: str) -> dict[str, Any]:
-        """The `text` of a file and its `revision`; of a tree also the name of the `tree`, that of its `copy`, and a
-        `problem` if there's one.
+        """Return the `text` of a file and its `revision`; of a tree also the name of the `tree`, that of its `copy`,
+        and a `problem` if there's one.
         """
         if (path := self._saved().get(name)) is not None:
             return _content(_text(path))
@@ -73,7 +75,7 @@ class EditorFiles:
         return _content(included[name].text)
 
     def save(self, name: str, text: str, revision: str) -> Answer:
-        """Writes a text that was made from a revision; where the file has another one by now, it is refused with the
+        """Write a text that was made from a revision; where the file has another one by now, it is refused with the
         difference. Line ends stay those of the file.
         """
         path = self._saved().get(name)
@@ -89,11 +91,13 @@ class EditorFiles:
         return Answer(True, f"Saved {name}.", {"revision": _revision(text)}, "")
 
     def _saved(self) -> dict[str, str]:
-        """The paths of those that can be saved, by their names."""
+        """Return the paths of those that can be saved, by their names."""
         return {os.path.basename(path): path for path in (self.path, self._tests) if path}
 
     def _included(self) -> dict[str, Source]:
-        """By their names as seen from the folder of the file; those that can't be read are left out."""
+        """Return the included files by their names as seen from the folder of the file; those that can't be read are
+        left out.
+        """
         waiting = [self._words.source(_text(self.path) or "")]
         found: dict[str, Source] = {}
         while waiting and len(found) < MOST_DEEP:
@@ -128,7 +132,7 @@ class TreeEditorFiles(EditorFiles):
         """The copy as it was written from this mission."""
 
     def read(self, name: str) -> dict[str, Any]:
-        """As for any file. Raises MissionError for a tree that can't be read or said, too."""
+        """Read a file as EditorFiles does. Raises MissionError for a tree that can't be read or said, too."""
         content = super().read(name)
         if name != self.name:
             return content
@@ -143,7 +147,9 @@ class TreeEditorFiles(EditorFiles):
         return {**content, **self._names}
 
     def save(self, name: str, text: str, revision: str) -> Answer:
-        """As for any file; `problem` says why the copy wasn't written, for which the text has to compile."""
+        """Save a file as EditorFiles does; `problem` says why the copy wasn't written, for which the text has to
+        compile.
+        """
         answer = super().save(name, text, revision)
         if not answer.ok or name != self.name:
             return answer
@@ -177,7 +183,7 @@ class XmlEditorFiles(EditorFiles):
         self._tree, self._main = tree, main
 
     def read(self, name: str) -> dict[str, Any]:
-        """As for any file. Raises MissionError for a tree that can't be read or said, too."""
+        """Read a file as EditorFiles does. Raises MissionError for a tree that can't be read or said, too."""
         if name != self.name:
             return super().read(name)
         text = _text(self.path)
@@ -185,7 +191,9 @@ class XmlEditorFiles(EditorFiles):
         return {"text": text, "revision": self._state(), "tree": os.path.basename(self._tree)}
 
     def save(self, name: str, text: str, revision: str) -> Answer:
-        """As for any file; `problem` says why the tree wasn't written, for which the text has to compile."""
+        """Save a file as EditorFiles does; `problem` says why the tree wasn't written, for which the text has to
+        compile.
+        """
         if name != self.name:
             return super().save(name, text, revision)
         tree, before = os.path.basename(self._tree), self.read(name)
@@ -205,7 +213,7 @@ class XmlEditorFiles(EditorFiles):
         return Answer(True, f"Saved {tree}.", {"revision": self._state(), "tree": tree})
 
     def _state(self) -> str:
-        """The revision of the tree, and that of the text that is kept beside it."""
+        """Return the revision of the tree, and that of the text that is kept beside it."""
         return f"{_revision(read_source(self._tree).text)} {_revision(_text(self.path))}"
 
 
@@ -215,7 +223,7 @@ def _english_of(tree: str, words: Words, main: str) -> str:
 
 
 def tree_sort(path: str) -> str:
-    """What the file of a tree is in, "xml" or "json"; "" for a mission in English, there or not."""
+    """Return what the file of a tree is in, "xml" or "json"; "" for a mission in English, there or not."""
     sort = target_of(path)
     with suppress(MissionError):  # which opening it will say
         sort = frontend_of(read_source(path)) if os.path.isfile(path) else sort
@@ -223,12 +231,15 @@ def tree_sort(path: str) -> str:
 
 
 def english_beside(tree: str) -> str:
-    """The file of the mission that is written for a tree."""
+    """Return the file of the mission that is written for a tree."""
     return os.path.splitext(tree)[0] + ".edited.txt"
 
 
 def _text(path: str) -> str | None:
-    """That of the file, None if it isn't there. Its folder must be there, and it must be no other sort of file."""
+    """Return the text of a file, None if it isn't there.
+
+    Its folder must be there, and it must be no other sort of file.
+    """
     source = Source("", path)
     if not os.path.lexists(path):
         folder = os.path.dirname(path) or os.curdir
@@ -260,12 +271,12 @@ def _revision(text: str | None) -> str:
 
 
 def _with_line_ends(text: str, before: str) -> str:
-    """A page has line feeds alone."""
+    """Return a text with other line ends: a page has line feeds alone."""
     return text.replace("\n", "\r\n") if "\r\n" in before and "\r" not in text else text
 
 
 def edit(options: argparse.Namespace) -> int:
-    """Does the verb `edit` until Ctrl-C; returns the exit code. Raises MissionError."""
+    """Do the verb `edit` until Ctrl-C; return the exit code. Raises MissionError."""
     if options.file == "-":
         options.refuse("it needs a file, which it saves to")
     check_page()
@@ -289,7 +300,7 @@ class EditorApi(LocalApi):
         self._files, self._saving = files, asyncio.Lock()
 
     def routes(self) -> list[BaseRoute]:
-        """Those of a server, and the files."""
+        """Return the routes of a server, and the files."""
         return [
             self._route("/api/files", self._list_files, "GET"),
             self._route("/api/files/{name:path}", self._read_file, "GET"),

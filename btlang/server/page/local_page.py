@@ -70,11 +70,11 @@ class LocalApi(Api):
 
     @property
     def may_open(self) -> bool:
-        """Whether the ticket is still good."""
+        """Return whether the ticket is still good."""
         return self._until is not None and time.monotonic() <= self._until
 
     def app(self) -> ASGIApp:
-        """The ASGI application, under its own address alone."""
+        """Return the ASGI application, under its own address alone."""
         return _OwnAddress(super().app(), self._port)
 
     async def _log_in(self, request: Request) -> Response:
@@ -104,7 +104,7 @@ class LocalRobots(RobotFeeds):
         self._given = links
 
     def look(self) -> None:
-        """Adds those that were given."""
+        """Add those that were given."""
         for link in self._given:
             if link.name not in self.links:
                 self.add(link)
@@ -123,11 +123,11 @@ class LocalPage:
 
     @property
     def is_open(self) -> bool:
-        """Whether a window shows the page."""
+        """Return whether a window shows the page."""
         return len(self._api.sockets) > 0
 
     def open(self) -> bool:
-        """Opens the browser, if there is one with windows; returns whether there is.
+        """Open the browser, if there is one with windows; return whether there is.
 
         It is led there by a private file: the command line of a browser is shown to all users of a computer.
         """
@@ -150,7 +150,7 @@ class LocalPage:
         return time.monotonic() > self._seen + _LEFT
 
     def wait(self, is_over: Callable[[], bool]) -> int:
-        """Waits until it's over, or is interrupted; returns the exit code for that."""
+        """Wait until it's over, or is interrupted; return the exit code for that."""
         self._seen = time.monotonic()  # a page that was just being loaded again isn't closed
         with interrupted_by_signals() as came:
             try:
@@ -166,14 +166,14 @@ class LocalPage:
 
 
 def check_page() -> None:
-    """Raises MissionError (BT211) if the page isn't built."""
+    """Raise MissionError (BT211) if the page isn't built."""
     if not PAGE.is_file():
         raise MissionError([diagnostic("BT211", NOWHERE)])
 
 
 @contextmanager
 def local_page(make: Callable[[Accounts, int, str], LocalApi], port: int = 0) -> Iterator[LocalPage]:
-    """A page as long as it is used, on a port, 0 for a free one. Raises MissionError (BT201, BT211).
+    """Serve a page as long as it is used, on a port, 0 for a free one. Raises MissionError (BT201, BT211).
 
     `make` makes its server, from accounts, the port and a private folder. Requests are answered in a thread.
     """
@@ -196,7 +196,7 @@ def local_page(make: Callable[[Accounts, int, str], LocalApi], port: int = 0) ->
 
 
 def say_where(page: LocalPage, what: str, browser: bool) -> None:
-    """Opens the browser, or else prints the address that lets somebody in: where it opens nobody has to see that."""
+    """Open the browser, or else prints the address that lets somebody in: where it opens nobody has to see that."""
     if browser and page.open():
         show(f"{what} in the browser at {page.place}. If none opens, use --no-browser.")
     else:
@@ -205,7 +205,9 @@ def say_where(page: LocalPage, what: str, browser: bool) -> None:
 
 
 class _OwnAddress:
-    """Answers under its own address alone: another site that leads its name to this computer reaches nothing."""
+    """The middleware that answers under its own address alone: another site that leads its name to this computer
+    reaches nothing.
+    """
 
     def __init__(self, app: ASGIApp, port: int) -> None:
         self._app = app

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 
 def in_units(answer: dict[str, Any], text: str) -> dict[str, Any]:
-    """An answer about a text with its places in units: all that is called `start`, `end` or `of`.
+    """Return an answer about a text with its places in units: all that is called `start`, `end` or `of`.
 
     Where it has `changes`, its own `start` and `end` are in the text with them.
     """
@@ -68,17 +68,17 @@ def _place(value: Any, units: Units) -> Any:
 
 
 def film(path: str) -> bytes:
-    """See btlang.recording.film.Film.data, as JSON; runs nothing."""
+    """Return the film of a recording (see Film.data) as JSON; runs nothing."""
     return _write_film(partial(_film, path))
 
 
 def comparison(one: str, other: str) -> bytes:
-    """See btlang.recording.film, as JSON; runs nothing."""
+    """Return two recordings side by side as JSON (see recording/film.py); runs nothing."""
     return _write_film(partial(_comparison, one, other))
 
 
 def tree(path: str) -> bytes:
-    """The tree of a recording as `xml` of BehaviorTree.CPP, as JSON; runs nothing."""
+    """Return the tree of a recording as `xml` of BehaviorTree.CPP, as JSON; runs nothing."""
     return _write_film(partial(_tree, path))
 
 
@@ -113,8 +113,8 @@ _PATIENCE = 10.0  # seconds for one text
 
 
 class TextQuery(Record):
-    """What may be asked of a text: `help` is a line about it, `do` takes the source, the words, and the arguments that
-    it `needs` or only `takes`: `at`, a place in the text, `name`, `tests` and `called`, texts, or `edit`
+    """A query about a text: `help` is a line about it, `do` takes the source, the words, and the arguments that it
+    `needs` or only `takes`: `at`, a place in the text, `name`, `tests` and `called`, texts, or `edit`
     (btlang.editing.edits.Edit).
     """
 
@@ -125,7 +125,7 @@ class TextQuery(Record):
 
 
 def _of_mission(report: Callable[[Mission], dict[str, Any]]) -> Callable[..., dict[str, Any]]:
-    """Makes a query that reports something about a mission, with its messages."""
+    """Make a query that reports something about a mission, with its messages."""
 
     def do(source: Source, words: Words) -> dict[str, Any]:
         mission = words.mission(source)
@@ -187,7 +187,7 @@ ASKED = {**DOES, **TRIES}
 
 
 def arguments_of(kind: str, data: Mapping[str, Any], text: str) -> dict[str, Any]:
-    """The further arguments of a request, with places as characters of its text. Raises AccessError (400)."""
+    """Return the further arguments of a request, with places as characters of its text. Raises AccessError (400)."""
     asked = ASKED[kind]
     given = {name: data[name] for name in asked.takes if data.get(name) is not None}
     given |= {name: data.get(name) for name in asked.needs}
@@ -207,7 +207,7 @@ def arguments_of(kind: str, data: Mapping[str, Any], text: str) -> dict[str, Any
 
 
 def answer(kind: str, text: str, words: Words, arguments: Mapping[str, Any] = {}) -> dict[str, Any]:
-    """What is asked of a text, with what is wrong with it as data; places are in UTF-16 units."""
+    """Return what is asked of a text, with what is wrong with it as data; places are in UTF-16 units."""
     source = words.source(text)
     try:
         found = {"ok": True, "messages": [], **ASKED[kind].do(source=source, words=words, **arguments)}
@@ -217,13 +217,13 @@ def answer(kind: str, text: str, words: Words, arguments: Mapping[str, Any] = {}
 
 
 def _write_answer(kind: str, text: str, words: Words, arguments: Mapping[str, Any]) -> bytes:
-    """The answer as JSON in ASCII: half a character of UTF-16 has no other encoding."""
+    """Return the answer as JSON in ASCII: half a character of UTF-16 has no other encoding."""
     with gc_paused:
         return json.dumps(answer(kind, text, words, arguments), separators=(",", ":")).encode()
 
 
 def _end_with_server() -> None:
-    """In the process of a checker, which otherwise outlives a server that was killed."""
+    """End the process of a checker with its server, which it would otherwise outlive."""
     threading.Thread(target=_wait_for_end, daemon=True).start()
 
 
@@ -235,7 +235,7 @@ def _wait_for_end() -> None:
 
 
 class Checker:
-    """For one event loop. Texts take turns, one of each user at a time."""
+    """A process that checks missions, for one event loop. Texts take turns, one of each user at a time."""
 
     def __init__(self) -> None:
         self._process: ProcessPoolExecutor | None = None
@@ -252,9 +252,10 @@ class Checker:
         user: str = "",
         page: str | None = None,
     ) -> bytes:
-        """As the function `answer`, as JSON. Of a page, which types faster than texts are read, only the newest request
-        of a kind waits. Raises AccessError: 413 and 422 for a text that is too long, or takes too long, 409 for a
-        request that a newer one replaced.
+        """Return what the function `answer` does, as JSON.
+
+        Of a page, which types faster than texts are read, only the newest request of a kind waits. Raises AccessError:
+        413 and 422 for a text that is too long, or takes too long, 409 for a request that a newer one replaced.
         """
         if len(text) > MOST_CHARACTERS:
             raise AccessError(413, f"A mission may have {MOST_CHARACTERS:,} characters.")
@@ -272,7 +273,7 @@ class Checker:
                 del self._newest[place]
 
     async def shown(self, show: Callable[..., bytes], *paths: str) -> bytes:
-        """What btlang.server.page.processes makes of recordings. Raises AccessError (422) if it takes too long."""
+        """Return what processes.py makes of recordings. Raises AccessError (422) if it takes too long."""
         async with self._turn:
             return await self._done(show, *paths)
 
@@ -288,7 +289,7 @@ class Checker:
             raise AccessError(422, "This text takes too long to read.") from None
 
     def close(self) -> None:
-        """Ends the process, whatever it does."""
+        """End the process, whatever it does."""
         ended, self._process = self._process, None
         if ended is not None:
             for process in tuple((ended._processes or {}).values()):

@@ -34,7 +34,10 @@ PIECE = 49_152
 
 
 def list_recordings(folder: str) -> list[dict[str, Any]]:
-    """Name, size in bytes, time (seconds since 1970) and task of each, newest first. Raises AccessError (404)."""
+    """List name, size in bytes, time (seconds since 1970) and task of each recording, newest first.
+
+    Raises AccessError (404).
+    """
     found: list[tuple[float, str, int]] = []
     with suppress(OSError):
         for entry in os.scandir(_checked(folder)):
@@ -52,7 +55,7 @@ def list_recordings(folder: str) -> list[dict[str, Any]]:
 
 
 def path_of(folder: str, name: str) -> str:
-    """The file of one. Raises AccessError (404)."""
+    """Return the file of a recording. Raises AccessError (404)."""
     path = os.path.join(_checked(folder), name)
     if not NAME.fullmatch(name) or not os.path.isfile(path):
         raise AccessError(404, "There's no such recording.")
@@ -60,7 +63,7 @@ def path_of(folder: str, name: str) -> str:
 
 
 def piece(folder: str, name: str, at: int) -> tuple[int, bytes]:
-    """The bytes of one, and at most PIECE of them from a place on. Raises AccessError (404)."""
+    """Return the size of a recording in bytes, and at most PIECE of them from a place on. Raises AccessError (404)."""
     path = path_of(folder, name)
     try:
         with open(path, "rb") as file:
@@ -90,7 +93,7 @@ class Fetched:
         self._read, self._name, self._first = read, name, first
 
     async def pieces(self) -> AsyncIterator[bytes]:
-        """All, in order. Raises ConnectionError or AccessError (404) where they break off."""
+        """Yield all pieces, in order. Raises ConnectionError or AccessError (404) where they break off."""
         piece, at = self._first, 0
         while piece:
             yield piece
@@ -120,7 +123,7 @@ async def list_recordings_elsewhere(read: Read) -> list[dict[str, Any]]:
 
 
 async def fetch(read: Read, name: str) -> Fetched:
-    """A recording, once its first piece is here. Raises AccessError (404, 503)."""
+    """Fetch a recording; returns once its first piece is here. Raises AccessError (404, 503)."""
     if not NAME.fullmatch(name):
         raise AccessError(404, "There's no such recording.")
     try:
@@ -132,7 +135,12 @@ async def fetch(read: Read, name: str) -> Fetched:
 
 @asynccontextmanager
 async def in_file(recording: Fetched, is_wanted: Callable[[], Awaitable[bool]]) -> AsyncIterator[str]:
-    """The path of a copy, for as long as it is used. Raises AccessError (413, 503); is given up if nobody wants it."""
+    """Give the path of a copy, for as long as it is used.
+
+    Raises AccessError (413, 503); is given up if nobody wants it.
+
+    Raises AccessError (413, 503); is given up if nobody wants it.
+    """
     if recording.size > MOST_BYTES:
         text = f"This recording has more than {MOST_BYTES // 1_000_000} MB: download it, and use btc replay."
         raise AccessError(413, text)
@@ -165,7 +173,7 @@ class RecordingResponse(StreamingResponse):
 
 
 async def _piece(read: Read, name: str, at: int) -> tuple[int, bytes]:
-    """The bytes of all, and some from a place on. Raises AccessError (404), and ConnectionError."""
+    """Return the bytes of all, and some from a place on. Raises AccessError (404), and ConnectionError."""
     answer = await read({"type": "recording", "name": name, "at": at})
     try:
         if answer.get("missing"):

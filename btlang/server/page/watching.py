@@ -53,7 +53,7 @@ class WatchApi(LocalApi):
     role = UserRole.VIEWER
 
     def routes(self) -> list[BaseRoute]:
-        """Only those that its screen asks for."""
+        """Return only the routes that its screen asks for."""
         shown = {*_ROUTES, *_OF_RECORDING}
         return [route for route in super().routes() if getattr(route, "path", "") in shown]
 
@@ -65,16 +65,18 @@ class NoTasks:
         self.listeners: list[Callable[[], object]] = []
 
     def latest_change(self) -> int:
-        """There is none."""
+        """Return 0: there is no change."""
         return 0
 
     def changes(self, *, after: int, limit: int) -> Sequence[tuple[int, TaskChange]]:
-        """There are none."""
+        """Return no changes."""
         return ()
 
 
 class PageMonitor:
-    """Shows a run on a page; see btlang.run.terminal.run_mission. It's also the reach of `link`, the page's robot.
+    """A monitor that shows a run on a page; see run_mission (run/terminal.py).
+
+    It's also the connection of `link`, the page's robot.
 
     `world` is None for a robot whose map isn't known.
     """
@@ -95,12 +97,12 @@ class PageMonitor:
 
     @contextmanager
     def opened(self, controls: Controls) -> Iterator[PageMonitor]:
-        """As long as the run lasts."""
+        """Give the monitor as long as the run lasts."""
         self._controls = controls
         yield self
 
     def watch_run(self, run: Run, mission: Mission) -> None:
-        """Shows a run, once the page is there."""
+        """Show a run, once the page is there."""
         sinks: list[Sink] = [self._input, *self._feed.sinks(1, mission, run)]
         for sink in sinks:
             run.bus.add(sink)
@@ -110,7 +112,7 @@ class PageMonitor:
             time.sleep(0.05)
 
     def stay(self, code: int) -> int:
-        """Leaves the end of the run on the page until that is closed; returns the exit code of the run."""
+        """Leave the end of the run on the page until that is closed; return the exit code of the run."""
         if code < 128 or code == EMERGENCY_STOPPED:
             show("The page shows the end of the run. Close it, or press Ctrl-C.")
             self.page.wait(lambda: self.page.was_left)
@@ -165,7 +167,7 @@ class PageMonitor:
 
 @contextmanager
 def open_monitor(mission: Mission, name: str, body: Body, is_simulated: bool, browser: bool) -> Iterator[PageMonitor]:
-    """A monitor that shows a run on a page. `is_simulated`: the robot moves in the world of the mission."""
+    """Give a monitor that shows a run on a page. `is_simulated`: the robot moves in the world of the mission."""
     world = read_world(mission.world, body) if is_simulated or mission.world is not None else None
     monitor = PageMonitor(name, world, body)
     robots = LocalRobots(monitor.link)
@@ -177,7 +179,7 @@ def open_monitor(mission: Mission, name: str, body: Body, is_simulated: bool, br
 
 
 def serve(options: argparse.Namespace) -> int:
-    """Does the verb `watch`; returns the exit code. Raises MissionError."""
+    """Do the verb `watch`; return the exit code. Raises MissionError."""
     read_recording(options.file)  # what isn't a recording says so at once
     with local_page(partial(_recording_api, options.file)) as page:
         say_where(page, f"Watch {one_line(options.file)}", options.browser)
@@ -186,7 +188,7 @@ def serve(options: argparse.Namespace) -> int:
 
 
 def _recording_api(path: str, accounts: Accounts, port: int, folder: str) -> WatchApi:
-    """The server of one recording, which is in a folder of its own under a name that an address can have."""
+    """Return the server of one recording, which is in a folder of its own under a name that an address can have."""
     link = RobotFeed(re.sub(r"\.mcap$", "", os.path.basename(path)) or "recording")
     os.symlink(os.path.abspath(path), os.path.join(folder, "recording.mcap"))
     link.recordings = folder

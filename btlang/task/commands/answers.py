@@ -25,31 +25,31 @@ _HIDDEN = ("mission", "saved", "token")
 
 
 def task_data(task: Task, waits: str = "") -> dict[str, Any]:
-    """A task without its text, and why it waits."""
+    """Return a task without its text, and why it waits."""
     data = task.as_dict(without=_HIDDEN)
     return {**data, "mission": shorten(task.mission), "revision": task.mission.revision, "waits": waits}
 
 
 def task_line(task: Mapping[str, Any]) -> str:
-    """A task of `task_data` in one line: id, state, priority, mission, and why it waits or ended."""
+    """Return a task of `task_data` in one line: id, state, priority, mission, and why it waits or ended."""
     why = task["waits"] or task["reason"]
     priority = f" ({task['priority']:+d})" if task["priority"] else ""
     return f"{task['id']:>4}  {task['state']:<9}{priority}  {task['mission']}" + (f"  [{one_line(why)}]" if why else "")
 
 
 def shorten(mission: MissionText) -> str:
-    """The name of a mission or else its text, cut, in one line."""
+    """Return the name of a mission or else its text, cut, in one line."""
     text = one_line(mission.name or " / ".join(line.strip() for line in mission.text.splitlines() if line.strip()))
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
 
 def schedule_data(schedule: Schedule) -> dict[str, Any]:
-    """A schedule with the short form of its mission."""
+    """Return a schedule with the short form of its mission."""
     return {**schedule.as_dict(without=("mission",)), "mission": shorten(schedule.mission)}
 
 
 def schedule_line(schedule: Schedule, now: float) -> str:
-    """A schedule in one line: id, rule, mission, when it is due, and what isn't as usual."""
+    """Return a schedule in one line: id, rule, mission, when it is due, and what isn't as usual."""
     zone = f" in {schedule.zone}" if schedule.zone else ""
     when = "" if schedule.next is None else f"; next at {format_moment(schedule.next, now)}"
     line = f"{schedule.id:>4}  {schedule.rule}{zone}: {shorten(schedule.mission)}{when}"
@@ -66,12 +66,12 @@ def schedule_line(schedule: Schedule, now: float) -> str:
 
 
 def revision_data(revision: Revision) -> dict[str, Any]:
-    """A revision without its text."""
+    """Return a revision without its text."""
     return revision.as_dict(without=("text",))
 
 
 def describe_deletion(name: str, schedules: Sequence[int]) -> str:
-    """What is said of a text that is no longer in the library, while some schedules have it."""
+    """Return what is said of a text that is no longer in the library, while some schedules have it."""
     text = f"'{one_line(name)}' is no longer in the library."
     if not schedules:
         return text
@@ -81,8 +81,8 @@ def describe_deletion(name: str, schedules: Sequence[int]) -> str:
 
 
 def outdated_error(command: Put, called: str, latest: Revision | None) -> Answer:
-    """The refusal of a text, `called` "mission" or the like, that was made from another revision than the latest one,
-    with what differs from that.
+    """Return the refusal of a text, `called` "mission" or the like, that was made from another revision than the latest
+    one, with what differs from that.
     """
     before = "" if latest is None else latest.text
     number = 0 if latest is None else latest.number
@@ -94,7 +94,7 @@ def outdated_error(command: Put, called: str, latest: Revision | None) -> Answer
 
 
 def differences(before: str, after: str) -> str:
-    """A unified diff; of long texts with everything between the first and the last difference."""
+    """Return a unified diff; of long texts with everything between the first and the last difference."""
     return "\n".join(_differences(before.splitlines(), after.splitlines()))
 
 
@@ -109,12 +109,15 @@ def _differences(before: list[str], after: list[str]) -> Iterable[str]:
 
 
 def _common(first: list[str], second: list[str]) -> int:
-    """How many lines both begin with."""
+    """Return how many lines both begin with."""
     return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(first, second, strict=False)))
 
 
 def write_report(store: TaskStore, since: float, until: float) -> Iterator[str]:
-    """Lines for people. What counts is when a task was due, or else when it was asked for: seconds since 1970."""
+    """Write a report in lines for people.
+
+    What counts is when a task was due, or else when it was asked for, in seconds since 1970.
+    """
     tasks = [task for task in store.tasks() if since <= _time_of(task) < until]
     tasks.sort(key=lambda task: (_time_of(task), task.id))
     yield f"From {format_moment(since, 0.0)} to {format_moment(until, 0.0)}: {_counted(tasks)}."

@@ -28,12 +28,12 @@ _WEEK = 7 * 86_400.0
 
 
 def read_time(given: str | float | None, now: float) -> float | None:
-    """A time since 1970, given as one or in English. Raises MissionError (BT194)."""
+    """Return a time since 1970, given as one or in English. Raises MissionError (BT194)."""
     return read_moment(given, now) if isinstance(given, str) else given
 
 
 def report_times(since: str | float | None, until: str | float | None, now: float) -> tuple[float, float]:
-    """When a report begins and ends: English is about the past there. Raises MissionError (BT194, BT187)."""
+    """Return when a report begins and ends: English is about the past there. Raises MissionError (BT194, BT187)."""
     end = read_past_moment(until, now) if isinstance(until, str) else now if until is None else until
     begin = read_past_moment(since, now) if isinstance(since, str) else end - _WEEK if since is None else since
     if begin > end:
@@ -44,7 +44,10 @@ def report_times(since: str | float | None, until: str | float | None, now: floa
 
 
 def task_times(command: Submit, now: float) -> tuple[float | None, float | None]:
-    """When its task may begin at the earliest and at the latest. Raises MissionError (BT194; BT187 if it never may)."""
+    """Return when its task may begin at the earliest and at the latest.
+
+    Raises MissionError (BT194; BT187 if it never may).
+    """
     earliest, deadline = read_time(command.at, now), read_time(command.by, now)
     if deadline is not None and deadline <= now:
         raise refusal_error("The task", f"could never begin: its deadline, {format_moment(deadline, now)}, has passed")
@@ -57,7 +60,7 @@ def task_times(command: Submit, now: float) -> tuple[float | None, float | None]
 
 
 def check_values(mission: Mission, names: Iterable[str]) -> None:
-    """Raises MissionError (BT187) if a mission doesn't speak of the value with one of these names."""
+    """Raise MissionError (BT187) if a mission doesn't speak of the value with one of these names."""
     ports = "\n".join(f"{port} {text}" for node in mission.tree.walk() for port, text in node.ports)
     words = set(re.findall(r"\w+", ports))
     for name in names:
@@ -66,14 +69,14 @@ def check_values(mission: Mission, names: Iterable[str]) -> None:
 
 
 def check_labels(labels: tuple[str, ...], command: str) -> tuple[str, ...]:
-    """The labels. Raises MissionError (BT198) if one is empty."""
+    """Return the labels. Raises MissionError (BT198) if one is empty."""
     if not all(label.strip() for label in labels):
         raise wrong(command, "a label must have a text")
     return labels
 
 
 def check_priority(priority: int, command: str) -> int:
-    """The priority. Raises MissionError (BT198) if it is out of range."""
+    """Return the priority. Raises MissionError (BT198) if it is out of range."""
     least, most = PRIORITIES
     if not least <= priority <= most:
         raise wrong(command, f"'priority' must be from {least} to {most}")
@@ -81,14 +84,17 @@ def check_priority(priority: int, command: str) -> int:
 
 
 def check_within(seconds: float | None) -> float | None:
-    """The time after which a task of a schedule isn't worth beginning. Raises MissionError (BT198) if it isn't one."""
+    """Return the time after which a task of a schedule isn't worth beginning.
+
+    Raises MissionError (BT198) if it isn't one.
+    """
     if seconds is not None and seconds <= 0:
         raise wrong("schedule", "'within' must be more than 0")
     return seconds
 
 
 def choose_member(kind: type[Choice], given: str, field: str, command: str) -> Choice:
-    """The member of a kind that a field of a command names. Raises MissionError (BT198)."""
+    """Return the member of a kind that a field of a command names. Raises MissionError (BT198)."""
     try:
         return kind(given)
     except ValueError:
@@ -97,6 +103,9 @@ def choose_member(kind: type[Choice], given: str, field: str, command: str) -> C
 
 
 def refusal_error(what: int | str, reason: str) -> MissionError:
-    """BT187: what a command is about can't be changed like that. `what` begins a sentence; a number is a task's."""
+    """Make the error BT187: what a command is about can't be changed like that.
+
+    `what` begins a sentence; a number is a task's.
+    """
     named = f"Task {what}" if isinstance(what, int) else what
     return MissionError([diagnostic("BT187", NOWHERE, what=named, reason=reason)])

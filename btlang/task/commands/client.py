@@ -23,31 +23,31 @@ _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")
 
 
 def check_name(name: str) -> str:
-    """The name. Raises MissionError (BT198) if it can't be part of a file name."""
+    """Return the name. Raises MissionError (BT198) if it can't be part of a file name."""
     if _NAME.fullmatch(name) is None:
         raise wrong(name, "it must be up to 32 letters, digits, '-' and '_'")
     return name
 
 
 def data_folder(name: str) -> str:
-    """What the robot keeps: its store, its recordings, its latch."""
+    """Return what the robot keeps: its store, its recordings, its latch."""
     return os.path.join(user_dir("data"), "robots", check_name(name))
 
 
 def robots_known() -> list[str]:
-    """Names of robots that were up some time."""
+    """Name of robots that were up some time."""
     folder = os.path.join(user_dir("data"), "robots")
     names = os.listdir(folder) if os.path.isdir(folder) else []
     return sorted(name for name in names if _NAME.fullmatch(name))
 
 
 def socket_path(name: str, stop: bool = False) -> str:
-    """The socket for commands to a robot; with `stop` the one for the emergency stop alone."""
+    """Return the socket for commands to a robot; with `stop` the one for the emergency stop alone."""
     return os.path.join(socket_folder(), f"{check_name(name)}{'.stop' if stop else ''}.sock")
 
 
 def names_up() -> list[str]:
-    """Robots that have a socket; after a crash it may be that nobody listens there."""
+    """List the robots that have a socket. After a crash, it may be that nobody listens there."""
     return sorted(
         entry.removesuffix(".sock")
         for entry in os.listdir(socket_folder())
@@ -59,8 +59,9 @@ _PATIENCE = 30.0  # seconds for an answer
 
 
 class RobotClient:
-    """Sends commands to the robot of a name, "" for the only one that is up. Raises MissionError (BT185) if there is
-    no such robot, or several.
+    """A client of the robot of a name, "" for the only one that is up.
+
+    Raises MissionError (BT185) if there is no such robot, or several.
     """
 
     def __init__(self, name: str = "") -> None:
@@ -69,7 +70,7 @@ class RobotClient:
         self._lines = self._socket.makefile("rb")
 
     def send(self, command: Command) -> Answer:
-        """What the robot answers. Raises MissionError (BT199) if it doesn't."""
+        """Return what the robot answers. Raises MissionError (BT199) if it doesn't."""
         try:
             self._socket.sendall(json.dumps(as_json(command)).encode() + b"\n")
             answer = json.loads(self._lines.readline())
@@ -78,7 +79,7 @@ class RobotClient:
             raise MissionError([diagnostic("BT199", NOWHERE, name=self.name)]) from None
 
     def close(self) -> None:
-        """Hangs up."""
+        """Hang up."""
         self._lines.close()
         self._socket.close()
 
@@ -90,8 +91,10 @@ class RobotClient:
 
 
 def emergency_stop(name: str = "", reason: str = "") -> list[str]:
-    """Stops a robot at once, over the socket that is for nothing else; without a name all that are up. One that doesn't
-    answer, and that was up some time, is stopped by its latch: at once if its process lives, else from its next start.
+    """Stop a robot at once, over the socket that is for nothing else; without a name all that are up.
+
+    One that doesn't answer, and that was up some time, is stopped by its latch: at once if its process lives, else from
+    its next start.
 
     Returns a line for each. Raises MissionError (BT185) if there is no such robot, BT195 if a latch can't be written.
     """
@@ -103,7 +106,7 @@ def emergency_stop(name: str = "", reason: str = "") -> list[str]:
 
 
 def _stopped(name: str, reason: str) -> str | None:
-    """What to say; None where there never was such a robot."""
+    """Return what to say; None where there never was such a robot."""
     for stop in (True, False):
         with suppress(MissionError, OSError), _connected(name, socket_path(name, stop=stop)) as connection:
             if not stop:
@@ -130,7 +133,7 @@ def _only_name() -> str:
 
 
 def _listening() -> list[str]:
-    """The robots that are up."""
+    """List the robots that are up."""
     found = []
     for name in names_up():
         with suppress(MissionError):

@@ -29,15 +29,20 @@ _PACKAGES = ("argon2", "cryptography")
 
 
 def require_server(verb: str = "serve") -> None:
-    """Raises MissionError (BT200) if a package of the extra `server` isn't installed; `verb` is what needs it."""
+    """Check that the packages of the extra `server` are installed; `verb` is what needs them.
+
+    Raises MissionError (BT200).
+    """
     for package in _PACKAGES:
         if find_spec(package) is None:
             raise MissionError([diagnostic("BT200", NOWHERE, verb=verb, package=package)])
 
 
 class Companion:
-    """A module of btlang as a process. It ends when its standard input, whose first line is `given`, does: also if this
-    process is killed. `report` gets its lines, and a line when it ends.
+    """A module of btlang that runs as a process.
+
+    It ends when its standard input, whose first line is `given`, does: also if this process is killed. `report` gets
+    its lines, and a line when it ends.
     """
 
     def __init__(self, name: str, words: Sequence[str], given: str, report: Callable[[str], object]) -> None:
@@ -49,13 +54,13 @@ class Companion:
         self._thread = threading.Thread(target=self._keep, daemon=True, name=f"btlang {name}")
 
     def start(self) -> int:
-        """Waits for its first line; returns its exit code if it ended without one, else 0."""
+        """Wait for its first line; return its exit code if it ended without one, else 0."""
         self._thread.start()
         self._began.wait()
         return 0 if self._spoke else self._process.wait()
 
     def close(self) -> None:
-        """Ends it. May be called twice."""
+        """End it. May be called twice."""
         self._closed.set()
         self._process.terminate()
         try:
@@ -97,14 +102,16 @@ class Companion:
 
 
 def require_companions(options: argparse.Namespace) -> None:
-    """Raises MissionError (BT200) if a package for what the options of `add_companion_options` ask isn't installed."""
+    """Check that the packages are installed that the options COMPANIONS need. Raises MissionError (BT200)."""
     if options.serve or options.join:
         require_server()
 
 
 @contextmanager
 def companions(options: argparse.Namespace, robot: str, report: Callable[[str], object]) -> Iterator[int]:
-    """Those that the options of `add_companion_options` ask for; the exit code of one that can't come up, else 0.
+    """Start the companions that the options COMPANIONS ask for; give the exit code of one that can't come up, else 0.
+
+    Raises MissionError (BT200).
 
     Raises MissionError (BT200).
     """

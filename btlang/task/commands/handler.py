@@ -50,9 +50,11 @@ _MOMENT = 0.01
 
 
 class Handler:
-    """`handle` is for any thread. `admit` reads a mission for this robot and refuses what it can't do, with all
-    reasons (MissionError); `now` gives the time since 1970, `down` ends the process, `needs` is what a mission needs,
-    `overs` is what robot files of others may run on, `world_input` a sink of all runs.
+    """A handler of all commands.
+
+    `handle` may be called from any thread. `admit` reads a mission for this robot and refuses what it can't do, with
+    all reasons (MissionError); `now` gives the time since 1970, `down` ends the process, `needs` is what a mission
+    needs, `overs` is what robot files of others may run on, `world_input` a sink of all runs.
     """
 
     def __init__(
@@ -93,11 +95,11 @@ class Handler:
         }  # fmt: skip
 
     def do(self, command: Command, person: str) -> Answer:
-        """Does a command, without a trail. Raises MissionError where it is refused."""
+        """Do a command, without a trail. Raises MissionError where it is refused."""
         return self._does[type(command)](command, person)
 
     def handle(self, command: Command, person: str) -> Answer:
-        """Does a command of a person, who is allowed to give it; a refusal is an answer, too."""
+        """Do a command of a person, who is allowed to give it; a refusal is an answer, too."""
         try:
             answer = self.do(command, person)
         except MissionError as error:
@@ -112,7 +114,7 @@ class Handler:
         return answer
 
     def add(self, mission: MissionText, person: str, **fields: Any) -> Task:
-        """Queues a mission that was admitted, with these fields of its task. Raises StoreError."""
+        """Queue a mission that was admitted, with these fields of its task. Raises StoreError."""
         task = Task(0, mission, person, self._now(), needs=self._needs(mission), **fields)
         task = self._store.add(task, "it was submitted")
         self._executor.wake()
@@ -343,7 +345,7 @@ class Handler:
         return Answer(True, "\n".join(lines) or "Nobody has asked for anything.", {"acts": acts})
 
     def _mission(self, command: messages.Submit | messages.AddSchedule) -> MissionText:
-        """The mission of a command, which this robot can do."""
+        """Return the mission of a command, which this robot can do."""
         text, name, revision = command.text, command.name, 0
         if not text:
             if not name:

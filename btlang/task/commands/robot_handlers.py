@@ -37,7 +37,7 @@ _WIDEST = 320  # pixels of a picture: many may watch
 
 
 class ComponentChange(StrEnum):
-    """What may be done to a component."""
+    """A change of a component's state."""
 
     RESTART = "restart"
     LOAD = "load"
@@ -45,19 +45,19 @@ class ComponentChange(StrEnum):
 
 
 class ComponentHandler:
-    """Commands about components; for any thread."""
+    """A handler of commands about components, for any thread."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
 
     def list(self, command: messages.Components, person: str) -> Answer:
-        """All of them."""
+        """List the components and devices."""
         data = component_data(self._session)
         lines = [*map(_component_line, data["components"]), *map(_device_line, data["devices"])]
         return Answer(True, "\n".join(lines) or "The robot has no components or devices of its own.", data)
 
     def picture(self, command: messages.Picture, person: str) -> Answer:
-        """What a camera sees. Raises MissionError."""
+        """Return what a camera sees. Raises MissionError."""
         connection = self._session.connection
         readers = connection.devices.readers if isinstance(connection, ComponentConnection) else {}
         if command.device not in readers:
@@ -73,14 +73,14 @@ class ComponentHandler:
         return Answer(True, f"A picture of {small.width} by {small.height} pixels.", data)
 
     def urdf(self, command: messages.Urdf, person: str) -> Answer:
-        """The body. Raises MissionError."""
+        """Return the body. Raises MissionError."""
         body = getattr(self._session.robot, "body", None)
         if body is None or not any(joint.link for joint in body.joints):
             raise refusal_error("The robot", "has no links in its file, so there is no URDF of it")
         return Answer(True, f"The body of the {one_line(body.name)}.", {"urdf": urdf(body)})
 
     def change(self, command: messages.ChangeComponent, person: str) -> Answer:
-        """One of them. Raises MissionError."""
+        """Change the state of one component. Raises MissionError."""
         connection = self._session.connection
         act = choose_member(ComponentChange, command.act, "act", command.tag)
         if not isinstance(connection, ComponentConnection):
@@ -100,7 +100,7 @@ class ComponentHandler:
 
 
 def component_data(session: Session) -> dict[str, list[dict[str, Any]]]:
-    """The components and devices of a robot, with their states."""
+    """Return the components and devices of a robot, with their states."""
     connection = session.connection
     if not isinstance(connection, ComponentConnection):
         return {"components": [], "devices": []}
@@ -149,13 +149,16 @@ _LONGEST_SOUND = 30.0  # seconds
 
 
 class VoiceHandler:
-    """The command `voice`, for any thread."""
+    """A handler of the command `voice`, for any thread."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
 
     def sound(self, command: messages.Voice, person: str) -> Answer:
-        """What it says now, or said last, from its beginning. Refused if it makes no sound, or plays it itself."""
+        """Return what it says now, or said last, from its beginning.
+
+        Refused if it makes no sound, or plays it itself.
+        """
         robot = self._session.robot
         body, said = getattr(robot, "body", None), getattr(robot, "said", None)
         if body is not None and any(device.kind == "speaker" for device in body.devices):
@@ -170,7 +173,7 @@ class VoiceHandler:
 
 
 def as_wav(said: Utterance, longest: float) -> bytes:
-    """A file of its first seconds."""
+    """Return a file of its first seconds."""
     file = io.BytesIO()
     with wave.open(file, "wb") as sound:
         sound.setnchannels(1)
@@ -185,13 +188,13 @@ _LONGEST = 500  # characters of an answer
 
 
 class WorldHandler:
-    """Commands that act on the world of the robot; for any thread. `world_input` is a sink of all runs."""
+    """A handler of commands that act on the world of the robot, for any thread. `world_input` is a sink of all runs."""
 
     def __init__(self, session: Session, world_input: WorldInput) -> None:
         self._session, self._world_input = session, world_input
 
     def answer(self, command: messages.AnswerQuestion, person: str) -> Answer:
-        """What the robot hears after its question."""
+        """Let the robot hear a text after its question."""
         text = command.text.strip()
         if not 0 < len(text) <= _LONGEST:
             raise wrong(command.tag, f"it needs a text of 1 to {_LONGEST} characters")
@@ -202,7 +205,7 @@ class WorldHandler:
         return Answer(True, "The robot hears that.", {"question": question})
 
     def talk(self, command: messages.Talk, person: str) -> Answer:
-        """Somebody holds the button to talk, or lets go of it."""
+        """Hold the button to talk for somebody, or release it."""
         if command.act not in (_HOLD, _RELEASE):
             raise wrong(command.tag, f"'act' must be '{_HOLD}' or '{_RELEASE}', not '{command.act}'")
         held = command.act == _HOLD
@@ -213,7 +216,7 @@ class WorldHandler:
         return Answer(True, "The robot listens." if held else "The robot has heard it.", {})
 
     def invite(self, command: messages.InviteVisitor, person: str) -> Answer:
-        """Somebody comes into a simulated world."""
+        """Let somebody come into a simulated world."""
         if not takes_visitors(self._session):
             raise refusal_error("The robot", "isn't in a simulated world, so no visitor can be made to come")
         self._world_input.invite()
@@ -221,12 +224,12 @@ class WorldHandler:
 
 
 def takes_talk(session: Session) -> bool:
-    """Whether somebody who speaks to it has to hold a button."""
+    """Return whether somebody who speaks to it has to hold a button."""
     return _button(session) is not None
 
 
 def takes_visitors(session: Session) -> bool:
-    """Whether visitors can be made to come: the robot's world is simulated."""
+    """Return whether visitors can be made to come: the robot's world is simulated."""
     return hasattr(session.robot, "invite")
 
 

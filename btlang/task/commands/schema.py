@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def schema() -> dict[str, Any]:
-    """The JSON schema (draft 2020-12) of a command."""
+    """Return the JSON schema (draft 2020-12) of a command."""
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "A command for a robot of btlang",

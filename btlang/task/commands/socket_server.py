@@ -69,12 +69,12 @@ class SocketServer:
         ]
 
     def start(self) -> None:
-        """From now on commands are taken."""
+        """Begin to take commands."""
         for thread in self._threads:
             thread.start()
 
     def close(self) -> None:
-        """Takes no more commands; those under way are answered first. May be called twice."""
+        """Take no more commands; those under way are answered first. May be called twice."""
         with self._answered:
             self._answered.wait_for(lambda: not self._busy, _LEAVE)
             self._closed = True
@@ -88,7 +88,7 @@ class SocketServer:
             os.close(self._lock)
 
     def _accept(self, which: int, take: Callable[[socket.socket], object]) -> None:
-        """Hands on who connects. A socket that somebody took away is made again: the robot can always be reached."""
+        """Hand on who connects. A socket that somebody took away is made again: the robot can always be reached."""
         while not self._closed:
             try:
                 connection, _ = self._sockets[which].accept()
@@ -114,7 +114,7 @@ class SocketServer:
         threading.Thread(target=self._serve, args=(connection,), daemon=True, name="btlang caller").start()
 
     def _be_stopped(self, connection: socket.socket) -> None:
-        """Whoever connects here wants a stop, and nothing that he then does or doesn't do delays it."""
+        """Stop the robot for whoever connects. Nothing that they do afterwards delays it."""
         self._stop(_person(connection))
         with suppress(OSError), connection:
             connection.settimeout(0.0)
@@ -146,7 +146,7 @@ class SocketServer:
                 self._answered.notify_all()
 
     def _stream(self, connection: socket.socket, wanted: object) -> None:
-        """Sends what happens, until one side ends."""
+        """Send what happens, until one side ends."""
         assert self._watch is not None
         known = wanted if isinstance(wanted, dict) else {}
         rate, after = known.get("rate", _RATE), known.get("after")
@@ -189,7 +189,7 @@ def _listening(path: str) -> socket.socket:
 
 
 def _person(connection: socket.socket) -> str:
-    """The name of the user whose process is at the other end."""
+    """Return the name of the user whose process is at the other end."""
     try:
         _, user, _ = struct.unpack("3i", connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12))
     except (OSError, AttributeError):  # only this user can open it anyway

@@ -61,7 +61,7 @@ class LibraryHandler:
         self._store, self._admit, self._now, self._body, self._overs = store, admit, now, body, overs
 
     def put(self, command: messages.Put, person: str) -> Answer:
-        """A new revision of a text that the robot can use."""
+        """Keep a new revision of a text that the robot can use."""
         name, kind = command.name, choose_member(LibraryKind, command.kind, "kind", command.tag)
         if not name.strip() or "/" in name or not name.isprintable() or len(name) > _LONGEST_NAME:
             reason = f"a name of at most {_LONGEST_NAME} characters, without '/', that can be shown"
@@ -74,7 +74,7 @@ class LibraryHandler:
         return Answer(True, text, {kind: revision_data(kept)})
 
     def delete(self, command: messages.Delete, person: str) -> Answer:
-        """Takes a text out."""
+        """Take a text out of the library."""
         kind = choose_member(LibraryKind, command.kind, "kind", command.tag)
         if not self._store.delete_text(command.name, person, self._now(), kind):
             raise unknown_text_error(command.name, kind)
@@ -83,7 +83,7 @@ class LibraryHandler:
         return Answer(True, describe_deletion(command.name, left), {"schedules": left})
 
     def list(self, command: messages.Library, person: str) -> Answer:
-        """All texts of a kind, or what there is of one."""
+        """List all texts of a kind, or what there is of one."""
         kind = choose_member(LibraryKind, command.kind, "kind", command.tag)
         found = self._found(command, kind)
         now = self._now()
@@ -107,7 +107,7 @@ class LibraryHandler:
         return [] if found is None else [found]
 
     def _check(self, kind: LibraryKind, name: str, text: str) -> None:
-        """Raises MissionError with what is wrong with a text. Reads only the text, and runs nothing."""
+        """Raise MissionError with what is wrong with a text. Reads only the text, and runs nothing."""
         if kind is LibraryKind.MISSION:
             self._admit(MissionText(text, name))
             return
@@ -123,7 +123,7 @@ class LibraryHandler:
 
 
 def latest_text(store: TaskStore, name: str, kind: LibraryKind) -> Source:
-    """The newest revision of a world or robot file. Raises MissionError (BT187) if there's none."""
+    """Return the newest revision of a world or robot file. Raises MissionError (BT187) if there's none."""
     found = store.text(name, kind=kind)
     if found is None:
         raise unknown_text_error(name, kind)
@@ -131,7 +131,10 @@ def latest_text(store: TaskStore, name: str, kind: LibraryKind) -> Source:
 
 
 def unknown_text_error(name: str, kind: LibraryKind = LibraryKind.MISSION, is_asked_for: bool = False) -> MissionError:
-    """BT187: there's no such text. One that `is_asked_for` as a task may be meant as the mission itself."""
+    """Make the error BT187: there's no such text.
+
+    One that `is_asked_for` as a task may be meant as the mission itself.
+    """
     reason = "isn't in the library"
     if is_asked_for and " " in name:
         reason += f"; to give a mission as text, write -c before it: btc task add -c '{one_line(name)}'"
@@ -155,7 +158,7 @@ class ScheduleHandler:
         self._store, self._wake, self._mission_of, self._now = store, wake, mission_of, now
 
     def add(self, command: messages.AddSchedule, person: str) -> Answer:
-        """A new one."""
+        """Add a schedule."""
         recurrence, now = read_rule(command.rule, command.zone), self._now()
         mission = self._mission_of(command)
         first = recurrence.next(now)
@@ -175,13 +178,13 @@ class ScheduleHandler:
         return Answer(True, text, {"schedule": schedule_data(made)})
 
     def remove(self, command: messages.RemoveSchedule, person: str) -> Answer:
-        """Ends one."""
+        """Remove a schedule."""
         if command.schedule > HIGHEST or not self._store.delete_schedule(command.schedule):
             raise refusal_error(f"Schedule {command.schedule}", "isn't known")
         return Answer(True, f"Schedule {command.schedule} is removed.", {})
 
     def list(self, command: messages.Schedules, person: str) -> Answer:
-        """All of them."""
+        """List all schedules."""
         now, found = self._now(), self._store.schedules()
         lines = [schedule_line(each, now) for each in found]
         text = "\n".join(lines) or "There are no schedules."

@@ -19,21 +19,23 @@ _LOOK = 0.2  # seconds between two looks whether somebody has shut the latch by 
 
 
 def latch_path(folder: str) -> str:
-    """The file of the latch, in the folder of a robot."""
+    """Return the file of the latch, in the folder of a robot."""
     return os.path.join(folder, "emergency_stop")
 
 
 def shut_latch(folder: str, person: str, reason: str = "") -> None:
-    """Stops a robot by its file alone, in a moment if its process is alive, else from its next start on, until it is
+    """Stop a robot by its file alone, in a moment if its process is alive, else from its next start on, until it is
     released. Raises OSError.
     """
     _write(latch_path(folder), _reason(person, reason))
 
 
 class EmergencyLatch:
-    """`stop` may be called from any thread: it sets a flag, stops the robot by `halt`, and is done. It takes no lock,
-    and waits for nothing: what keeps the latch in the file at `path` is another thread, which also looks whether
-    somebody else has shut it there.
+    """The emergency stop of a robot, and its latch.
+
+    `stop` may be called from any thread: it sets a flag, stops the robot by `halt`, and is done. It takes no lock, and
+    waits for nothing: what keeps the latch in the file at `path` is another thread, which also looks whether somebody
+    else has shut it there.
 
     A file that can't be read counts as latched: nobody knows whether it was.
     """
@@ -58,16 +60,16 @@ class EmergencyLatch:
 
     @property
     def is_latched(self) -> bool:
-        """Whether nothing may move the robot."""
+        """Whether the latch is shut, so that nothing may move the robot."""
         return bool(self.reason)
 
     def stop(self, person: str, reason: str = "") -> None:
-        """Stops the robot for a person; nothing begins before `release`."""
+        """Stop the robot for a person; nothing begins before `release`."""
         self._stop(_reason(person, reason))
         self._changed.set()
 
     def release(self) -> None:
-        """Opens the latch. Raises OSError if the file can't be written: then it stays shut."""
+        """Open the latch. Raises OSError if the file can't be written: then it stays shut."""
         with self._writing:
             _write(self._path, "")
             self._seen = _changed_at(self._path)
@@ -75,7 +77,7 @@ class EmergencyLatch:
         self._changed.set()
 
     def close(self) -> None:
-        """Waits until the file has what it should have, a second at most."""
+        """Wait until the file has what it should have, a second at most."""
         self._closed = True
         self._changed.set()
         self._thread.join(_AGAIN)
@@ -109,7 +111,7 @@ def _reason(person: str, reason: str) -> str:
 
 
 def _changed_at(path: str) -> int:
-    """When the file was written last, 0 if there is none."""
+    """Return when the file was written last, 0 if there is none."""
     try:
         return os.lstat(path).st_mtime_ns
     except OSError:

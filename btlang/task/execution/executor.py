@@ -41,7 +41,7 @@ _BLOCKED = "house rule"
 
 
 class Executor:
-    """Runs tasks in a thread of its own between `start` and `halt`; all methods may be called from any thread.
+    """A thread that runs tasks between `start` and `halt`; all methods may be called from any thread.
 
     `missions` reads a mission (MissionError if it can't be). `now` gives the time since 1970, `trouble` gets what went
     wrong, for people. `speed` and `rate` are those of `Session.prepare`, `idle_rate` is the rate between tasks. `sinks`
@@ -85,14 +85,14 @@ class Executor:
         self._thread: threading.Thread | None = None
 
     def start(self) -> None:
-        """Takes up what was left when the robot's process ended, then does what is due, until `halt`."""
+        """Take up what was left when the robot's process ended, then does what is due, until `halt`."""
         self._manager.recover(self._now(), self._emergency.reason)
         self._closing = self._hangs = False
         self._thread = threading.Thread(target=self._work, name="btlang executor", daemon=True)
         self._thread.start()
 
     def halt(self) -> bool:
-        """Ends the run under way as its task says for a restart, and brings the robot to rest. May be called twice.
+        """End the run under way as its task says for a restart, and brings the robot to rest. May be called twice.
 
         False if a command hangs: then the robot was stopped, and the executor goes on once that command ends.
         """
@@ -114,11 +114,11 @@ class Executor:
 
     @property
     def is_at_work(self) -> bool:
-        """Whether it does what is due: between `start` and `halt`."""
+        """Return whether it does what is due: between `start` and `halt`."""
         return self._thread is not None and self._thread.is_alive()
 
     def wake(self) -> None:
-        """Something has been asked for: looks at once what is to be done."""
+        """Look at once what is to be done: something has been asked for."""
         self._new = True
         with self._changed:
             self._changed.notify_all()
@@ -137,16 +137,16 @@ class Executor:
 
     @property
     def robot_state(self) -> RobotState | None:
-        """What the robot sensed last."""
+        """The latest state that the robot sensed."""
         return self._watch.robot if self._watch is not None else None
 
     @property
     def is_paused(self) -> bool:
-        """Whether nothing goes on until `resume`."""
+        """Return whether nothing goes on until `resume`."""
         return self._paused
 
     def hindrance(self) -> str:
-        """Why no task may begin now, "" if one may."""
+        """Return why no task may begin now, "" if one may."""
         return self._hindrance() or ("" if self.is_at_work else "the robot isn't at work")
 
     def _hindrance(self) -> str:
@@ -162,7 +162,7 @@ class Executor:
         return "the store can't be written to" if self._outbox else ""
 
     def pause(self) -> None:
-        """The robot comes to rest; the mission under way waits, and none begins."""
+        """Bring the robot to rest; the mission under way waits, and none begins."""
         self._paused = True
         run = self._run
         if run is not None and self._task is not None:
@@ -170,7 +170,7 @@ class Executor:
         self.wake()
 
     def resume(self) -> str:
-        """Ends a pause, and lets tasks begin again after a house rule failed; returns what it ended, "" for nothing."""
+        """End a pause, and lets tasks begin again after a house rule failed; return what it ended, "" for nothing."""
         ended = ["the pause"] if self._paused else []
         self._paused = False
         if self._store.setting(_BLOCKED):
@@ -187,7 +187,7 @@ class Executor:
         return " and ".join(ended)
 
     def step(self) -> bool:
-        """In a pause, one more tick of the mission under way; False if none is paused."""
+        """Run one more tick of the mission under way, in a pause; return False if none is paused."""
         run = self._run
         if not self._paused or run is None or self._task is None:
             return False
@@ -195,7 +195,7 @@ class Executor:
         return True
 
     def end(self, task: int, ending: RequestedEnd) -> Task | None:
-        """Ends the task under way, if it is this one; returns the task as it is then, or soon will be.
+        """End the task under way, if it is this one; return the task as it is then, or soon will be.
 
         A task whose mission ends by itself in the same moment has the state of that.
         """
@@ -246,7 +246,7 @@ class Executor:
             self._changed.wait_for(lambda: self._new or self._closing, seconds)
 
     def _idle(self) -> None:
-        """Follows the house rules until there is something to do."""
+        """Follow the house rules until there is something to do."""
         run = self._session.prepare(self._idle_mission, speed=self._speed, rate=self._idle_rate)
         self._watch = RunWatch(indices_of(run, self._rules.reactions), (), self._leave_idle)
         add_sinks(run, self._watch, *self._sinks(None, self._idle_mission, run))
@@ -262,11 +262,11 @@ class Executor:
             run.stop()
 
     def _acts(self) -> bool:
-        """Whether a house rule acts now."""
+        """Return whether a house rule acts now."""
         return self._watch is not None and bool(self._watch.acting)
 
     def _do(self, task: Task) -> None:
-        """The run of a task, from its beginning or from where it was."""
+        """Run a task, from its beginning or from where it was."""
         with self._changed:
             self._task, self._ending = task, None
         try:
@@ -307,7 +307,7 @@ class Executor:
         return run
 
     def _after_tick(self, task: Task, run: Run, watch: RunWatch) -> None:
-        """In the thread of the run: keeps where it is, and looks whether another task is more urgent."""
+        """Keep where the run is, and look whether another task is more urgent. In the thread of the run."""
         began, ended = watch.take_began(), watch.take_ended()
         try:
             if run.nodes.status != RUNNING:
@@ -352,7 +352,7 @@ class Executor:
                 self._trouble(str(error))
 
     def _end(self, task: Task, run: Run, outcome: Outcome) -> None:
-        """The state of a task whose run is over."""
+        """Set the state of a task whose run is over."""
         ending, standstill = self._ending, outcome.standstill
         warning = f"WARNING: {standstill}" if standstill.alarming else ""
 
@@ -382,7 +382,7 @@ class Executor:
             self._outbox.write(partial(describe_recovery, begun, self._store, self._now(), reason))
 
     def _ask_for_help(self, reason: str) -> None:
-        """A house rule failed: the robot stands still, and people are called."""
+        """Keep the robot still after a house rule failed, and call people."""
         self._outbox.write(partial(self._store.set_setting, _BLOCKED, reason))
         self._trouble(f"The robot needs help: a house rule failed: {reason}. It does nothing until 'btc robot resume'.")
         say = getattr(self._session.robot, "say", None)

@@ -25,7 +25,9 @@ ENDED = "ended"
 
 
 class TaskManager:
-    """All times are seconds since 1970. Methods raise StoreError where the store can't be used.
+    """The queue of tasks: which is next.
+
+    All times are in seconds since 1970. Methods raise StoreError where the store can't be used.
 
     A task is due if it is queued, or was suspended for a more urgent one, and its earliest time has come.
     """
@@ -36,13 +38,15 @@ class TaskManager:
         keeps: float = math.inf,
         needs: Callable[[MissionText], tuple[str, ...]] = lambda mission: (),
     ) -> None:
-        """`keeps` is for how many seconds tasks that are over stay in the store, `needs` what a mission needs."""
+        """Keep tasks that are over for `keeps` seconds; `needs` gives what a mission needs."""
         self._store, self._keeps, self._needs = store, keeps, needs
         self._tidied = -math.inf
 
     def recover(self, now: float, stopped: str = "") -> list[Task]:
-        """After a start: what becomes of the task that was under way when the robot's process ended. `stopped` is why
-        the robot was stopped: an emergency stop kills it also if the process ended before that was written down.
+        """Decide, after a start, what becomes of the task that was under way when the robot's process ended.
+
+        `stopped` is why the robot was stopped: an emergency stop kills it also if the process ended before that was
+        written down.
         """
         found = []
         for task in self._store.tasks(ACTIVE):
@@ -55,7 +59,7 @@ class TaskManager:
         return found
 
     def refresh(self, now: float) -> list[Task]:
-        """Makes the tasks whose scheduled times have come, and skips those whose deadline has passed.
+        """Make the tasks whose scheduled times have come, and skips those whose deadline has passed.
 
         Returns tasks under way that their schedules replace.
         """
@@ -70,18 +74,18 @@ class TaskManager:
         return replaced
 
     def tidy(self, now: float) -> None:
-        """Deletes what is too old, once a day at most."""
+        """Delete what is too old, once a day at most."""
         if self._keeps < math.inf and not self._tidied <= now < self._tidied + DAY:
             self._store.clean(now - self._keeps)
             self._tidied = now
 
     def claim(self, now: float) -> Task | None:
-        """The next task, which is then the executor's. First it counts how long tasks have waited."""
+        """Return the next task, which is then the executor's. First it counts how long tasks have waited."""
         self._store.age(now, _AGE, _MOST_BONUS)
         return self._store.claim(now)
 
     def is_more_urgent(self, than: Task, now: float) -> bool:
-        """Whether a task is due that another one has to make way for."""
+        """Return whether a task is due that another one has to make way for."""
         best = self._store.peek(now)
         if best is None:
             return False
@@ -89,17 +93,17 @@ class TaskManager:
         return best.priority > known.priority
 
     def next_time(self, now: float) -> float | None:
-        """When to look again, if nobody asks for anything before."""
+        """Return when to look again, if nobody asks for anything before."""
         return self._store.next_time(now)
 
     def first(self, now: float) -> int:
-        """The task that is under way, or else the next one; 0 for none."""
+        """Return the task that is under way, or else the next one; 0 for none."""
         active = self._store.tasks(ACTIVE)
         best = active[0] if active else self._store.peek(now)
         return best.id if best is not None else 0
 
     def why_waiting(self, task: Task, now: float, hindrance: str = "", first: int | None = None) -> str:
-        """Why a task that waits hasn't begun yet. `first` is that of the method, if known."""
+        """Return why a task that waits hasn't begun yet. `first` is that of the method, if known."""
         if task.state not in WAITING:
             return ""
         if task.state is TaskState.DELAYED and task.token:
@@ -128,7 +132,9 @@ class TaskManager:
         self._store.amend_schedule(schedule.id, next=recurrence.next(max(now, times[-1])))
 
     def _worth_doing(self, schedule: Schedule, times: list[float], now: float) -> Iterator[float]:
-        """The times of a schedule for which a task is made; the others get a task that is skipped, with the reason."""
+        """Yield the times of a schedule for which a task is made; the others get a task that is skipped, with the
+        reason.
+        """
         missed = [time for time in times if now - time > _PUNCTUAL]
         kept = {Missed.SKIP: [], Missed.ONCE: missed[-1:], Missed.ALL: missed}[schedule.missed]
         if len(missed) < len(times):
@@ -143,7 +149,7 @@ class TaskManager:
                 yield time
 
     def _make(self, schedule: Schedule, time: float, now: float, late: set[int]) -> Iterator[Task]:
-        """Makes a task, which may overlap those in `late`; it is one of them from then on."""
+        """Make a task, which may overlap those in `late`; it is one of them from then on."""
         before = self._store.tasks(WAITING | ACTIVE, schedule=schedule.id)
         earlier = [task for task in before if task.id not in late]
         task = self._store.add(self._task(schedule, time, now), "its time has come")
@@ -172,7 +178,9 @@ class TaskManager:
 
 
 def describe_recovery(task: Task, store: TaskStore, now: float, reason: str) -> Task | None:
-    """A task that was under way and is no longer, as it says itself: given up, again from its start, or resumed."""
+    """Return a task that was under way and is no longer, as it says itself: given up, again from its start, or
+    resumed.
+    """
     if task.state is TaskState.STANDBY:
         return store.change(task.id, ACTIVE, TaskState.QUEUED, time=now, cause=f"{reason} before it began")
     if task.restart is Restart.GIVE_UP:

@@ -29,8 +29,9 @@ _NOT_ALLOWED = "others can't use it; to allow it, start the robot with --allow-k
 
 
 class MissionReader:
-    """For one robot: its words are those of the keyword files `keywords`, its names those of `world`, a
-    world file or its text.
+    """A reader of missions for one robot.
+
+    Its words are those of the keyword files `keywords`, its names those of `world`, a world file or its text.
 
     A text may include files below `include_root`, and bring keyword files of `allowed_keywords` (names of packs, and
     folders); by default none, since the author of a text may not read these files, and keyword files run Python.
@@ -52,7 +53,7 @@ class MissionReader:
 
     @property
     def words(self) -> dict[str, Any]:
-        """Where its words and its world are, for another process on this computer."""
+        """The places of its words and its world, for another process on this computer."""
         files = [os.path.abspath(name) if os.path.exists(name) else name for name in self.keywords]
         words: dict[str, Any] = {"keywords": files, "language": self.language}
         if isinstance(self.world, Source):
@@ -60,21 +61,21 @@ class MissionReader:
         return {**words, "world": os.path.abspath(self.world or DEFAULT_WORLD)}
 
     def read(self, mission: MissionText) -> Mission:
-        """Raises MissionError. Fast for a text that was read a moment ago."""
+        """Read a mission. Raises MissionError. Fast for a text that was read a moment ago."""
         values = tuple((name, isinstance(value, str)) for name, value in mission.values.items())
         may_change = mission.file or self._root is not None  # what it includes
         read = self._read if may_change else self._remembered
         return read(mission.text, mission.name, mission.file, mission.keywords, values)
 
     def check(self, keywords: Sequence[str]) -> None:
-        """Raises MissionError (BT001) if a text may not bring one of these keyword files."""
+        """Raise MissionError (BT001) if a text may not bring one of these keyword files."""
         for name in keywords:
             if name not in self._allowed and not self._is_in_allowed_folder(name):
                 where = Span(Source("", "keywords"), 0, 0)
                 raise MissionError([diagnostic("BT001", where, file=name, reason=_NOT_ALLOWED)])
 
     def source(self, text: str, name: str = "") -> Source:
-        """A text that others sent."""
+        """Make the source of a text that others sent."""
         root, shown = self._root, one_line(name) or "mission"
         return Source(text, shown, root or "", () if root is None else (root,), hides_includes=True)
 
@@ -125,7 +126,7 @@ class HouseRules:
         return self._mission
 
     def around(self, mission: Mission) -> Mission:
-        """The same mission under the rules: a rule suspends it as any rule does, and then it goes on."""
+        """Return the same mission under the rules: a rule suspends it as any rule does, and then it goes on."""
         if self._mission is None:
             return mission
         root = mission.tree.root
@@ -144,17 +145,17 @@ class HouseRules:
         return ["/" + "2/" * depth + "1" for depth in range(len(self._rules))]
 
     def is_own(self, path: str) -> bool:
-        """Whether a node at this path belongs to a rule and not to the mission."""
+        """Return whether a node at this path belongs to a rule and not to the mission."""
         return not path.startswith("/" + "2/" * (len(self._rules) - 1) + "2") if self._rules else False
 
 
 def no_house_rules() -> HouseRules:
-    """A robot without any."""
+    """Return the rules of a robot that has none."""
     return HouseRules(None)
 
 
 def read_house_rules(mission: Mission) -> HouseRules:
-    """Those in a mission. Raises MissionError (BT188) if there is anything but rules in it."""
+    """Read the rules in a mission. Raises MissionError (BT188) if there is anything but rules in it."""
     node = mission.tree.root
     while _is_rule(node):
         node = node.children[2]
@@ -169,13 +170,13 @@ def _is_rule(node: Node) -> bool:
 
 
 def _watches_on(node: Node) -> bool:
-    """Whether it is what lowering puts where rules stand alone: it goes on for ever, and does nothing."""
+    """Return whether it is what lowering puts where rules stand alone: it goes on for ever, and does nothing."""
     kind = CATALOGUE.get(node.id)
     return kind is not None and kind.endless and not node.children[0].children
 
 
 def _renamed(root: Node) -> Node:
-    """With the names of the rules for subtrees."""
+    """Return a tree with the names of the rules for subtrees."""
 
     def renamed(node: Node, children: list[Node]) -> Node:
         own = {"ID": _PREFIX + node.port("ID")} if node.id == SUBTREE else {}

@@ -59,30 +59,30 @@ class RunWatch:
                     self._changed()
 
     def take_ended(self) -> bool:
-        """Whether a command has ended since the last call."""
+        """Return whether a command has ended since the last call."""
         ended, self._ended = self._ended, False
         return ended
 
     def take_began(self) -> bool:
-        """Whether a rule has begun to act since the last call."""
+        """Return whether a rule has begun to act since the last call."""
         began, self.began = self.began, False
         return began
 
 
 def add_sinks(run: Run, *sinks: Sink) -> None:
-    """They hear of a run that is about to begin."""
+    """Add sinks to a run that is about to begin."""
     for sink in sinks:
         run.bus.add(sink)
 
 
 def indices_of(run: Run, paths: Collection[str]) -> list[int]:
-    """The numbers of nodes at these paths."""
+    """Return the numbers of nodes at these paths."""
     wanted = set(paths)
     return [index for index, (path, _) in enumerate(run.nodes.nodes) if path in wanted] if wanted else []
 
 
 def commands_of(run: Run, mission: Mission) -> list[int]:
-    """The numbers of the nodes that do something: not those that only ask, or only lead others."""
+    """Return the numbers of the nodes that do something: not those that only ask, or only lead others."""
     found = []
     for index in range(run.nodes.size):
         node = run.nodes.node(index)
@@ -93,7 +93,7 @@ def commands_of(run: Run, mission: Mission) -> list[int]:
 
 
 def reason_of(outcome: Outcome) -> str:
-    """Why a mission failed, in one line."""
+    """Return why a mission failed, in one line."""
     failure = outcome.failure
     assert failure is not None
     words = failure.span.text if failure.span is not None else failure.node.id
@@ -120,7 +120,7 @@ class Recordings:
         self._latest: Recorder | None = None
 
     def recorder(self, mission: Mission, task: int) -> Recorder | None:
-        """For a run of a task that begins now, until `end`."""
+        """Make the recorder for a run of a task that begins now, until `end`."""
         self.make_room()
         try:
             recorder = recorder_in(self._folder, mission, (), {"task": str(task)}, _EACH)
@@ -133,14 +133,14 @@ class Recordings:
         return recorder
 
     def end(self) -> None:
-        """The run is over: closes its file."""
+        """Close the file of a run that is over."""
         if self._latest is not None:
             self._latest.close()
             self._latest = None
 
     def make_room(self) -> None:
-        """Removes the oldest recordings while all together are too many, or the disk is nearly full; never the one
-        that goes on.
+        """Remove the oldest recordings while all together are too many, or the disk is nearly full; never the one that
+        goes on.
         """
         found: list[tuple[float, int, str]] = []
         with suppress(OSError):

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from btlang.tree.node import Node
 
     class ChangeSource(Protocol):
-        """What became of tasks; see btlang.task.store.task_store.TaskStore."""
+        """The store of a feed: what became of tasks; see TaskStore."""
 
         listeners: list[Callable[[], object]]
 
@@ -49,8 +49,10 @@ _SHORTER = 0.95  # of a period: what comes once in each catches up after somethi
 
 
 class Allowance:
-    """Once in `period` seconds on average, within five in a hundred. What comes in step with that, but not evenly, need
-    not wait: who slept out each period would fall behind by a little each time, up to a whole period.
+    """A limit of how often something is sent: once in `period` seconds on average, within five in a hundred.
+
+    What comes in step with that, but not evenly, need not wait: who slept out each period would fall behind by a little
+    each time, up to a whole period.
     """
 
     def __init__(self, period: float) -> None:
@@ -58,11 +60,11 @@ class Allowance:
         self._due = 0.0
 
     def wait(self, now: float) -> float:
-        """Seconds until it may be sent."""
+        """Return the seconds until it may be sent."""
         return max(0.0, self._due - self._period * _EARLY - now)
 
     def use(self, now: float) -> None:
-        """It is sent."""
+        """Count that it is sent."""
         self._due = max(self._due, now) + self._period
 
 
@@ -86,18 +88,19 @@ class _Watched:
         self.valued: dict[int, Node] = {}
 
     def take(self, event: StatusesChanged) -> None:
-        """In the thread of the run."""
+        """Take in changes, in the thread of the run."""
         self.valued.update(event.values_now())
         self.changed = event.wall
 
 
 class Feed:
-    """`sinks` makes the sinks of a run; `watch` reports the present state, then what happens.
+    """A feed of what happens on a robot.
+
+    `sinks` makes the sinks of a run; `watch` reports the present state, then what happens.
 
     `robot` gives what keeps the robot from working, `words` are where its words and its world are, `world` is its map
     where it has one, `recordings` the folder of its recordings, "" for none, `parts` gives its components and devices,
-    `question` gives what the robot is asking, "" for nothing.
-    Methods may be called from any thread.
+    `question` gives what the robot is asking, "" for nothing. Methods may be called from any thread.
     """
 
     def __init__(
@@ -136,15 +139,16 @@ class Feed:
         return [_Tap(self, watched)]
 
     def wake(self) -> None:
-        """Something may have changed."""
+        """Let watchers look: something may have changed."""
         for watcher in tuple(self._watchers):
             watcher.news.set()
 
     def watch(self, rate: float = 10.0, after: int | None = None) -> Generator[dict[str, Any]]:
-        """Messages, each with its "type", until it is closed or the robot goes down; the caller waits for the next one.
+        """Yield messages, each with its "type", until it is closed or the robot goes down; the caller waits for the
+        next one.
 
-        The first one, "hello", has the number of the last change of a task that is known. A client that comes
-        back with it as `after` first gets all changes since, unless the store is another one by now.
+        The first one, "hello", has the number of the last change of a task that is known. A client that comes back with
+        it as `after` first gets all changes since, unless the store is another one by now.
         """
         least, most = RATES
         latest = self._store.latest_change()
@@ -161,7 +165,7 @@ class Feed:
             self._watchers.remove(watcher)
 
     def take(self, watched: _Watched, event: Event) -> None:
-        """In the thread of the run."""
+        """Take in an event, in the thread of the run."""
         if isinstance(event, PeriodPassed):
             self._state = event.state
             if self._map is not None:
@@ -223,7 +227,7 @@ class Feed:
                 yield message
 
     def _states(self) -> Iterator[dict[str, Any]]:
-        """The messages of which only the newest counts, as they are now."""
+        """Yield the messages of which only the newest counts, as they are now."""
         text, start, end = self._body.speech
         yield {"type": "robot", **self._robot(), **_state(self._state)}
         yield {"type": "components", **self._parts}
@@ -252,7 +256,7 @@ _SILENT: tuple[dict[str, Any], ...] = (
 
 
 class _Watcher:
-    """What somebody knows, and what happened since."""
+    """A watcher: what it knows, and what happened since."""
 
     def __init__(self, change: int) -> None:
         self.change = change
@@ -265,7 +269,7 @@ class _Watcher:
 
 
 class _Tap:
-    """The sink of a run."""
+    """A sink that hands a run's events to the feed."""
 
     policy = INLINE
 
@@ -278,7 +282,7 @@ class _Tap:
 
 
 def _statuses(watcher: _Watcher, watched: _Watched) -> Iterator[dict[str, Any]]:
-    """The tree of a run, if it is a new one, and the statuses that are new: those between are left out."""
+    """Yield the tree of a run, if it is a new one, and the statuses that are new: those between are left out."""
     run = watched.run
     if watcher.run != run.id:
         watcher.run, watcher.known = run.id, KnownNodes(run.nodes.size)
@@ -318,7 +322,7 @@ _REST = 4.0  # times as long as it took: many changes are handed on together the
 
 
 class TaskFollower:
-    """Hands the changes of this process's tasks to `changed`, each once and in order, in a thread of its own.
+    """A thread that hands the changes of this process's tasks to `changed`, each once and in order.
 
     It begins with the changes that come after it was made, until `close`. `changed` may raise StoreError: then it gets
     the same changes again. `trouble` gets what else it raises, for people.
@@ -339,7 +343,7 @@ class TaskFollower:
         self._thread.start()
 
     def close(self) -> None:
-        """Hands on what has happened until now, and ends. May be called twice."""
+        """Hand on what has happened until now, and end. May be called twice."""
         if not self._closed.is_set():
             self._store.listeners.remove(self._news.set)
             self._closed.set()

@@ -20,7 +20,9 @@ _PERIOD = 0.1  # seconds between two looks at the joints
 
 
 class BodyNow:
-    """`joints` are those of links, in the order of the body's URDF: radians and metres, None for one that isn't known.
+    """The body of a robot as it is now.
+
+    `joints` are those of links, in the order of the body's URDF: radians and metres, None for one that isn't known.
     `speech` is the text that is spoken, "" for none, with where the word of now begins and ends.
     """
 
@@ -30,7 +32,7 @@ class BodyNow:
         self._next = 0.0
 
     def look(self, robot: Any, wall: float) -> None:
-        """Takes in how the robot is now. For the thread of the run."""
+        """Take in how the robot is now, in the thread of the run."""
         self.speech = ask_sensor(lambda: _speech(robot)) or ("", 0, 0)
         if wall < self._next:
             return
@@ -44,7 +46,7 @@ def _position(robot: Any, joint: Joint) -> float:
 
 
 def _speech(robot: Any) -> tuple[str, int, int] | None:
-    """None where it says nothing, or not yet."""
+    """Return what the robot says now; None if it says nothing, or not yet."""
     said, now = robot.said, robot.time - robot.said_at
     if said is None or now < 0 or not robot.speaking:
         return None
@@ -56,7 +58,10 @@ _OPEN = "open"
 
 
 class MapNow:
-    """`world` is another one whenever a door was moved, or a mission has closed or opened a zone."""
+    """The map of a robot's world as it is now.
+
+    `world` is another one whenever a door was moved, or a mission has closed or opened a zone.
+    """
 
     def __init__(self, world: World) -> None:
         self.world = world
@@ -72,7 +77,7 @@ class MapNow:
         return written
 
     def look(self, robot: Any) -> None:
-        """Takes in which zones are closed. For the thread of the run."""
+        """Take in which zones are closed, in the thread of the run."""
         zones = ask_sensor(lambda: robot.zones)
         if zones is None or zones.version == self._version:
             return
@@ -82,13 +87,13 @@ class MapNow:
             self.world = self.world.replace(zones=now)
 
     def move_door(self, event: DoorMoved) -> None:
-        """Takes in that a door is open, or closed."""
+        """Take in that a door is open, or closed."""
         doors = (door.replace(open=event.open) if door.name == event.name else door for door in self.world.doors)
         self.world = self.world.replace(doors=tuple(doors))
 
 
 def _now(zone: Zone, zones: Zones) -> Zone:
-    """A zone with another kind: a slow one is closed, or one to keep out of is open."""
+    """Return a zone with another kind: a slow one that is closed, or one to keep out of that is open."""
     closed = zones.is_closed(zone.name)
     kind = KEEP_OUT if closed else _OPEN if zone.is_closed else zone.kind
     now: Zone = zone if kind == zone.kind else zone.replace(kind=kind)

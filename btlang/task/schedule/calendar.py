@@ -62,7 +62,7 @@ class Days(Record):
         return not self.which or (day.day + 6) // 7 in self.which or (LAST in self.which and day.day + 7 > last)
 
     def since(self, first: date) -> Iterator[date]:
-        """Those from a day on, to the end of `YEARS`."""
+        """Yield the days from a day on, to the end of `YEARS`."""
         begin = max(first, date(YEARS[0], 1, 1))
         if self.single and self.single[0]:
             begin = max(begin, date(*self.single))
@@ -100,8 +100,8 @@ _COPIES = ("posix/", "right/")
 
 
 def read_zone(name: str) -> ZoneInfo | None:
-    """The zone with a name such as `Europe/Berlin`; None for "", the computer's own, which is that of datetimes without
-    one. Raises MissionError (BT194).
+    """Return the zone with a name such as `Europe/Berlin`; None for "", the computer's own, which is that of datetimes
+    without one. Raises MissionError (BT194).
     """
     try:
         if name in _NO_ZONES or name.startswith(_COPIES):
@@ -117,10 +117,11 @@ def read_zone(name: str) -> ZoneInfo | None:
 
 
 def moment_of(day: date, seconds: int, zone: ZoneInfo | None, *, earliest: bool = False) -> float:
-    """Seconds since 1970 of a wall-clock time, given in seconds since midnight, which may be more than a day has.
+    """Return the seconds since 1970 of a wall-clock time, given in seconds since midnight, which may be more than a day
+    has.
 
-    The first time where it comes twice, and as much later as a gap is long where it doesn't exist. With `earliest`
-    the clock shows no time before a moment that is this one or, for a time in a gap, somewhat earlier.
+    The first time where it comes twice, and as much later as a gap is long where it doesn't exist. With `earliest` the
+    clock shows no time before a moment that is this one or, for a time in a gap, somewhat earlier.
     """
     wall = (datetime.combine(day, time()) + timedelta(seconds=seconds)).replace(tzinfo=zone)
     found = wall.timestamp()
@@ -128,7 +129,7 @@ def moment_of(day: date, seconds: int, zone: ZoneInfo | None, *, earliest: bool 
 
 
 def day_of(moment: float, zone: ZoneInfo | None) -> date:
-    """The day of a moment in seconds since 1970."""
+    """Return the day of a moment in seconds since 1970."""
     return datetime.fromtimestamp(moment, zone).date()
 
 
@@ -144,9 +145,10 @@ _UNITS = (("hour", 3600), ("minute", 60), ("second", 1))
 
 
 class Rule(Record):
-    """On each of the `days` either at some `times`, in order, or again after each `interval` in a `window`: from its
-    first time to its last one (on the next day if that isn't later), or without a window the whole day. Times are in
-    seconds since midnight, the interval is in seconds. `str` gives canonical English, which is read as an equal rule.
+    """A rule for times: on each of the `days` either at some `times`, in order, or again after each `interval` in a
+    `window`: from its first time to its last one (on the next day if that isn't later), or without a window the whole
+    day. Times are in seconds since midnight, the interval is in seconds. `str` gives canonical English, which is read
+    as an equal rule.
     """
 
     days: Days
@@ -176,6 +178,6 @@ def format_moment(moment: float, now: float) -> str:
 
 
 def format_duration(seconds: float) -> str:
-    """A duration in the longest unit of which it's a whole number: "10 min"."""
+    """Return a duration in the longest unit of which it's a whole number: "10 min"."""
     unit, size = next((each for each in (("h", 3600), ("min", 60)) if seconds % each[1] == 0), ("s", 1))
     return f"{seconds / size:g} {unit}"

@@ -32,7 +32,7 @@ _PAST_MOMENT = "yesterday at 9:00"
 
 
 def read_rule(text: str, zone: str = "") -> Recurrence:
-    """What a rule such as `on weekdays at 14:30` means in a time zone such as `Europe/Berlin`; "" is that of the
+    """Return what a rule such as `on weekdays at 14:30` means in a time zone such as `Europe/Berlin`; "" is that of the
     computer. docs/schedules.md has all forms. Raises MissionError (BT194) for another text, and for an unknown zone.
     """
     read_zone(zone)
@@ -46,11 +46,11 @@ class Recurrence(Record):
     zone: str = ""
 
     def next(self, after: float) -> float | None:
-        """The first time strictly after a moment; None if it never comes again."""
+        """Return the first time strictly after a moment; None if it never comes again."""
         return next(self._after(after), None)
 
     def last(self, until: float) -> float | None:
-        """The last time that isn't after a moment; None if none of these years has one."""
+        """Return the last time that isn't after a moment; None if none of these years has one."""
         for days in _BACK:
             found = list(self.between(until - days * DAY, until))
             if found:
@@ -58,18 +58,23 @@ class Recurrence(Record):
         return None
 
     def between(self, start: float, end: float) -> Iterator[float]:
-        """Those after `start` and not after `end`, in order."""
+        """Yield the times after `start` and not after `end`, in order."""
         for moment in self._after(start):
             if moment > end:
                 return
             yield moment
 
     def __str__(self) -> str:
-        """Canonical English, without the zone: `read_rule` makes an equal Recurrence of it."""
+        """Write canonical English, without the zone: `read_rule` makes an equal Recurrence of it."""
         return str(self.rule)
 
     def _after(self, start: float) -> Iterator[float]:
-        """All of them, in order. Where the clock skips midnight, times of one day may come after times of the next."""
+        """Yield all times from a moment on, in order.
+
+        Where the clock skips midnight, times of one day may come after times of the next.
+
+        Where the clock skips midnight, times of one day may come after times of the next.
+        """
         zone = read_zone(self.zone)
         found: set[float] = set()
         for day in self.rule.days.since(day_of(start, zone) - _BEFORE):
@@ -93,8 +98,8 @@ class Recurrence(Record):
 
 
 def read_moment(text: str, now: float, zone: str = "") -> float:
-    """A point in time such as `14:30` (the next such time), `Monday at 9 am`, `24 December at noon` or `in 10 minutes`,
-    in seconds since 1970. It may be in the past only if the text says `today`, or a date with its year.
+    """Return a point in time such as `14:30` (the next such time), `Monday at 9 am`, `24 December at noon` or `in 10
+    minutes`, in seconds since 1970. It may be in the past only if the text says `today`, or a date with its year.
 
     Raises MissionError (BT194) for another text, and for an unknown zone.
     """
@@ -103,15 +108,15 @@ def read_moment(text: str, now: float, zone: str = "") -> float:
 
 
 def read_past_moment(text: str, now: float, zone: str = "") -> float:
-    """As `read_moment`, but of times that have passed: `14:30` is the last such time; `2 hours ago`, `yesterday at
-    9:00`. Raises MissionError (BT194) also for a time that is still to come.
+    """Read a moment as `read_moment` does, but of times that have passed: `14:30` is the last such time; `2 hours ago`,
+    `yesterday at 9:00`. Raises MissionError (BT194) also for a time that is still to come.
     """
     read_zone(zone)
     return read_text(text, "<time>", _PAST_MOMENT, lambda words: _PastMoment(words, now, zone).read())
 
 
 class _Moment:
-    """Reads one point in time."""
+    """A reader of one point in time."""
 
     example = _MOMENT
     named: ClassVar[dict[str, int]] = {"today": 0, "tomorrow": 1}
@@ -123,7 +128,7 @@ class _Moment:
         self.words, self.now, self.zone = words, now, zone
 
     def read(self) -> float:
-        """Seconds since 1970. Raises Unread."""
+        """Return the seconds since 1970. Raises Unread."""
         words = self.words
         if words.takes("now"):
             moment = self.now
@@ -137,12 +142,13 @@ class _Moment:
         return moment
 
     def relative(self) -> float | None:
-        """`in 10 minutes`; None if the text isn't of that kind."""
+        """Read `in 10 minutes`; None if the text isn't of that kind."""
         return self.shifted(1, "in 10 minutes") if self.words.takes("in") else None
 
     def shifted(self, sign: int, example: str, end: str = "") -> float:
-        """So much later, or earlier: `10 minutes`, `1 h 30 min`, `2 days`, up to a word at the end. Days are those of
-        the clock on the wall.
+        """Move a time by so much: `10 minutes`, `1 h 30 min`, `2 days`, up to a word at the end.
+
+        Days are those of the clock on the wall.
         """
         words = self.words
         first, days, seconds = words.at, 0, 0.0
@@ -166,7 +172,7 @@ class _Moment:
         return there + wall.microsecond / 1e6 + sign * seconds
 
     def _day_and_time(self) -> float:
-        """In either order; without a day the nearest such time."""
+        """Read a day and a time in either order; without a day the nearest such time."""
         words = self.words
         days: Days | None = None
         time: int | None = None
@@ -189,7 +195,7 @@ class _Moment:
         return moment
 
     def _day(self) -> Days:
-        """One day, or several that mean the nearest of them."""
+        """Read one day, or several that mean the nearest of them."""
         words = self.words
         words.takes(*self.openers)
         first, named = words.at, words.takes(*self.named)
@@ -207,11 +213,11 @@ class _Moment:
         return Days(weekdays[0])
 
     def nearest(self, recurrence: Recurrence) -> float | None:
-        """The one that is meant of times that come again."""
+        """Choose the one that is meant of times that come again."""
         return recurrence.next(self.now)
 
     def checked(self, moment: float) -> float:
-        """A time on a day that is said. Raises Unread if it can't be meant."""
+        """Check a time on a day that is said. Raises Unread if it can't be meant."""
         return moment
 
 

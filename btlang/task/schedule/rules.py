@@ -28,12 +28,12 @@ _LONG_UNITS = ("day", "days", "week", "weeks", "weekend", "weekends", "month", "
 
 
 def read_rule_in(words: ScheduleWords) -> Rule:
-    """The rule that all of the words are. Raises Unread."""
+    """Read the rule that all of the words are. Raises Unread."""
     return _RuleReader(words).rule()
 
 
 class _RuleReader:
-    """Gathers the parts of one rule."""
+    """A reader of one rule, which gathers its parts."""
 
     def __init__(self, words: ScheduleWords) -> None:
         self._words = words
@@ -49,7 +49,7 @@ class _RuleReader:
         """What is wrong with the days unless the rule says a period: `on Monday` may be any, or only the next one."""
 
     def rule(self) -> Rule:
-        """Raises Unread."""
+        """Return the rule. Raises Unread."""
         words = self._words
         while not words.is_over:
             if not words.takes(","):
@@ -120,7 +120,7 @@ class _RuleReader:
             raise self._words.wrong(f"doesn't fit here: the {what} already given", first)
 
     def _read_times(self, first: int, time: int) -> None:
-        """The times behind the first one."""
+        """Read the times behind the first one."""
         self._once(first, bool(self._times), "times are")
         more = self._words.listed(self._words.listed_time, "at", goes_on=True)
         self._times = tuple(sorted({time, *more}))
@@ -159,7 +159,7 @@ class _RuleReader:
         self._interval = whole
 
     def _read_days(self, first: int) -> None:
-        """Also `every` with a duration, which begins as days do."""
+        """Read days, or `every` with a duration, which begins as days do."""
         words = self._words
         words.takes("on")
         every = bool(words.takes(*_EVERY))
@@ -184,7 +184,7 @@ class _RuleReader:
         self._days = days
 
     def _refuse_counted(self, first: int) -> None:
-        """`every 2 weeks`, `every other Tuesday`: which one is the first?"""
+        """Refuse `every 2 weeks` and `every other Tuesday`: nobody knows which one is the first."""
         words, begin = self._words, self._words.at
         other = words.takes("other")
         units = (*_LONG_UNITS, *_SHORT_UNITS) if other else _LONG_UNITS
@@ -198,7 +198,7 @@ class _RuleReader:
         return self._words.wrong("doesn't say where to start counting", first, example)
 
     def _read_ordinals(self, first: int, *, every: bool) -> bool:
-        """`1st and 15th of every month`, `second Tuesday of every month`."""
+        """Read `1st and 15th of every month`, `second Tuesday of every month`."""
         words, begin = self._words, self._words.at
         numbers = words.listed(words.ordinal)
         if not numbers:
@@ -233,14 +233,14 @@ class _RuleReader:
         return True
 
     def _weekdays(self) -> tuple[tuple[int, ...], bool]:
-        """Those of a list, and whether it says that every week is meant."""
+        """Read a list of weekdays, and whether it says that every week is meant."""
         found = self._words.listed(self._words.weekdays, "on every", "on each", "on", *_EVERY)
         days = {day for those, _ in found for day in those}
         return tuple(sorted(days)), any(weekly for _, weekly in found)
 
 
 def _period(days: Days) -> str:
-    """What the days come again in."""
+    """Return what the days come again in."""
     if days.single:
         return "" if days.single[0] else "year"
     if days.month_days or days.which:

@@ -88,15 +88,15 @@ class ScheduleWords:
 
     @property
     def is_over(self) -> bool:
-        """Whether all words are read."""
+        """Return whether all words are read."""
         return self.at >= self._last
 
     def ahead(self, by: int = 0) -> str:
-        """A word that isn't read yet, by its distance."""
+        """Return a word that isn't read yet, by its distance."""
         return self._text.words[self.at + by] if self.at + by < self._last else END_OF_TEXT
 
     def ends_with(self, word: str) -> bool:
-        """Whether that is the last word, and isn't read yet."""
+        """Return whether that is the last word, and isn't read yet."""
         return self.at < self._last and self._text.words[self._last - 1] == word
 
     @property
@@ -105,7 +105,7 @@ class ScheduleWords:
         return self._values.parts_of_day
 
     def takes(self, *phrases: str) -> str:
-        """The phrase that is next, behind which it reads on; "" if none of them is."""
+        """Return the phrase that is next, behind which it reads on; "" if none of them is."""
         return next((phrase for phrase in phrases if self._takes(phrase.split())), "")
 
     def _takes(self, words: list[str]) -> bool:
@@ -117,15 +117,15 @@ class ScheduleWords:
         return True
 
     def choice(self, table: Mapping[str, T]) -> T | None:
-        """What a table has for the next word."""
+        """Read the next word by a table, and return what that has for it."""
         self._asked.setdefault(self.at, set()).update(table)
         found = table.get(self.ahead())
         self.at += found is not None
         return found
 
     def listed(self, item: Callable[[], T | None], *openers: str, goes_on: bool = False) -> list[T]:
-        """What a function reads again and again, with commas or `and` between, and with or without one of some words
-        before it. With `goes_on` the first one of the list is read already.
+        """Read a list: what a function reads again and again, with commas or `and` between, and with or without one of
+        some words before it. With `goes_on` the first one of the list is read already.
         """
         found: list[T] = []
         while True:
@@ -140,14 +140,14 @@ class ScheduleWords:
             found.append(one)
 
     def exception(self) -> bool:
-        """`except`, `but not` and so on."""
+        """Read `except`, `but not` and so on."""
         end = 0 if self.is_over else self._values.exception(self._text, self.at)
         self._asked.setdefault(self.at, set()).add("except")
         self.at = end or self.at
         return bool(end)
 
     def time_of_day(self) -> int | None:
-        """`14:30`, `9 am`, `noon` in seconds since midnight."""
+        """Read `14:30`, `9 am` or `noon`, and return seconds since midnight."""
         self._asked.setdefault(self.at, set()).update(self._value_words)
         found = None if self.is_over else self._values.time_of_day(self._text, self.at)
         if found is None:
@@ -156,7 +156,7 @@ class ScheduleWords:
         return int(seconds_of(found[0]))
 
     def needed_time(self) -> int:
-        """Raises Unread if the next words are no time of day."""
+        """Read a time of day. Raises Unread if the next words are none."""
         time = self.time_of_day()
         if time is not None:
             return time
@@ -167,7 +167,7 @@ class ScheduleWords:
         raise Unread(explained.span, arguments["problem"], self.at, arguments["example"], fix=explained.fix)
 
     def listed_time(self) -> int | None:
-        """A time of day. Raises Unread for one or two figures that aren't one, nor a day."""
+        """Read a time of day in a list. Raises Unread for one or two figures that aren't one, nor a day."""
         time, first = self.time_of_day(), self.at
         if time is None and re.match(r"\d\d?\b", self.ahead()):
             if self.calendar_date() is None and self.ordinal() is None:
@@ -176,7 +176,7 @@ class ScheduleWords:
         return time
 
     def hour(self) -> tuple[int, bool] | None:
-        """A bare hour such as `10`, or a time of day, in seconds since midnight, and whether it is bare."""
+        """Read a bare hour such as `10`, or a time of day; return seconds since midnight, and whether it is bare."""
         time = self.time_of_day()
         if time is not None:
             return time, False
@@ -187,7 +187,7 @@ class ScheduleWords:
         return None
 
     def number(self) -> float | None:
-        """In figures or words."""
+        """Read a number in figures or words."""
         self._asked.setdefault(self.at, set()).update(self._value_words)
         found = None if self.is_over else self._values.number(self._text, self.at)
         if found is None:
@@ -196,12 +196,12 @@ class ScheduleWords:
         return found[0]
 
     def says_half(self, first: int) -> bool:
-        """Whether there is an `am` or `pm` among the words that are read from one on."""
+        """Return whether there is an `am` or `pm` among the words that are read from one on."""
         halves = self._values.halves_of_day
         return any(word in halves for word in self._text.words[first : self.at])
 
     def duration(self) -> float | None:
-        """Seconds. Raises Unread if a number is there, but no unit of time behind it."""
+        """Read a duration, and return seconds. Raises Unread if a number has no unit of time behind it."""
         self._asked.setdefault(self.at, set()).update(self._value_words)
         found = None if self.is_over else self._values.quantity(self._text, self.at)
         if found is not None and found[1] == DURATION:
@@ -222,7 +222,7 @@ class ScheduleWords:
         raise self.unknown(example)
 
     def days(self) -> int | None:
-        """Whole days: `10 days`, `a week`."""
+        """Read whole days: `10 days`, `a week`."""
         first = self.at
         count = 1 if first in self._text.articles else self.number()
         length = None if count is None else self.choice(_DAY_UNITS)
@@ -232,8 +232,8 @@ class ScheduleWords:
         return int(count * length)
 
     def weekdays(self) -> tuple[tuple[int, ...], bool] | None:
-        """Weekdays, and whether they are said so that every week is meant: `Mondays`, `weekdays`, `Monday to Friday`,
-        but not `Monday`.
+        """Read weekdays, and whether they are said so that every week is meant: `Mondays`, `weekdays`, `Monday to
+        Friday`, but not `Monday`.
         """
         first, bar, last = self.ahead().partition("-")
         if bar and first in _SINGULAR and last in _SINGULAR:
@@ -252,7 +252,7 @@ class ScheduleWords:
         return found, plural
 
     def ordinal(self) -> int | None:
-        """`first`, `1st`, `last` (-1)."""
+        """Read `first`, `1st`, `last` (-1)."""
         found = self.choice(ORDINALS)
         if found is None and self.ahead().isdecimal() and self.ahead(1) in ORDINAL_ENDINGS and len(self.ahead()) < 3:
             found = int(self.ahead())
@@ -260,7 +260,7 @@ class ScheduleWords:
         return found
 
     def calendar_date(self) -> tuple[int, int, int] | None:
-        """Year (0 if it isn't said), month and day: `2026-12-24`, `24 December 2026`, `December 24`, `the 24th of
+        """Read year (0 if it isn't said), month and day: `2026-12-24`, `24 December 2026`, `December 24`, `the 24th of
         December`. Raises Unread for a day that the calendar doesn't have.
         """
         first = self.at
@@ -298,7 +298,7 @@ class ScheduleWords:
         return self._figures(4) or 0, month, day
 
     def _figures(self, *lengths: int) -> int | None:
-        """A number of so many figures."""
+        """Return a number of so many figures."""
         word = self.ahead()
         if not word.isdecimal() or len(word) not in lengths:
             return None
@@ -306,15 +306,15 @@ class ScheduleWords:
         return int(word)
 
     def since(self, first: int) -> Span:
-        """The words from one on that are read."""
+        """Return the words from one on that are read."""
         return self._text.span(first, max(self.at, first + 1))
 
     def wrong(self, problem: str, first: int, example: str = "") -> Unread:
-        """To raise: what is wrong with the words from one on that are read."""
+        """Make the error to raise: what is wrong with the words from one on that are read."""
         return Unread(self.since(first), problem, self.at, example)
 
     def incomplete(self, problem: str, *more: str) -> Unread:
-        """To raise: what the whole text lacks, which the further words would mend."""
+        """Make the error to raise: what the whole text lacks, which the further words would mend."""
         if not self._last:
             return Unread(Span(self.source, 0, 0), "is empty", 0, what="The text")
         span = self._text.span(0, self._last)
@@ -322,7 +322,9 @@ class ScheduleWords:
         return Unread(span, problem, self._last, f"{span.text} {' '.join(more)}" if shown else "")
 
     def unknown(self, example: str) -> Unread:
-        """To raise: the next word isn't understood, or one behind it that was looked at, or the text has ended."""
+        """Make the error to raise: the next word isn't understood, or one behind it that was looked at, or the text has
+        ended.
+        """
         if self.is_over:
             return self.incomplete("isn't complete")
         farthest = max((at for at in self._asked if at < self._last), default=self.at)
@@ -334,7 +336,7 @@ class ScheduleWords:
 
 
 def _from_to(first: tuple[int, ...], last: tuple[int, ...]) -> tuple[int, ...]:
-    """The weekdays from the first to the last, which may be in the next week."""
+    """Return the weekdays from the first to the last, which may be in the next week."""
     days = [(first[0] + more) % 7 for more in range((last[-1] - first[0]) % 7 + 1)]
     return tuple(day for day in EVERY_DAY if day in days)
 
@@ -345,8 +347,10 @@ _LONGEST_WORD = 40  # letters; nobody mistypes a longer one
 
 
 def read_text(text: str, name: str, example: str, read: Callable[[ScheduleWords], T]) -> T:
-    """What a function makes of the words of a text. `name` is what messages call the text; Unread becomes MissionError
-    (BT194), with a correction of the spelling where one helps, or else an example.
+    """Return what a function makes of the words of a text.
+
+    `name` is what messages call the text; Unread becomes MissionError (BT194), with a correction of the spelling where
+    one helps, or else an example.
     """
     source = Source(re.sub(r"[\r\n]", " ", text), name)
     try:
@@ -361,7 +365,7 @@ def read_text(text: str, name: str, example: str, read: Callable[[ScheduleWords]
 
 
 def _correction(unread: Unread, read: Callable[[ScheduleWords], object]) -> str:
-    """The word with which the text can be read, or else read on; "" where none is near."""
+    """Return the word with which the text can be read, or else read on; "" where none is near."""
     span, farther = unread.span, ""
     if not span.text.isalpha() or len(span.text) > _LONGEST_WORD:
         return ""

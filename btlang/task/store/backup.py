@@ -24,7 +24,8 @@ _BATCH = 1_000  # rows of a statement, which may have 32,766 values
 def write_backup(
     database: Database, path: str, steps: Sequence[Step] | None = None, without: Collection[str] = ()
 ) -> None:
-    """Writes all into a new file for its owner alone, as it is at one moment, `without` the rows of some tables.
+    """Write all into a new file for its owner alone, as it is at one moment, `without` the rows of some tables.
+
     `steps` are those of `migrate`. Raises StoreError, also if there's such a file already.
     """
     if os.path.lexists(path):
@@ -42,8 +43,10 @@ def write_backup(
 
 
 def restore_backup(path: str, place: str) -> None:
-    """Fills an empty store with what `Store.backup` wrote. Raises MissionError as `open_store` does, for both places,
-    and StoreError if anything is in that store; then it stays as it is.
+    """Fill an empty store with what `Store.backup` wrote.
+
+    Raises MissionError as `open_store` does, for both places, and StoreError if anything is in that store; then it
+    stays as it is.
     """
     _check_file(path)
     target = open_database(place, durable=True)
@@ -56,9 +59,9 @@ def restore_backup(path: str, place: str) -> None:
 def fill_from_backup(
     target: Database, path: str, steps: Sequence[Step] | None = None, without: Collection[str] = ()
 ) -> None:
-    """Fills an empty database with what `write_backup` wrote, also for an older version of it; `steps` and `without`
-    are as there. Raises MissionError (BT195, BT196) for the file, and StoreError if anything is in the database; then
-    it stays as it is.
+    """Fill an empty database with what `write_backup` wrote, also for an older version of it; `steps` and `without` are
+    as there. Raises MissionError (BT195, BT196) for the file, and StoreError if anything is in the database; then it
+    stays as it is.
     """
     import tempfile
 
@@ -101,13 +104,15 @@ def _write(database: Database, part: str, path: str, steps: Sequence[Step] | Non
 
 
 def _tables(steps: Sequence[Step] | None) -> dict[str, list[str]]:
-    """The tables, with their columns, that a copy has to fill."""
+    """Return the tables, with their columns, that a copy has to fill."""
     tables = tables_of(MIGRATIONS if steps is None else steps)
     return {table: columns for table, columns in tables.items() if table != "version"}
 
 
 def _copy(read: Execute, write: Execute, steps: Sequence[Step] | None, without: Collection[str]) -> None:
-    """All rows from one store into another one, of the same version; the counters in the order of `Store.add`."""
+    """Copy all rows from one store into another one, of the same version; the counters in the order of
+    `TaskStore.add`.
+    """
     tables = _tables(steps)
     if "counter" in tables:  # which has rows from its beginning
         del tables["counter"]

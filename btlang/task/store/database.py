@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from typing import Any, ClassVar, Protocol
 
     class Execute(Protocol):
-        """Executes one SQL statement, with a `?` for each value, and gives the rows of its result."""
+        """A function that executes one SQL statement, with a `?` for each value, and gives the rows of its result."""
 
         def __call__(self, sql: str, values: Sequence[object] = ()) -> list[tuple[Any, ...]]: ...
 
@@ -33,7 +33,7 @@ OWNED: set[int] = set()
 
 
 class Mode(Enum):
-    """What a transaction is for: it sees one state of the store, or changes it, or is the only one of its mode."""
+    """The mode of a transaction: it sees one state of the store, or changes it, or is the only one of its mode."""
 
     READ = 1
     WRITE = 2
@@ -41,19 +41,19 @@ class Mode(Enum):
 
 
 class StoreError(MissionError):
-    """The database of a store refuses, or can't be reached. What the call had changed is undone.
+    """The error of a store whose database refuses, or can't be reached. What the call had changed is undone.
 
     Only if the connection is lost while a change is being confirmed, the change may have been kept.
     """
 
 
 def store_error(place: str, reason: str) -> StoreError:
-    """BT195, for a reason that can stand in a sentence."""
+    """Make the error BT195, for a reason that can stand in a sentence."""
     return StoreError([diagnostic("BT195", NOWHERE, place=place, reason=reason)])
 
 
 def owned_error(place: str, owner: str) -> MissionError:
-    """BT197: another process has the ownership."""
+    """Make the error BT197: another process has the ownership."""
     return MissionError([diagnostic("BT197", NOWHERE, place=place, owner=owner)])
 
 
@@ -84,7 +84,10 @@ class Database(ABC):
 
     @contextmanager
     def transaction(self, mode: Mode = Mode.WRITE) -> Iterator[Execute]:
-        """All or nothing of what is executed in it. Raises StoreError, also for what the database refuses inside."""
+        """Do all or nothing of what is executed in it. Raises StoreError, also for what the database refuses inside.
+
+        Raises StoreError, also for what the database refuses inside.
+        """
         with self._turn(mode):
             connection = self._begun(mode)
             try:
@@ -98,7 +101,7 @@ class Database(ABC):
             self._keep(connection)
 
     def close(self) -> None:
-        """Ends all connections, and the ownership; those in use end with their transactions. May be called twice."""
+        """End all connections, and the ownership; those in use end with their transactions. May be called twice."""
         with self._lock:
             self._is_closed = True
             idle, self._idle = self._idle, []
@@ -107,45 +110,45 @@ class Database(ABC):
         self.disown()
 
     def check(self) -> None:  # noqa: B027 - a server looks after its files itself
-        """Raises StoreError if what is stored is damaged."""
+        """Raise StoreError if what is stored is damaged."""
 
     def prepare(self) -> None:  # noqa: B027 - a server needs nothing
-        """What a store needs before anything is written into it. Raises StoreError."""
+        """Do what a store needs before anything is written into it. Raises StoreError."""
 
     @abstractmethod
     def tables(self, execute: Execute) -> dict[str, list[str]]:
-        """The columns of each table."""
+        """Return the columns of each table."""
 
     @abstractmethod
     def own(self) -> None:
-        """Takes the ownership, or makes sure of it. Raises MissionError (BT197) if another process has it."""
+        """Take the ownership, or make sure of it. Raises MissionError (BT197) if another process has it."""
 
     @abstractmethod
     def disown(self) -> None:
-        """Gives the ownership up, if this is the owner."""
+        """Give the ownership up, if this is the owner."""
 
     @abstractmethod
     def _connect(self) -> Any:
-        """A new connection, without a transaction."""
+        """Return a new connection, without a transaction."""
 
     @abstractmethod
     def _run(self, connection: Any, sql: str, values: Sequence[object] = ()) -> list[tuple[Any, ...]]:
-        """The rows of the result of one statement."""
+        """Return the rows of the result of one statement."""
 
     @abstractmethod
     def _is_lost(self, connection: Any) -> bool:
-        """Whether a connection broke."""
+        """Return whether a connection broke."""
 
     @abstractmethod
     def _is_free(self, connection: Any) -> bool:
-        """Whether a connection has no transaction, and didn't break."""
+        """Return whether a connection has no transaction, and didn't break."""
 
     @abstractmethod
     def _reason(self, error: Exception) -> str:
-        """Why the database refused, in plain words."""
+        """Return why the database refused, in plain words."""
 
     def _turn(self, mode: Mode) -> AbstractContextManager[object]:
-        """What a transaction waits for before it takes a connection."""
+        """Wait before a transaction takes a connection."""
         return nullcontext()
 
     def _problem(self, error: BaseException) -> StoreError:
@@ -159,7 +162,7 @@ class Database(ABC):
         return store_error(self.place, self._reason(error))
 
     def _begun(self, mode: Mode) -> Any:
-        """A connection in a transaction."""
+        """Return a connection in a transaction."""
         while True:
             with self._lock:
                 if self._is_closed:
@@ -200,7 +203,9 @@ class Database(ABC):
         self._drop(connection)
 
     def _undo(self, connection: Any) -> None:
-        """Undoes its transaction, and keeps it if it can go on: while a disk is full, no other one may be had."""
+        """Undo its transaction, and keep the connection if it can go on: while a disk is full, no other one may be
+        had.
+        """
         with suppress(*self._errors):
             self._run(connection, "ROLLBACK")
         if self._is_free(connection):
@@ -209,7 +214,7 @@ class Database(ABC):
             self._drop(connection)
 
     def _drop(self, connection: Any) -> None:
-        """Undoes its transaction, if it has one, and ends it."""
+        """Undo its transaction, if it has one, and close the connection."""
         with suppress(*self._errors):
             self._run(connection, "ROLLBACK")
         with suppress(*self._errors):
@@ -217,7 +222,7 @@ class Database(ABC):
 
 
 def _leave_to_parent() -> None:
-    """A child process would keep the ownership when its parent dies."""
+    """Leave the ownership to the parent: a child process would keep it when its parent dies."""
     nothing = os.open(os.devnull, os.O_RDWR)
     while OWNED:
         os.dup2(nothing, OWNED.pop(), inheritable=False)
@@ -229,8 +234,10 @@ if hasattr(os, "register_at_fork"):
 
 
 class Outbox:
-    """Keeps the order. Of one thread; `trouble` gets why the store refuses, for people. Before each other attempt
-    `make_room` may remove what isn't needed, since a full disk is the usual reason.
+    """A queue of changes for a store that may refuse for a while, for one thread.
+
+    It keeps their order. `trouble` gets why the store refuses, for people. Before each other attempt `make_room` may
+    remove what isn't needed, since a full disk is the usual reason.
     """
 
     def __init__(self, trouble: Callable[[str], object], make_room: Callable[[], object] = lambda: None) -> None:
@@ -241,7 +248,7 @@ class Outbox:
         return bool(self._waiting)
 
     def write(self, change: Callable[[], object]) -> None:
-        """Makes a change now, or as soon as the store takes it: what has happened is not lost."""
+        """Make a change now, or as soon as the store takes it: what has happened is not lost."""
         if not self._waiting:
             try:
                 change()
@@ -251,7 +258,7 @@ class Outbox:
         self._waiting.append(change)
 
     def flush(self) -> None:
-        """Makes the changes that wait. Raises StoreError for the first one that is refused again."""
+        """Make the changes that wait. Raises StoreError for the first one that is refused again."""
         if self._waiting:
             self._make_room()
         while self._waiting:

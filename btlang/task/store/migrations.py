@@ -77,7 +77,7 @@ changed. The statements are for SQLite and PostgreSQL both; the first three colu
 
 
 def open_database(place: str, durable: bool) -> Database:
-    """The database of a store, with all its tables. Raises MissionError as `open_store` does."""
+    """Return the database of a store, with all its tables. Raises MissionError as `open_store` does."""
     database = _database(place, durable)
     try:
         database.check()
@@ -102,7 +102,7 @@ def _database(place: str, durable: bool) -> Database:
 
 
 def migrate(database: Database, steps: Sequence[Step] | None = None) -> None:
-    """Brings a store to the version of this btlang, in one transaction: with these steps, by default those of tasks.
+    """Bring a store to the version of this btlang, in one transaction: with these steps, by default those of tasks.
 
     Raises MissionError, and changes nothing: BT195 if it isn't a store of btlang, BT196 if its version is newer.
     """
@@ -120,7 +120,7 @@ def migrate(database: Database, steps: Sequence[Step] | None = None) -> None:
 
 
 def stored_version(database: Database, execute: Execute, steps: Sequence[Step] | None = None) -> int:
-    """The version of a store that may be used, 0 if there is none yet. Raises MissionError (BT195, BT196)."""
+    """Return the version of a store that may be used, 0 if there is none yet. Raises MissionError (BT195, BT196)."""
     steps = MIGRATIONS if steps is None else steps
     found = database.tables(execute)
     if "version" not in found:
@@ -144,7 +144,7 @@ def stored_version(database: Database, execute: Execute, steps: Sequence[Step] |
 
 
 def tables_of(steps: Sequence[Step]) -> dict[str, list[str]]:
-    """The columns of each table that these steps make."""
+    """Return the columns of each table that these steps make."""
     connection = sqlite3.connect(":memory:")
     try:
         for step in steps:

@@ -47,8 +47,10 @@ _REASONS = {
 
 
 class Postgres(Database):
-    """`durable`: what is changed is on the server's disk before the call returns. Without it, it's in the server's
-    memory: the end of this process never takes it, but a crash of the server may take its last half second.
+    """A store in a schema of a PostgreSQL database.
+
+    `durable`: what is changed is on the server's disk before the call returns. Without it, it's in the server's memory:
+    the end of this process never takes it, but a crash of the server may take its last half second.
 
     Raises MissionError: BT189 if psycopg isn't installed, BT195 if the URL isn't one.
     """
@@ -164,7 +166,7 @@ class Postgres(Database):
 
 
 def _defaults() -> dict[str, Any]:
-    """For what a URL leaves open."""
+    """Return the settings for what a URL leaves open."""
     return {
         "application_name": f"{_NAME}process {os.getpid()} on {socket.gethostname()}",
         "client_encoding": "utf8",
@@ -177,8 +179,10 @@ def _defaults() -> dict[str, Any]:
 
 
 def _settings(durable: bool) -> str:
-    """What a connection begins with. The server, too, has to notice that the other end is gone. Where an index has the
-    order that is asked for, it's never slow; sorting all tasks to get one is, which a new table looks small enough for.
+    """Return the settings that a connection begins with.
+
+    The server, too, has to notice that the other end is gone. Where an index has the order that is asked for, it's
+    never slow; sorting all tasks to get one is, which a new table looks small enough for.
     """
     return f"""
         SET synchronous_commit = {"on" if durable else "off"};

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def is_storable(value: Any) -> bool:
-    """Whether they take all texts and numbers in a value."""
+    """Return whether stores, files and messages take all texts and numbers in a value."""
     waiting = [value]
     while waiting:
         each = waiting.pop()
@@ -28,7 +28,7 @@ def is_storable(value: Any) -> bool:
 
 
 def is_whole(text: str) -> bool:
-    """Whether it has no NUL and no half of a character."""
+    """Return whether a text has no NUL and no half of a character."""
     try:
         text.encode()
     except UnicodeEncodeError:
@@ -37,7 +37,7 @@ def is_whole(text: str) -> bool:
 
 
 class TaskState(StrEnum):
-    """Of a task; the names are those of Open-RMF (rmf_api_msgs, task_state.json)."""
+    """A state of a task; the names are those of Open-RMF (rmf_api_msgs, task_state.json)."""
 
     QUEUED = "queued"
     """Waits for its turn or its time."""
@@ -72,7 +72,7 @@ ACTIVE = frozenset((TaskState.STANDBY, TaskState.UNDERWAY))
 
 
 class Restart(StrEnum):
-    """What becomes of a task that was under way when the robot's process ended."""
+    """A rule for a task that was under way when the robot's process ended."""
 
     GIVE_UP = "give up"
     AGAIN = "again"
@@ -80,7 +80,7 @@ class Restart(StrEnum):
 
 
 class Overlap(StrEnum):
-    """What a schedule does when its time comes while its task before isn't over."""
+    """A rule for a schedule whose time comes while its task before isn't over."""
 
     SKIP = "skip"
     QUEUE = "queue"
@@ -88,7 +88,7 @@ class Overlap(StrEnum):
 
 
 class Missed(StrEnum):
-    """What a schedule does about the times that passed while the robot was down."""
+    """A rule for the times of a schedule that passed while the robot was down."""
 
     SKIP = "skip"
     ONCE = "once"
@@ -149,7 +149,7 @@ class Task(Record):
 
 
 class RequestedEnd(Record):
-    """What was asked of the run under way: the state that its task gets then, why, by whom, and the token."""
+    """A request to end the run under way: the state that its task gets then, why, by whom, and the token."""
 
     state: TaskState
     cause: str
@@ -157,8 +157,10 @@ class RequestedEnd(Record):
     token: str = ""
 
     def outranks(self, other: RequestedEnd) -> bool:
-        """Whether it replaces one that was asked for a moment before. Whoever asked for that was promised it, so only
-        more replaces it: a token after a suspension without one, the end after that, and a kill after another end.
+        """Return whether it replaces one that was asked for a moment before.
+
+        Whoever asked for that was promised it, so only more replaces it: a token after a suspension without one, the
+        end after that, and a kill after another end.
         """
         return self._rank > other._rank
 
@@ -199,7 +201,7 @@ class Schedule(Record):
 
 
 class LibraryKind(StrEnum):
-    """What a text of the library is: a mission, a world file, a robot file, or the tests of a mission, which have its
+    """A kind of text in the library: a mission, a world file, a robot file, or the tests of a mission, which have its
     name. Each kind has names of its own.
     """
 

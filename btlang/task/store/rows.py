@@ -42,22 +42,22 @@ _READERS: dict[str, Callable[[Any], Any]] = {
 
 
 def columns_of(kind: type[Record]) -> str:
-    """The columns of its table."""
+    """Return the columns of a record's table."""
     return ", ".join(kind.fields)
 
 
 def marks(count: int) -> str:
-    """As many placeholders of SQL."""
+    """Return as many placeholders of SQL."""
     return ", ".join("?" * count)
 
 
 def to_row(record: Record) -> list[Any]:
-    """The values of its columns."""
+    """Return the values of a record's columns."""
     return [to_column(getattr(record, field)) for field in record.fields]
 
 
 def to_column(value: Any) -> Any:
-    """The value of a field, for the table."""
+    """Return the value of a field, for the table."""
     if isinstance(value, MissionText):
         return dump_json({**value.as_dict(), "values": dict(value.values)})
     if isinstance(value, tuple):
@@ -68,18 +68,18 @@ def to_column(value: Any) -> Any:
 
 
 def in_lines(text: str) -> str:
-    """What a column for several texts contains if, and only if, this text is one of them."""
+    """Return what a column for several texts contains if, and only if, this text is one of them."""
     return "\n" + json.dumps(text)
 
 
 def insert(execute: Execute, table: str, record: Record, **more: object) -> None:
-    """Adds the row of a record, with further columns before it."""
+    """Add the row of a record, with further columns before it."""
     values = [*more.values(), *to_row(record)]
     execute(f"INSERT INTO {table} ({', '.join([*more, *record.fields])}) VALUES ({marks(len(values))})", values)
 
 
 def from_row(kind: type[R], row: tuple[Any, ...]) -> R:
-    """The record of a row. Raises ValueError or TypeError if it can't be one."""
+    """Return the record of a row. Raises ValueError or TypeError if it can't be one."""
     pairs = zip(row, _readers(kind), strict=True)
     return kind(*(value if reader is None else reader(value) for value, reader in pairs))
 
@@ -118,7 +118,9 @@ TIMES = (
 
 
 def task_condition(states: Collection[TaskState] | None, label: str, schedule: int) -> tuple[str, list[object]]:
-    """The condition for tasks in some states, with a label, of a schedule (None, "" and 0: any), and its values."""
+    """Return the condition for tasks in some states, with a label, of a schedule (None, "" and 0: any), and its
+    values.
+    """
     conditions, values = ["1 = 1"], list[object]()
     if states is not None:
         names = [to_column(state) for state in states] or [""]  # there is no empty list in SQL

@@ -47,7 +47,9 @@ _REASONS = {
 
 
 class Sqlite(Database):
-    """`durable`: what is changed is on the disk before the call returns, so a loss of power doesn't take it either.
+    """A store in one SQLite file.
+
+    `durable`: what is changed is on the disk before the call returns, so a loss of power doesn't take it either.
     `shown` is the name for messages.
     """
 
@@ -64,7 +66,7 @@ class Sqlite(Database):
         self._owning = threading.Lock()
 
     def prepare(self) -> None:
-        """In WAL mode nobody who reads waits for those who write."""
+        """Turn the WAL mode on, in which nobody who reads waits for those who write."""
         until = time.monotonic() + PATIENCE
         while True:
             try:
@@ -77,18 +79,18 @@ class Sqlite(Database):
             time.sleep(0.01)
 
     def check(self) -> None:
-        """Raises StoreError if the file is damaged."""
+        """Raise StoreError if the file is damaged."""
         with self.transaction(Mode.READ) as execute:
             [[found]] = execute("PRAGMA quick_check(1)")
         if found != "ok":
             raise store_error(self.place, _REASONS["SQLITE_CORRUPT"])
 
     def copy(self, path: str) -> None:
-        """Writes all into a new file, as it is at this moment. Raises StoreError."""
+        """Write all into a new file, as it is at this moment. Raises StoreError."""
         self._outside("VACUUM INTO ?", [path])
 
     def seal(self) -> None:
-        """Ends the WAL mode of a file that nobody uses, so that it can be read where nothing can be written."""
+        """End the WAL mode of a file that nobody uses, so that it can be read where nothing can be written."""
         self._outside("PRAGMA journal_mode = DELETE")
 
     def tables(self, execute: Execute) -> dict[str, list[str]]:
@@ -143,7 +145,7 @@ class Sqlite(Database):
         return nullcontext() if mode is Mode.READ else self._writing
 
     def _outside(self, sql: str, values: Sequence[object] = ()) -> None:
-        """A statement that has to be outside of transactions."""
+        """Execute a statement that has to be outside of transactions."""
         try:
             connection = self._connect()
             try:
@@ -174,7 +176,7 @@ class Sqlite(Database):
 
 
 def columns(execute: Execute) -> dict[str, list[str]]:
-    """The columns of each table of an SQLite database."""
+    """Return the columns of each table of an SQLite database."""
     found: dict[str, list[str]] = {}
     tables = "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT LIKE 'sqlite\\_%' ESCAPE '\\'"
     for table, column in execute(f"SELECT t.name, c.name FROM ({tables}) t, pragma_table_info(t.name) c"):

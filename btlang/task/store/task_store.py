@@ -54,7 +54,7 @@ class TaskStore:
 
     @property
     def place(self) -> str:
-        """Where it is, to be shown: without a password."""
+        """The place of the store, to be shown: without a password."""
         return self._database.place
 
     def __enter__(self) -> TaskStore:
@@ -66,11 +66,11 @@ class TaskStore:
         self.close()
 
     def close(self) -> None:
-        """Ends its connections and its ownership. May be called twice; other methods raise StoreError afterwards."""
+        """End its connections and its ownership. May be called twice; other methods raise StoreError afterwards."""
         self._database.close()
 
     def own(self) -> None:
-        """Makes this process the one whose executor runs the tasks, until `close` or its end, or makes sure of that.
+        """Make this process the one whose executor runs the tasks, until `close` or its end, or make sure of that.
 
         Raises MissionError (BT197) if another one is. From then on `claim` makes sure of it, too: with PostgreSQL an
         ownership ends with its connection.
@@ -79,7 +79,7 @@ class TaskStore:
         self._is_owner = True
 
     def add(self, task: Task, cause: str = "") -> Task:
-        """Keeps a new task, with an id that no task of this store had before."""
+        """Keep a new task, with an id that no task of this store had before."""
         with self._database.transaction() as execute:
             added: Task = task.replace(id=_count(execute, "task"))
             insert(execute, "task", added)
@@ -88,7 +88,7 @@ class TaskStore:
         return added
 
     def task(self, id: int) -> Task | None:
-        """None if there's no such task, perhaps not any more."""
+        """Return a task; None if there's no such task, perhaps not any more."""
         return self._one(Task, f"SELECT {TASK} FROM task WHERE id = ?", id)
 
     def tasks(
@@ -100,14 +100,16 @@ class TaskStore:
         newest: bool = False,
         limit: int | None = None,
     ) -> list[Task]:
-        """Those in these states, with this label, of this schedule; in the order of their turn, or the newest first."""
+        """Return the tasks in these states, with this label, of this schedule; in the order of their turn, or the
+        newest first.
+        """
         where, values = task_condition(states, label, schedule)
         order = "id DESC" if newest else IN_TURN
         query = f"SELECT {TASK} FROM task WHERE {where} ORDER BY {order}"
         return self._all(Task, query + _limit(limit, values), *values)
 
     def count_tasks(self, states: Collection[TaskState] | None = None, *, label: str = "", schedule: int = 0) -> int:
-        """How many `tasks` gives without a limit."""
+        """Return how many `tasks` gives without a limit."""
         where, values = task_condition(states, label, schedule)
         with self._database.transaction(Mode.READ) as execute:
             [[count]] = execute(f"SELECT count(*) FROM task WHERE {where}", values)
@@ -124,7 +126,7 @@ class TaskStore:
         person: str = "",
         **fields: Any,
     ) -> Task | None:
-        """Brings a task from one of the states `before` into another, sets its reason to the cause, and other fields by
+        """Bring a task from one of the states `before` into another, sets its reason to the cause, and other fields by
         name. None, and no change, if it isn't in one of those states; a final state it never leaves.
         """
         with self._database.transaction() as execute:
@@ -135,13 +137,13 @@ class TaskStore:
         return changed
 
     def amend(self, id: int, **fields: Any) -> Task | None:
-        """Sets fields of a task without a change of its state. None if there's no such task."""
+        """Set fields of a task without a change of its state. None if there's no such task."""
         _check(Task, fields, "state")
         with self._database.transaction() as execute:
             return self._update(execute, Task, "task", fields, "id = ?", id)
 
     def move_before(self, id: int, other: int) -> Task | None:
-        """Gives a task that waits its turn right before another one, with its priority. None if one of them is gone."""
+        """Give a task that waits its turn right before another one, with its priority. None if one of them is gone."""
         with self._database.transaction(Mode.ALONE) as execute:
             found = self._records(Task, execute(f"SELECT {TASK} FROM task WHERE id = ?", (other,)))
             if not found:
@@ -153,14 +155,16 @@ class TaskStore:
             return self._update(execute, Task, "task", fields, "id = ?", id)
 
     def age(self, now: float, interval: float, most: int) -> None:
-        """Gives tasks that wait a bonus: 1 for each `interval` that they have waited, up to the `most`."""
+        """Give tasks that wait a bonus: 1 for each `interval` that they have waited, up to the `most`."""
         earned = " + ".join(f"CASE WHEN ({SINCE}) <= ? THEN 1 ELSE 0 END" for _ in range(most))
         since = [now - number * interval for number in range(1, most + 1)]
         with self._database.transaction() as execute:
             execute(f"UPDATE task SET bonus = {earned} WHERE {WAITS} AND bonus < ({earned})", (*since, *since))
 
     def claim(self, now: float) -> Task | None:
-        """The task whose turn it is, on standby from now on; None if none may begin. No two callers get the same one.
+        """Return the task whose turn it is, on standby from now on; None if none may begin.
+
+        No two callers get the same one.
 
         Raises MissionError (BT197) if this process was the owner and another one is now.
         """
@@ -176,16 +180,18 @@ class TaskStore:
         return claimed
 
     def peek(self, now: float) -> Task | None:
-        """The task that `claim` would give."""
+        """Return the task that `claim` would give."""
         return self._one(Task, NEXT, now, now)
 
     def overdue(self, now: float) -> list[Task]:
-        """Those that are queued and should have begun by a time that has passed, in the order of their turn."""
+        """Return the queued tasks that should have begun by a time that has passed, in the order of their turn."""
         query = f"SELECT {TASK} FROM task WHERE {UNBEGUN} AND deadline < ? ORDER BY {IN_TURN}"
         return self._all(Task, query, now)
 
     def next_time(self, now: float) -> float | None:
-        """The first time after this one at which a task may begin, or no longer, or a schedule is due; None if none."""
+        """Return the first time after this one at which a task may begin, or no longer, or a schedule is due; None if
+        none.
+        """
         with self._database.transaction(Mode.READ) as execute:
             [[time]] = execute(TIMES, (now, now, now))
         return None if time is None else float(time)
@@ -193,8 +199,8 @@ class TaskStore:
     def changes(
         self, task: int | None = None, after: int = 0, limit: int | None = None
     ) -> list[tuple[int, TaskChange]]:
-        """The changes of all tasks or of one, the oldest first, each with its number: those with a higher one than
-        `after`. Numbers ascend in the order in which changes can be seen, so nobody who reads on misses one.
+        """Return the changes of all tasks or of one, the oldest first, each with its number: those with a higher one
+        than `after`. Numbers ascend in the order in which changes can be seen, so nobody who reads on misses one.
         """
         values: list[object] = [after]
         of = ""
@@ -208,38 +214,38 @@ class TaskStore:
         return [(row[-1], change) for row, change in zip(rows, found, strict=True)]
 
     def latest_change(self) -> int:
-        """The number of the last change, also if it was deleted since; 0 if there was none."""
+        """Return the number of the last change, also if it was deleted since; 0 if there was none."""
         with self._database.transaction(Mode.READ) as execute:
             [[number]] = execute("SELECT value FROM counter WHERE name = 'change'")
         return int(number)
 
     def add_schedule(self, schedule: Schedule) -> Schedule:
-        """Keeps a new schedule, with an id that no schedule of this store had before."""
+        """Keep a new schedule, with an id that no schedule of this store had before."""
         with self._database.transaction() as execute:
             added: Schedule = schedule.replace(id=_count(execute, "schedule"))
             insert(execute, "schedule", added)
         return added
 
     def schedule(self, id: int) -> Schedule | None:
-        """None if there's no such schedule."""
+        """Return a schedule; None if there's no such schedule."""
         return self._one(Schedule, f"SELECT {_SCHEDULE} FROM schedule WHERE id = ?", id)
 
     def schedules(self) -> list[Schedule]:
-        """All, the oldest first."""
+        """Return all schedules, the oldest first."""
         return self._all(Schedule, f"SELECT {_SCHEDULE} FROM schedule ORDER BY id")
 
     def due_schedules(self, now: float) -> list[Schedule]:
-        """Those whose time has come, the one that is due longest first."""
+        """Return the schedules whose time has come, the one that is due longest first."""
         return self._all(Schedule, f"SELECT {_SCHEDULE} FROM schedule WHERE next <= ? ORDER BY next, id", now)
 
     def amend_schedule(self, id: int, **fields: Any) -> Schedule | None:
-        """Sets fields of a schedule. None if there's no such schedule."""
+        """Set fields of a schedule. None if there's no such schedule."""
         _check(Schedule, fields)
         with self._database.transaction() as execute:
             return self._update(execute, Schedule, "schedule", fields, "id = ?", id)
 
     def delete_schedule(self, id: int) -> bool:
-        """Whether there was such a schedule. Its tasks stay."""
+        """Delete a schedule; return whether there was one. Its tasks stay."""
         with self._database.transaction() as execute:
             return bool(execute("DELETE FROM schedule WHERE id = ? RETURNING id", (id,)))
 
@@ -252,8 +258,9 @@ class TaskStore:
         base: int | None = None,
         kind: LibraryKind = LibraryKind.MISSION,
     ) -> Revision | None:
-        """The revision that has this text: the latest one of that name, or else a new one. None, and no change, if it
-        was made from another one, `base`, than the latest, 0 if there is none.
+        """Return the revision that has this text: the latest one of that name, or else a new one.
+
+        None, and no change, if it was made from another one, `base`, than the latest, 0 if there is none.
         """
         with self._database.transaction(Mode.ALONE) as execute:
             latest = self._latest(execute, name, kind)
@@ -266,14 +273,14 @@ class TaskStore:
         return put
 
     def text(self, name: str, number: int = 0, kind: LibraryKind = LibraryKind.MISSION) -> Revision | None:
-        """A revision, 0 for the latest. None if there isn't one, or the text is deleted by it."""
+        """Return a revision, 0 for the latest. None if there isn't one, or the text is deleted by it."""
         which = "kind = ? AND name = ? AND (number = ? OR ? = 0) ORDER BY number DESC LIMIT 1"
         query = f"SELECT {_REVISION} FROM revision WHERE {which}"
         found = self._one(Revision, query, kind.value, name, number, number)
         return None if found is None or found.deleted else found
 
     def texts(self, kind: LibraryKind = LibraryKind.MISSION) -> list[Revision]:
-        """The latest revision of each text that isn't deleted, by name."""
+        """Return the latest revision of each text that isn't deleted, by name."""
         latest = (
             "SELECT max(number) FROM revision other WHERE other.kind = revision.kind AND other.name = revision.name"
         )
@@ -282,12 +289,12 @@ class TaskStore:
         return sorted(found, key=lambda revision: revision.name)  # the same order in all databases
 
     def revisions(self, name: str, kind: LibraryKind = LibraryKind.MISSION) -> list[Revision]:
-        """All of a text, the oldest first, with those that deleted it."""
+        """Return all revisions of a text, the oldest first, with those that deleted it."""
         query = f"SELECT {_REVISION} FROM revision WHERE kind = ? AND name = ? ORDER BY number"
         return self._all(Revision, query, kind.value, name)
 
     def delete_text(self, name: str, person: str, time: float, kind: LibraryKind = LibraryKind.MISSION) -> bool:
-        """Whether there was such a text. Its revisions stay, and one more says who deleted it."""
+        """Delete a text; return whether there was one. Its revisions stay, and one more says who deleted it."""
         with self._database.transaction(Mode.ALONE) as execute:
             latest = self._latest(execute, name, kind)
             if latest is None or latest.deleted:
@@ -296,30 +303,31 @@ class TaskStore:
         return True
 
     def log(self, act: Act) -> None:
-        """Adds to the audit trail."""
+        """Add to the audit trail."""
         with self._database.transaction() as execute:
             insert(execute, "act", act, number=_count(execute, "act"))
 
     def acts(self, limit: int | None = None) -> list[Act]:
-        """The audit trail, the newest first."""
+        """Return the audit trail, the newest first."""
         values: list[object] = []
         return self._all(Act, f"SELECT {_ACT} FROM act ORDER BY number DESC" + _limit(limit, values), *values)
 
     def setting(self, name: str) -> str:
-        """What was set last, "" if nothing was."""
+        """Return what was set last, "" if nothing was."""
         with self._database.transaction(Mode.READ) as execute:
             rows = execute("SELECT value FROM setting WHERE name = ?", (name,))
         return str(rows[0][0]) if rows else ""
 
     def set_setting(self, name: str, value: str) -> None:
-        """Keeps a text under a name."""
+        """Keep a text under a name."""
         keep = "INSERT INTO setting (name, value) VALUES (?, ?) ON CONFLICT (name) DO UPDATE SET value = excluded.value"
         with self._database.transaction() as execute:
             execute(keep, (name, value))
 
     def clean(self, before: float) -> int:
-        """Deletes the tasks that ended before a time, with their changes, and the audit trail before it. Tasks that are
-        not over stay, and the library does. Returns how many tasks were deleted.
+        """Delete the tasks that ended before a time, with their changes, and the audit trail before it.
+
+        Tasks that are not over stay, and the library does. Returns how many tasks were deleted.
         """
         ended = "coalesce(ended, (SELECT max(time) FROM change WHERE change.task = task.id), created)"
         over = f"DELETE FROM task WHERE NOT ({NOT_OVER}) AND {ended} < ? RETURNING id"
@@ -330,8 +338,9 @@ class TaskStore:
         return len(deleted)
 
     def backup(self, path: str) -> None:
-        """Writes all into a new SQLite file, as it is at one moment; others may use the store meanwhile. The file is
-        there only once it's complete. Raises StoreError, also if there is such a file already.
+        """Write all into a new SQLite file, as it is at one moment; others may use the store meanwhile.
+
+        The file is there only once it's complete. Raises StoreError, also if there is such a file already.
         """
         write_backup(self._database, path)
 
@@ -390,8 +399,9 @@ class TaskStore:
 
 
 def open_store(place: str, durable: bool = False) -> TaskStore:
-    """The store at a place: a file, which is made if it doesn't exist, or a postgresql:// URL of a database. A file is
-    read once from end to end, in a tenth of a second for 100,000 tasks, to see whether it's damaged.
+    """Return the store at a place: a file, which is made if it doesn't exist, or a postgresql:// URL of a database.
+
+    A file is read once from end to end, in a tenth of a second for 100,000 tasks, to see whether it's damaged.
 
     What a method has changed outlives the process, `kill -9` included; if `durable`, also a loss of power and a crash
     of the server. Raises MissionError: BT189 if the package for PostgreSQL is missing, BT195 if it isn't a store or
@@ -401,7 +411,10 @@ def open_store(place: str, durable: bool = False) -> TaskStore:
 
 
 def _count(execute: Execute, name: str) -> int:
-    """The next number. Who has taken one makes others wait until the end of the transaction, so they end in order."""
+    """Return the next number.
+
+    Who has taken one makes others wait until the end of the transaction, so they end in order.
+    """
     [[number]] = execute("UPDATE counter SET value = value + 1 WHERE name = ? RETURNING value", (name,))
     return int(number)
 
