@@ -125,7 +125,7 @@ def _up(options: argparse.Namespace) -> int:
     """Bring a robot up until `btc robot down`, Ctrl-C or SIGTERM."""
     name, ended = options.name or USUAL_NAME, threading.Event()
     layer: TaskLayer
-    door = SocketServer(
+    server = SocketServer(
         name,
         lambda data, person: layer.handle(data, person),
         lambda person: layer.stop(person),
@@ -147,7 +147,7 @@ def _up(options: argparse.Namespace) -> int:
         trouble, down = (lambda text: show(one_line(text), sys.stderr)), ended.set
         layer = make_robot_layer(robot, reader, **kept, speed=options.speed, trouble=trouble, down=down)
     except BaseException:
-        door.close()
+        server.close()
         raise
     with emergency_signal(partial(layer.stop, "the keyboard"), layer.disable):
         try:
@@ -155,7 +155,7 @@ def _up(options: argparse.Namespace) -> int:
                 for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                     signal.signal(number, lambda *_: ended.set())
                 layer.start()
-                door.start()
+                server.start()
                 keep_ticks_in_time()
                 show(f"The robot '{name}' is up. Give it work with: btc task add")
                 if layer.emergency.is_latched:
@@ -166,7 +166,7 @@ def _up(options: argparse.Namespace) -> int:
                     while not code and not ended.wait(1.0):
                         pass
             finally:
-                door.close()
+                server.close()
         finally:
             ended_well = layer.close()
     show(f"The robot '{name}' is down.")

@@ -74,13 +74,13 @@ def _spin_node(options: argparse.Namespace, came: EndingSignals) -> int:
     )  # fmt: skip
     controls = Controls()
     came.on_arrival = controls.wake
-    door = SocketServer(
+    socket_server = SocketServer(
         robot,
         lambda data, person: node.answer(data, person),
         lambda person: node.emergency_stop(person),
         lambda *wanted: node.watch(*wanted),
     )
-    with closing(door):  # the name is ours before the store and the robot are touched
+    with closing(socket_server):  # the name is ours before the store and the robot are touched
         spun = SpunNode(
             options.name,
             namespace=options.namespace,
@@ -100,7 +100,7 @@ def _spin_node(options: argparse.Namespace, came: EndingSignals) -> int:
             ending.enter_context(emergency_signal(partial(node.emergency_stop, "the keyboard"), node.disable))
             with stopping, companions(options, robot, show) as code:
                 spun.start()
-                door.start()
+                socket_server.start()
                 keep_ticks_in_time()
                 show(f"btlang ros-node: ready as {node.get_fully_qualified_name()}; Ctrl-C ends it")
                 while not code and not came.numbers:

@@ -57,7 +57,7 @@ def serve(options: argparse.Namespace) -> int:
     from btlang.server.accounts.accounts import Accounts
     from btlang.server.http.app import Api
     from btlang.server.http.listener import load_key, open_listener
-    from btlang.server.http.listener import serve as serve_door
+    from btlang.server.http.listener import serve as serve_listener
 
     if (options.cert is None) != (options.key is None):
         options.refuse("--cert and --key go together")
@@ -72,10 +72,10 @@ def serve(options: argparse.Namespace) -> int:
         reason = f"there are no users yet; make one first: btc user add {_ADMINISTRATOR} --role administrator"
         raise _refused(options, reason)
     certificate = None if options.no_tls else _certificate(options)
-    door = open_listener(options.host, options.port)
+    listener = open_listener(options.host, options.port)
     password = _first_password(accounts)
-    port = door.getsockname()[1]
-    _keep_door(certificate, port)
+    port = listener.getsockname()[1]
+    _write_listener(certificate, port)
     scheme = "http" if certificate is None else "https"
 
     def ready() -> None:
@@ -90,7 +90,9 @@ def serve(options: argparse.Namespace) -> int:
     if options.until_eof:
         threading.Thread(target=_end_at_eof, daemon=True).start()
     try:
-        serve_door(Api(accounts, load_key(server_folder()), ros=options.ros), door, certificate, control_path(), ready)
+        serve_listener(
+            Api(accounts, load_key(server_folder()), ros=options.ros), listener, certificate, control_path(), ready
+        )
     except (OSError, ssl.SSLError) as error:
         raise _refused(options, reason_of(error)) from None
     finally:
@@ -126,20 +128,20 @@ def _certificate(options: argparse.Namespace) -> Certificate:
         raise _refused(options, "its certificate can't be read: it must be in PEM") from None
 
 
-def door_path() -> str:
+def listener_path() -> str:
     """Return the file in which a server with TLS writes its pin and port, for `btc robot invite`."""
     return os.path.join(server_folder(), "door.json")
 
 
-def _keep_door(certificate: Certificate | None, port: int) -> None:
+def _write_listener(certificate: Certificate | None, port: int) -> None:
     """Write the pin and the port for `btc robot invite`, which is another process."""
     from btlang.server.accounts.certificate import pin_of, write_private
 
     with suppress(FileNotFoundError):
-        os.unlink(door_path())
+        os.unlink(listener_path())
     if certificate is not None:
         known = {"pin": pin_of(certificate.certificate).hex(), "port": port}
-        write_private(door_path(), json.dumps(known).encode())
+        write_private(listener_path(), json.dumps(known).encode())
 
 
 def _first_password(accounts: Accounts) -> str:

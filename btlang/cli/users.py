@@ -8,7 +8,7 @@ import socket
 import sys
 import time
 
-from btlang.cli.server import door_path, notify_changes, server_folder
+from btlang.cli.server import listener_path, notify_changes, server_folder
 from btlang.task.commands.checks import refusal_error
 from btlang.task.commands.client import check_name, names_up
 from btlang.task.commands.companion import require_server
@@ -162,7 +162,7 @@ def _invite(options: argparse.Namespace, fleet: Fleet) -> None:
         return
     if name in names_up():
         raise wrong(options.act, f"a robot '{name}' is up on this computer; choose another name")
-    pin, port = _door()
+    pin, port = _read_listener()
     code = fleet.invite(name, pin)
     show(f"Within an hour, on the computer of '{name}', with the address of this one:")
     show(f"btc robot up --join wss://{socket.gethostname()}:{port} --code {code}")
@@ -179,10 +179,10 @@ def _list_invited(fleet: Fleet, *, as_json: bool) -> None:
         show(f"{each.name}  {seen if each.key else f'invited at {format_moment(each.invited, now)}'}")
 
 
-def _door() -> tuple[bytes, int]:
+def _read_listener() -> tuple[bytes, int]:
     """Read the pin and the port of the server. Raises MissionError (BT187)."""
     try:
-        with open(door_path(), encoding="ascii") as file:
+        with open(listener_path(), encoding="ascii") as file:
             kept = json.load(file)
             return bytes.fromhex(kept["pin"]), int(kept["port"])
     except (OSError, ValueError, KeyError, TypeError):

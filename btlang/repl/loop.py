@@ -152,9 +152,7 @@ class Repl:
 
 @contextmanager
 def _type_ahead() -> Iterator[None]:
-    """Give what is typed while the robot moves isn't shown, and is in the next line, also where there is no live
-    view.
-    """
+    """Hide what is typed while the robot moves, and put it in the next line, also where there is no live view."""
     try:
         import termios
 

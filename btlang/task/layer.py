@@ -257,14 +257,14 @@ def make_robot_layer(
     wanted = read_schedules(path) if path else ()
     layer = TaskLayer(robot, reader, rules=rules or body.rules or None, **options)
     try:
-        _furnish(layer, body.missions, list(wanted))
+        _fill_library(layer, body.missions, list(wanted))
     except BaseException:
         layer.close()
         raise
     return layer
 
 
-def _furnish(layer: TaskLayer, missions: str, wanted: list[AddSchedule]) -> None:
+def _fill_library(layer: TaskLayer, missions: str, wanted: list[AddSchedule]) -> None:
     """Put the missions of a folder, "" for none, into the robot's library, and make these its schedules in place of
     those that a file has made before. Others stay. Raises MissionError.
     """

@@ -24,7 +24,7 @@ from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.robots.registry import body_of
 from btlang.support.record import Record
 from btlang.task.execution.missions import read_house_rules
-from btlang.testing.pieces import MissionEnglish, move_problem
+from btlang.testing.english import MissionEnglish, move_problem
 from btlang.testing.statements import ScriptStatement, statements_of
 from btlang.testing.test import MissionTest
 from btlang.text.source import Source, Span

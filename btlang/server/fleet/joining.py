@@ -175,7 +175,7 @@ class Joins:
         for name, robot in now.items():
             if name in self._ways:
                 self._ways[name] = robot, self._ways[name][1]
-            elif name not in self._robots.links:
+            elif name not in self._robots.feeds:
                 way = Dialed()
                 self._ways[name] = robot, way
                 self._robots.add(RobotFeed(name, way, robot.seen))

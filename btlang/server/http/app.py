@@ -124,23 +124,23 @@ class Api:
         if not identity.role.covers(NEEDED[type(command)]):
             await self.access.note(identity.user, address, command.tag, "refused")
             raise AccessError(403, f"Only {NEEDED[type(command)]}s may do this.")
-        link = self.link(robot)
+        feed = self.feed(robot)
         try:
             if isinstance(command, messages.EmergencyStop):
-                await link.stop()  # at once; what follows says who, and why
-            return await link.send(command, identity.user)
+                await feed.stop()  # at once; what follows says who, and why
+            return await feed.send(command, identity.user)
         except ConnectionError as error:
             raise AccessError(503, str(error)) from None
 
-    def link(self, robot: str) -> RobotFeed:
+    def feed(self, robot: str) -> RobotFeed:
         """Raise AccessError (404, 409) if there is no such robot, or several where none was named."""
-        link = self.robots.get(robot)
-        if link is None and robot:
+        feed = self.robots.get(robot)
+        if feed is None and robot:
             raise AccessError(404, f"There's no robot '{robot}'.")
-        if link is None:
-            up = [link.name for link in self.robots.links.values() if link.is_up]
+        if feed is None:
+            up = [feed.name for feed in self.robots.feeds.values() if feed.is_up]
             raise AccessError(409, f"Say which robot: {', '.join(up)}." if up else "No robot is up.")
-        return link
+        return feed
 
     @asynccontextmanager
     async def _life(self, app: Starlette) -> AsyncIterator[None]:
@@ -209,9 +209,9 @@ class Api:
 
     async def _robots(self, request: Request) -> Response:
         await self._who(request)
-        links = self.robots.links.values()
+        feeds = self.robots.feeds.values()
         listed = [
-            {"name": each.name, "up": each.is_up, "seen": each.seen, "elsewhere": each.is_elsewhere} for each in links
+            {"name": each.name, "up": each.is_up, "seen": each.seen, "elsewhere": each.is_elsewhere} for each in feeds
         ]
         return JsonResponse({"robots": listed})
 
@@ -233,7 +233,7 @@ class Api:
         data = await json_object(request)
         text, robot = text_in(data, "text"), str(data.get("robot", ""))
         arguments = arguments_of(kind, data, text)
-        words = self.words or (self.link(robot).words if robot or self.robots.links else Words())
+        words = self.words or (self.feed(robot).words if robot or self.robots.feeds else Words())
         if "world" in data:
             name = text_in(data, "world")
             if not name:
@@ -252,50 +252,50 @@ class Api:
         return Response(written, media_type="application/json")
 
     async def _recordings(self, request: Request) -> Response:
-        link = await self._recorder(request)
+        feed = await self._recorder(request)
         found = await (
-            list_recordings_elsewhere(link.read)
-            if link.is_elsewhere
-            else asyncio.to_thread(list_recordings, link.recordings)
+            list_recordings_elsewhere(feed.read)
+            if feed.is_elsewhere
+            else asyncio.to_thread(list_recordings, feed.recordings)
         )
         return JsonResponse({"ok": True, "recordings": found})
 
     async def _recording(self, request: Request) -> Response:
-        link, name = await self._recorder(request), request.path_params["name"]
-        if link.is_elsewhere:
-            return RecordingResponse(await fetch(link.read, name))
-        path = await asyncio.to_thread(path_of, link.recordings, name)
+        feed, name = await self._recorder(request), request.path_params["name"]
+        if feed.is_elsewhere:
+            return RecordingResponse(await fetch(feed.read, name))
+        path = await asyncio.to_thread(path_of, feed.recordings, name)
         return FileResponse(path, media_type="application/octet-stream")
 
     async def _shown(self, show: Callable[..., bytes], others: tuple[str, ...], request: Request) -> Response:
         """Return what a page shows of a recording, and of the `others` that the query names."""
-        link = await self._recorder(request)
+        feed = await self._recorder(request)
         names = [request.path_params["name"], *(request.query_params.get(other, "") for other in others)]
         async with AsyncExitStack() as stack:
-            if link.is_elsewhere:
+            if feed.is_elsewhere:
                 await stack.enter_async_context(self._fetching)  # a copy may be large
-            paths = [await stack.enter_async_context(self._file(link, name, request)) for name in names]
+            paths = [await stack.enter_async_context(self._file(feed, name, request)) for name in names]
             return Response(await self.trials.shown(show, *paths), media_type="application/json")
 
     @asynccontextmanager
-    async def _file(self, link: RobotFeed, name: str, request: Request) -> AsyncIterator[str]:
-        if not link.is_elsewhere:
-            yield await asyncio.to_thread(path_of, link.recordings, name)
+    async def _file(self, feed: RobotFeed, name: str, request: Request) -> AsyncIterator[str]:
+        if not feed.is_elsewhere:
+            yield await asyncio.to_thread(path_of, feed.recordings, name)
             return
 
         async def is_wanted() -> bool:
             return not await request.is_disconnected()
 
-        async with in_file(await fetch(link.read, name), is_wanted) as path:
+        async with in_file(await fetch(feed.read, name), is_wanted) as path:
             yield path
 
     async def _recorder(self, request: Request) -> RobotFeed:
         """Return the robot whose recordings are asked for."""
         await self._who(request)
-        link = self.link(request.query_params.get("robot", ""))
-        if link.is_elsewhere and not link.is_up:
-            raise AccessError(503, f"The robot '{link.name}' isn't up: its recordings are on its own computer.")
-        return link
+        feed = self.feed(request.query_params.get("robot", ""))
+        if feed.is_elsewhere and not feed.is_up:
+            raise AccessError(503, f"The robot '{feed.name}' isn't up: its recordings are on its own computer.")
+        return feed
 
     async def _urdf(self, request: Request) -> Response:
         answer = await self._sent(request, messages.Urdf())
@@ -303,7 +303,7 @@ class Api:
 
     async def _metrics(self, request: Request) -> Response:
         await self._who(request)
-        return PlainTextResponse(metrics(self.robots.links.values(), len(self.sockets)))
+        return PlainTextResponse(metrics(self.robots.feeds.values(), len(self.sockets)))
 
     def _library(self, path: str, kind: LibraryKind) -> list[Route]:
         return [

@@ -57,23 +57,23 @@ def open_listener(host: str, port: int) -> socket.socket:
     """Open a socket that others can connect to. Raises MissionError (BT201)."""
     try:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
-        door = socket.create_server((host, port), family=family, backlog=1024)
+        listener = socket.create_server((host, port), family=family, backlog=1024)
         # asyncio does it where sockets name their protocol, which these don't; without it each answer took 44 ms
-        door.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        return door
+        listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        return listener
     except (OSError, UnicodeError, OverflowError) as error:
         reason = reason_of(error) if isinstance(error, OSError) else str(error)
         raise MissionError([diagnostic("BT201", NOWHERE, place=f"{host}:{port}", reason=reason)]) from None
 
 
 def serve(
-    api: Api, door: socket.socket, certificate: Certificate | None, control: str, ready: Callable[[], object]
+    api: Api, listener: socket.socket, certificate: Certificate | None, control: str, ready: Callable[[], object]
 ) -> None:
     """Serve until SIGINT or SIGTERM.
 
     Whoever connects to the Unix socket `control` says that the accounts have changed.
     """
-    asyncio.run(_serve(api, web_server(api, certificate), door, control, ready))
+    asyncio.run(_serve(api, web_server(api, certificate), listener, control, ready))
 
 
 def web_server(api: Api, certificate: Certificate | None) -> uvicorn.Server:
@@ -92,7 +92,7 @@ def web_server(api: Api, certificate: Certificate | None) -> uvicorn.Server:
 
 
 async def _serve(
-    api: Api, server: uvicorn.Server, door: socket.socket, control: str, ready: Callable[[], object]
+    api: Api, server: uvicorn.Server, listener: socket.socket, control: str, ready: Callable[[], object]
 ) -> None:
     async def changed(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         await api.check()
@@ -100,16 +100,16 @@ async def _serve(
 
     with suppress(FileNotFoundError):
         os.unlink(control)
-    listener = await asyncio.start_unix_server(changed, control)
+    control_server = await asyncio.start_unix_server(changed, control)
     os.chmod(control, 0o600)
-    serving = asyncio.create_task(server.serve([door]))
+    serving = asyncio.create_task(server.serve([listener]))
     while not server.started and not serving.done():
         await asyncio.sleep(0.01)
     ready()
     try:
         await serving
     finally:
-        listener.close()
+        control_server.close()
         with suppress(FileNotFoundError):
             os.unlink(control)
 

@@ -54,27 +54,27 @@ class PagePresence:
         self._numbers = itertools.count(1)
         self._sending: asyncio.TimerHandle | None = None
 
-    def show(self, visitor: ConnectedClient, data: dict[str, Any]) -> int:
+    def show(self, client: ConnectedClient, data: dict[str, Any]) -> int:
         """Note that a page shows something else. Returns its number in the list. Raises AccessError (400, 403, 429)."""
-        if not visitor.identity.is_session:
+        if not client.identity.is_session:
             raise AccessError(403, "Only pages say what they show: a program isn't a person.")
         place = _place_in(data)
-        number, before = self._pages.get(visitor, (0, None))
+        number, before = self._pages.get(client, (0, None))
         if before is None:
-            self._make_room(visitor)
+            self._make_room(client)
             number = next(self._numbers)
         if place != before:
-            self._pages[visitor] = number, place
+            self._pages[client] = number, place
             self._changed()
         return number
 
-    def leave(self, visitor: ConnectedClient) -> None:
+    def leave(self, client: ConnectedClient) -> None:
         """Forget a page whose socket has ended."""
-        if self._pages.pop(visitor, None) is not None:
+        if self._pages.pop(client, None) is not None:
             self._changed()
 
-    def _make_room(self, visitor: ConnectedClient) -> None:
-        user = visitor.identity.user
+    def _make_room(self, client: ConnectedClient) -> None:
+        user = client.identity.user
         own = sum(page.identity.user == user for page in self._pages)
         if own >= MOST_PAGES_OF_USER or len(self._pages) >= MOST_PAGES:
             raise AccessError(429, "Too many pages are open to list them all.")
@@ -94,7 +94,7 @@ class PagePresence:
         ]  # fmt: skip
         text = json.dumps({"type": "people", "people": people}, separators=(",", ":"))
         for page in self._pages:
-            page.outlet.keep("people", text, 1)
+            page.queue.keep("people", text, 1)
 
 
 def _place_in(data: dict[str, Any]) -> PageView:
@@ -131,54 +131,54 @@ class ClientProtocol:
         """See `Subprotocol`."""
         return {"type": "auth_ok", "user": identity.user, "role": identity.role}
 
-    async def talk(self, visitor: ConnectedClient) -> None:
+    async def talk(self, client: ConnectedClient) -> None:
         """See `Subprotocol`."""
         waiting: set[asyncio.Task[None]] = set()
         try:
             while True:
-                text = await visitor.receive()
-                await visitor.outlet.wait_for_room()  # else who asks, but never reads, would fill the memory
+                text = await client.receive()
+                await client.queue.wait_for_room()  # else who asks, but never reads, would fill the memory
                 while len(waiting) >= _MOST_AT_ONCE:
                     await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
-                task = asyncio.create_task(self._answer(visitor, text))
+                task = asyncio.create_task(self._answer(client, text))
                 waiting.add(task)
                 task.add_done_callback(waiting.discard)
         finally:
-            self._unsubscribe(visitor)
+            self._unsubscribe(client)
             for task in waiting:
                 task.cancel()
-            self._presence.leave(visitor)
+            self._presence.leave(client)
 
-    async def _answer(self, visitor: ConnectedClient, text: str) -> None:
+    async def _answer(self, client: ConnectedClient, text: str) -> None:
         number: Any = None
         try:
             data = read_object(text)
             number = data.pop("id", None)
-            result = await self._result(visitor, data)
+            result = await self._result(client, data)
         except AccessError as error:
             result = {"ok": False, "text": error.reason, "status": error.status, "code": ""}
         except MissionError as error:
             result = {"ok": False, "text": str(error), "code": error.diagnostics[0].code}
-        visitor.outlet.say(json.dumps({"id": number, "type": "result", **result}, default=str))
+        client.queue.say(json.dumps({"id": number, "type": "result", **result}, default=str))
 
-    async def _result(self, visitor: ConnectedClient, data: dict[str, Any]) -> dict[str, Any]:
+    async def _result(self, client: ConnectedClient, data: dict[str, Any]) -> dict[str, Any]:
         kind = data.pop("type", "command")
         if kind == "ping":
             return {"ok": True}
         if kind == "subscribe":
-            return self._subscribe(visitor, data)
+            return self._subscribe(client, data)
         if kind == "unsubscribe":
-            self._unsubscribe(visitor)
+            self._unsubscribe(client)
             return {"ok": True}
         if kind == "presence":
-            return {"ok": True, "page": self._presence.show(visitor, data)}
+            return {"ok": True, "page": self._presence.show(client, data)}
         if kind != "command":
             raise AccessError(400, "'type' must be command, subscribe, unsubscribe, presence or ping.")
         robot = data.pop("robot", "")
-        answer = await self._do(visitor.identity, str(robot), read_command(data), visitor.address)
+        answer = await self._do(client.identity, str(robot), read_command(data), client.address)
         return answer.as_json()
 
-    def _subscribe(self, visitor: ConnectedClient, data: dict[str, Any]) -> dict[str, Any]:
+    def _subscribe(self, client: ConnectedClient, data: dict[str, Any]) -> dict[str, Any]:
         """Subscribe to {"robots": [...], "topics": [...], "rate": N, "after": {...}}: by default all that all robots
         publish, at their rate, and only what comes from now on.
         """
@@ -192,24 +192,24 @@ class ClientProtocol:
             raise AccessError(400, "'after' must have the number of a change for each robot.")
         if not isinstance(topics, list) or not all(isinstance(topic, str) and topic in TOPICS for topic in topics):
             raise AccessError(400, f"'topics' must be a list of these: {', '.join(TOPICS)}.")
-        self._unsubscribe(visitor)
-        visitor.allowance = Allowance(1.0 / rate if rate else 0.0)
-        visitor.outlet.topics = frozenset(topics)
-        self._watchers[visitor] = None if robots is None else frozenset(robots), after
-        for link in self._robots.links.values():
-            self._watch(visitor, link)
+        self._unsubscribe(client)
+        client.allowance = Allowance(1.0 / rate if rate else 0.0)
+        client.queue.topics = frozenset(topics)
+        self._watchers[client] = None if robots is None else frozenset(robots), after
+        for feed in self._robots.feeds.values():
+            self._watch(client, feed)
         return {"ok": True}
 
-    def _unsubscribe(self, visitor: ConnectedClient) -> None:
-        self._watchers.pop(visitor, None)
-        for link in self._robots.links.values():
-            link.discard(visitor.outlet)
+    def _unsubscribe(self, client: ConnectedClient) -> None:
+        self._watchers.pop(client, None)
+        for feed in self._robots.feeds.values():
+            feed.discard(client.queue)
 
-    def _came(self, link: RobotFeed) -> None:
-        for visitor in self._watchers:
-            self._watch(visitor, link)
+    def _came(self, feed: RobotFeed) -> None:
+        for client in self._watchers:
+            self._watch(client, feed)
 
-    def _watch(self, visitor: ConnectedClient, link: RobotFeed) -> None:
-        robots, after = self._watchers[visitor]
-        if robots is None or link.name in robots:
-            link.add(visitor.outlet, after.get(link.name))
+    def _watch(self, client: ConnectedClient, feed: RobotFeed) -> None:
+        robots, after = self._watchers[client]
+        if robots is None or feed.name in robots:
+            feed.add(client.queue, after.get(feed.name))

@@ -37,18 +37,18 @@ class RobotFeed:
     `connection` leads to it, over the sockets of this computer by default.
     """
 
-    def __init__(self, name: str, reach: RemoteConnection | None = None, seen: float | None = None) -> None:
+    def __init__(self, name: str, connection: RemoteConnection | None = None, seen: float | None = None) -> None:
         self.name = name
-        self.is_elsewhere = reach is not None
+        self.is_elsewhere = connection is not None
         self.seen = seen
         """When it last said something, in seconds since 1970."""
         self.words = Words()
         self.recordings = ""
         """The folder of its recordings, "" if they aren't on this computer."""
-        self._reach: RobotConnection = reach or LocalConnection(name)
-        self._elsewhere = reach
+        self._connection: RobotConnection = connection or LocalConnection(name)
+        self._elsewhere = connection
         self._reading = asyncio.Lock()  # a piece at a time: the rest of what the link carries has to come through
-        self._outlets: set[ClientQueue] = set()
+        self._queues: set[ClientQueue] = set()
         self._catching_up: dict[ClientQueue, asyncio.Task[None]] = {}  # those that don't know the latest change yet
         self._paging = asyncio.Lock()  # each is a watcher more for the robot
         self._up = asyncio.Event()
@@ -62,7 +62,7 @@ class RobotFeed:
     @property
     def is_watched(self) -> bool:
         """Return whether a client gets its updates."""
-        return bool(self._outlets)
+        return bool(self._queues)
 
     @property
     def latest(self) -> dict[str, Any]:
@@ -73,7 +73,7 @@ class RobotFeed:
         """Send a command; return the answer. Raises ConnectionError if the robot isn't up, or doesn't answer."""
         try:
             async with asyncio.timeout(_PATIENCE):
-                answer = await self._reach.ask({**as_json(command), "as": person})
+                answer = await self._connection.ask({**as_json(command), "as": person})
                 return Answer(answer["ok"], answer["text"], answer["data"], answer["code"])
         except _BROKEN as error:
             text = f"The robot '{self.name}' isn't up, or doesn't answer. If it was up, it may have done it."
@@ -100,26 +100,26 @@ class RobotFeed:
         """
         try:
             async with asyncio.timeout(_STOPPED):
-                await self._reach.stop()
+                await self._connection.stop()
         except OSError as error:
             text = f"The emergency stop may not have reached the robot '{self.name}': STOP IT WHERE IT STANDS."
             raise ConnectionError(text) from error
 
-    def add(self, outlet: ClientQueue, after: int | None = None) -> None:
+    def add(self, queue: ClientQueue, after: int | None = None) -> None:
         """Add a client that gets the present state, then all updates.
 
         One that was here before first gets the changes of tasks `after` the last one that it knows.
         """
         for message in self._view.messages():
-            outlet.put(RobotNews(self.name, message))
-        self._outlets.add(outlet)
+            queue.put(RobotNews(self.name, message))
+        self._queues.add(queue)
         if after is not None:
-            self._catching_up[outlet] = asyncio.create_task(self._catch_up(outlet, after))
+            self._catching_up[queue] = asyncio.create_task(self._catch_up(queue, after))
 
-    def discard(self, outlet: ClientQueue) -> None:
+    def discard(self, queue: ClientQueue) -> None:
         """Remove a client: it gets no more updates."""
-        self._outlets.discard(outlet)
-        catching_up = self._catching_up.pop(outlet, None)
+        self._queues.discard(queue)
+        catching_up = self._catching_up.pop(queue, None)
         if catching_up is not None:
             catching_up.cancel()
 
@@ -141,7 +141,7 @@ class RobotFeed:
 
     async def _messages(self, after: int | None) -> AsyncGenerator[dict[str, Any]]:
         """Yield what the robot sends to a watcher, until it ends."""
-        async with self._reach.watching({"rate": RATE, "after": after}) as reader:
+        async with self._connection.watching({"rate": RATE, "after": after}) as reader:
             while True:
                 async with asyncio.timeout(_SILENT):  # which, unlike wait_for, takes all that is there in one go
                     line = await reader.readline()
@@ -149,22 +149,22 @@ class RobotFeed:
                     return
                 yield json.loads(line)
 
-    async def _catch_up(self, outlet: ClientQueue, after: int) -> None:
+    async def _catch_up(self, queue: ClientQueue, after: int) -> None:
         """Send a client the changes after one, until it has all that were sent to others."""
         while True:
             await self._up.wait()
             latest = self._view.change or 0
             if after >= latest:
                 break
-            await outlet.wait_for_room()
+            await queue.wait_for_room()
             async with self._paging:
-                last, is_all = await self._page(outlet, after)
+                last, is_all = await self._page(queue, after)
             if not is_all and last == after:
                 await asyncio.sleep(_AGAIN)
             after = max(last, latest) if is_all else last  # the task of a change may be deleted by now
-        del self._catching_up[outlet]
+        del self._catching_up[queue]
 
-    async def _page(self, outlet: ClientQueue, after: int) -> tuple[int, bool]:
+    async def _page(self, queue: ClientQueue, after: int) -> tuple[int, bool]:
         """Send a client some changes after one; return the number of the last, and whether others have no more."""
         end = after + _PAGE
         with suppress(*_BROKEN):
@@ -176,7 +176,7 @@ class RobotFeed:
                         return after, True
                     else:
                         after = int(message["number"])
-                        outlet.put(RobotNews(self.name, message))
+                        queue.put(RobotNews(self.name, message))
                         if after >= end:
                             break
         return after, False
@@ -196,9 +196,9 @@ class RobotFeed:
     def _publish(self, message: dict[str, Any]) -> None:
         self._view.take(message)
         news = RobotNews(self.name, message)
-        for outlet in self._outlets:
-            if message["type"] != "change" or outlet not in self._catching_up:
-                outlet.put(news)
+        for queue in self._queues:
+            if message["type"] != "change" or queue not in self._catching_up:
+                queue.put(news)
 
 
 class RobotFeeds:
@@ -207,33 +207,33 @@ class RobotFeeds:
     `came` is called with one that is new.
     """
 
-    def __init__(self, came: Callable[[RobotFeed], object] = lambda link: None) -> None:
-        self.links: dict[str, RobotFeed] = {}
+    def __init__(self, came: Callable[[RobotFeed], object] = lambda feed: None) -> None:
+        self.feeds: dict[str, RobotFeed] = {}
         self.came = came
         self._following: dict[str, asyncio.Task[None]] = {}
 
     def get(self, name: str) -> RobotFeed | None:
         """Return the feed of a name; "" for the only one that is up."""
         if name:
-            return self.links.get(name)
-        up = [link for link in self.links.values() if link.is_up]
+            return self.feeds.get(name)
+        up = [feed for feed in self.feeds.values() if feed.is_up]
         return up[0] if len(up) == 1 else None
 
-    def add(self, link: RobotFeed) -> None:
+    def add(self, feed: RobotFeed) -> None:
         """Follow a robot from now on."""
-        self.links[link.name] = link
-        self._following[link.name] = asyncio.create_task(link.follow())
-        self.came(link)
+        self.feeds[feed.name] = feed
+        self._following[feed.name] = asyncio.create_task(feed.follow())
+        self.came(feed)
 
     def remove(self, name: str) -> None:
         """Remove a robot that is no longer there."""
         self._following.pop(name).cancel()
-        self.links.pop(name).leave()
+        self.feeds.pop(name).leave()
 
     def look(self) -> None:
         """Add the robots that are up on this computer."""
         for name in names_up():
-            if name not in self.links:
+            if name not in self.feeds:
                 self.add(RobotFeed(name))
 
     async def follow(self) -> None:
@@ -247,19 +247,19 @@ class RobotFeeds:
                 task.cancel()
 
 
-def metrics(links: Iterable[RobotFeed], clients: int) -> str:
+def metrics(feeds: Iterable[RobotFeed], clients: int) -> str:
     """Write the figures of the robots, and how many sockets are open."""
     rows: list[tuple[str, str, str, float]] = []
-    for link in links:
-        known = link.latest
-        rows.append(("btlang_robot_up", "Whether the robot is up.", link.name, float(link.is_up)))
+    for feed in feeds:
+        known = feed.latest
+        rows.append(("btlang_robot_up", "Whether the robot is up.", feed.name, float(feed.is_up)))
         rows.append(
-            ("btlang_robot_stopped", "Whether its emergency stop is shut.", link.name, bool(known.get("stopped")))
+            ("btlang_robot_stopped", "Whether its emergency stop is shut.", feed.name, bool(known.get("stopped")))
         )
         if known.get("battery") is not None:
-            rows.append(("btlang_robot_battery_percent", "The charge of its battery.", link.name, known["battery"]))
-        if link.seen is not None:
-            rows.append(("btlang_robot_seen_seconds", "When it last said something.", link.name, link.seen))
+            rows.append(("btlang_robot_battery_percent", "The charge of its battery.", feed.name, known["battery"]))
+        if feed.seen is not None:
+            rows.append(("btlang_robot_seen_seconds", "When it last said something.", feed.name, feed.seen))
     lines: list[str] = []
     for name, text, robot, value in sorted(rows):
         if not lines or name not in lines[-1]:

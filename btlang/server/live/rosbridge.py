@@ -137,7 +137,7 @@ class Rosbridge:
         self.greeting: dict[str, Any] | None = None
         self.refusal = status('Log in first: {"op": "auth", "mac": TOKEN}, with a token of this server.')
         self._access, self._allowed = access, tuple(allowed)
-        self._visitors: dict[int, ConnectedClient] = {}
+        self._clients: dict[int, ConnectedClient] = {}
         self._numbers = count(1)
         self._bridge = BridgeProcess(self._heard, self._ended)
         self._leaving: set[asyncio.Task[None]] = set()
@@ -149,70 +149,70 @@ class Rosbridge:
     def welcome(self, identity: Identity) -> None:
         """See `Subprotocol`: rosbridge has no answer for that."""
 
-    async def talk(self, visitor: ConnectedClient) -> None:
+    async def talk(self, client: ConnectedClient) -> None:
         """See `Subprotocol`. What he began ends with him."""
         number = next(self._numbers)
-        self._visitors[number] = visitor
+        self._clients[number] = client
         try:
             try:
                 await self._bridge.start()
             except OSError:
                 raise WebSocketDisconnect(LOST) from None
             while True:
-                await visitor.outlet.wait_for_room()
-                for message in await self._take(visitor, number, await visitor.receive()):
-                    visitor.outlet.say(json.dumps(message))
+                await client.queue.wait_for_room()
+                for message in await self._take(client, number, await client.receive()):
+                    client.queue.say(json.dumps(message))
         finally:
-            self._visitors.pop(number, None)
+            self._clients.pop(number, None)
             self._bridge.write({"client": number, "op": "leave"})
 
     async def close(self) -> None:
         """End the process."""
         await self._bridge.close()
 
-    async def _take(self, visitor: ConnectedClient, number: int, text: str) -> list[dict[str, Any]]:
+    async def _take(self, client: ConnectedClient, number: int, text: str) -> list[dict[str, Any]]:
         """Hand an operation on; what to answer at once."""
         try:
             data = read_object(text)
             if data.get("op") == "auth":  # a page with a cookie may send that, too
-                return [status(f"You're logged in as {visitor.identity.user}.", level="info")]
+                return [status(f"You're logged in as {client.identity.user}.", level="info")]
             _check_form(data)
         except AccessError as error:
             return [status(error.reason)]
-        reason = self._refusal(visitor, data)
+        reason = self._refusal(client, data)
         if reason:
             name = str(data.get(OPERATIONS[data["op"]].name))
             what = f"{data['op']} {one_line(name[:_SHOWN])}"
-            await self._access.note(visitor.identity.user, visitor.address, what, "refused")
+            await self._access.note(client.identity.user, client.address, what, "refused")
             return failures(data, reason)
         self._bridge.write({**data, "client": number})
         await self._bridge.drain()
         return []
 
-    def _refusal(self, visitor: ConnectedClient, data: dict[str, Any]) -> str:
+    def _refusal(self, client: ConnectedClient, data: dict[str, Any]) -> str:
         operation = OPERATIONS[data["op"]]
         name = data.get(operation.name)
         if not isinstance(name, str) or len(name) > _LONGEST_NAME or not _NAME.fullmatch(name):
             return f"'{operation.name}' must be a name such as /btlang/tasks, whose parts begin with letters."
         if not any(fnmatchcase(f"/{name.removeprefix('/')}", pattern) for pattern in self._allowed):
             return f"{name} isn't one of the names that this server lets through: {', '.join(self._allowed)}."
-        if not visitor.identity.role.covers(operation.role):
+        if not client.identity.role.covers(operation.role):
             return f"Only {operation.role}s may do this: {data['op']}."
         return ""
 
     def _heard(self, about: dict[str, Any], text: str) -> None:
-        visitor = self._visitors.get(about["client"])
-        if visitor is None:
+        client = self._clients.get(about["client"])
+        if client is None:
             return
         if about["topic"]:
-            visitor.outlet.keep(about["topic"], text, about["most"])
+            client.queue.keep(about["topic"], text, about["most"])
         else:
-            visitor.outlet.say(text)
+            client.queue.say(text)
 
     def _ended(self, problem: str) -> None:
         text = json.dumps(status(problem or "The connection to ROS 2 has ended. Connect again."))
-        for visitor in self._visitors.values():
-            task = asyncio.ensure_future(visitor.leave(LOST, text))
+        for client in self._clients.values():
+            task = asyncio.ensure_future(client.leave(LOST, text))
             self._leaving.add(task)
             task.add_done_callback(self._leaving.discard)
 

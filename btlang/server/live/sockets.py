@@ -30,7 +30,7 @@ if TYPE_CHECKING:
         def welcome(self, identity: Identity) -> dict[str, Any] | None:
             """Return the message for somebody who is logged in now."""
 
-        async def talk(self, visitor: ConnectedClient) -> None:
+        async def talk(self, client: ConnectedClient) -> None:
             """Talk until the client leaves (WebSocketDisconnect), or has to (CancelledError)."""
 
 
@@ -45,7 +45,7 @@ class ConnectedClient:
 
     def __init__(self, socket: WebSocket, identity: Identity) -> None:
         self.socket, self.identity = socket, identity
-        self.outlet = ClientQueue()
+        self.queue = ClientQueue()
         self.allowance = Allowance(0.0)
         self._talk: asyncio.Task[None] | None = None
         self._code, self._last = 0, ""
@@ -86,17 +86,17 @@ class ConnectedClient:
             await asyncio.wait({self._talk})
 
     async def _send(self) -> None:
-        now, outlet = asyncio.get_running_loop().time, self.outlet
+        now, queue = asyncio.get_running_loop().time, self.queue
         with suppress(WebSocketDisconnect, RuntimeError, OSError):
             while True:
-                await outlet.wait()
+                await queue.wait()
                 early = self.allowance.wait(now())
                 if early:
-                    await outlet.wait_for_answer(early)
+                    await queue.wait_for_answer(early)
                 self.allowance.use(now())
-                for text in outlet.take():
+                for text in queue.take():
                     await self.socket.send_text(text)
-        outlet.close()
+        queue.close()
 
 
 class Sockets:
@@ -104,10 +104,10 @@ class Sockets:
 
     def __init__(self, access: Access) -> None:
         self._access = access
-        self._visitors: set[ConnectedClient] = set()
+        self._clients: set[ConnectedClient] = set()
 
     def __len__(self) -> int:
-        return len(self._visitors)
+        return len(self._clients)
 
     async def serve(self, subprotocol: Subprotocol, socket: WebSocket) -> None:
         """Serve one socket, until it ends."""
@@ -119,28 +119,28 @@ class Sockets:
             identity = await self._log_in(subprotocol, socket)
             if identity is None:
                 return
-            visitor = ConnectedClient(socket, identity)
-            self._visitors.add(visitor)
+            client = ConnectedClient(socket, identity)
+            self._clients.add(client)
             try:
-                await self._look(visitor)  # while he was welcomed, his token may have been revoked
-                await visitor.talk(subprotocol)
+                await self._look(client)  # while he was welcomed, his token may have been revoked
+                await client.talk(subprotocol)
             finally:
-                self._visitors.discard(visitor)
+                self._clients.discard(client)
         except (WebSocketDisconnect, RuntimeError, TimeoutError):
             return
 
     async def check(self) -> None:
         """End the sockets of those who may no longer be here, and give the others their present role."""
         self._access.forget()
-        for visitor in tuple(self._visitors):
-            await self._look(visitor)
+        for client in tuple(self._clients):
+            await self._look(client)
 
-    async def _look(self, visitor: ConnectedClient) -> None:
-        now = await asyncio.to_thread(self._access.accounts.still, visitor.identity)
+    async def _look(self, client: ConnectedClient) -> None:
+        now = await asyncio.to_thread(self._access.accounts.still, client.identity)
         if now is None:
-            await visitor.leave(REVOKED)
+            await client.leave(REVOKED)
         else:
-            visitor.identity = now
+            client.identity = now
 
     async def _log_in(self, subprotocol: Subprotocol, socket: WebSocket) -> Identity | None:
         with suppress(AccessError):

@@ -99,15 +99,15 @@ class LocalApi(Api):
 class LocalRobots(RobotFeeds):
     """The robots of a page, without others that are up on this computer."""
 
-    def __init__(self, *links: RobotFeed) -> None:
+    def __init__(self, *feeds: RobotFeed) -> None:
         super().__init__()
-        self._given = links
+        self._given = feeds
 
     def look(self) -> None:
         """Add those that were given."""
-        for link in self._given:
-            if link.name not in self.links:
-                self.add(link)
+        for feed in self._given:
+            if feed.name not in self.feeds:
+                self.add(feed)
 
 
 class LocalPage:
@@ -178,15 +178,15 @@ def local_page(make: Callable[[Accounts, int, str], LocalApi], port: int = 0) ->
     `make` makes its server, from accounts, the port and a private folder. Requests are answered in a thread.
     """
     check_page()
-    door = open_listener(_HOST, port)
-    port = door.getsockname()[1]
+    listener = open_listener(_HOST, port)
+    port = listener.getsockname()[1]
     with (
         tempfile.TemporaryDirectory(prefix="btlang-") as folder,
         closing(Accounts(folder, clock=lambda: 0.0)) as accounts,  # its session ends with it, however long that is
     ):
         api = make(accounts, port, folder)
         server = web_server(api, None)
-        thread = threading.Thread(target=lambda: asyncio.run(server.serve([door])), name="btlang page", daemon=True)
+        thread = threading.Thread(target=lambda: asyncio.run(server.serve([listener])), name="btlang page", daemon=True)
         thread.start()
         try:
             yield LocalPage(api, port, folder)

@@ -76,7 +76,7 @@ class NoTasks:
 class PageMonitor:
     """A monitor that shows a run on a page; see run_mission (run/terminal.py).
 
-    It's also the connection of `link`, the page's robot.
+    It's also the connection of `feed`, the page's robot.
 
     `world` is None for a robot whose map isn't known.
     """
@@ -84,7 +84,7 @@ class PageMonitor:
     hooks = None
 
     def __init__(self, name: str, world: World | None, body: Body | None) -> None:
-        self.link = RobotFeed(name, self)
+        self.feed = RobotFeed(name, self)
         self._body = body
         self._controls = Controls()
         self._emergency = ""
@@ -108,7 +108,7 @@ class PageMonitor:
             run.bus.add(sink)
         self._feed.wake()
         end = time.monotonic() + _PATIENCE
-        while not self.link.is_watched and time.monotonic() < end:  # what happens before is in no page's log
+        while not self.feed.is_watched and time.monotonic() < end:  # what happens before is in no page's log
             time.sleep(0.05)
 
     def stay(self, code: int) -> int:
@@ -170,7 +170,7 @@ def open_monitor(mission: Mission, name: str, body: Body, is_simulated: bool, br
     """Give a monitor that shows a run on a page. `is_simulated`: the robot moves in the world of the mission."""
     world = read_world(mission.world, body) if is_simulated or mission.world is not None else None
     monitor = PageMonitor(name, world, body)
-    robots = LocalRobots(monitor.link)
+    robots = LocalRobots(monitor.feed)
     with local_page(lambda accounts, port, _: WatchApi(accounts, port, ("robots", name), robots)) as page:
         say_where(page, f"Watch {one_line(name)}", browser)
         show(f"The run begins when the page is there, or after {_PATIENCE:.0f} s.")
@@ -189,9 +189,9 @@ def serve(options: argparse.Namespace) -> int:
 
 def _recording_api(path: str, accounts: Accounts, port: int, folder: str) -> WatchApi:
     """Return the server of one recording, which is in a folder of its own under a name that an address can have."""
-    link = RobotFeed(re.sub(r"\.mcap$", "", os.path.basename(path)) or "recording")
+    feed = RobotFeed(re.sub(r"\.mcap$", "", os.path.basename(path)) or "recording")
     os.symlink(os.path.abspath(path), os.path.join(folder, "recording.mcap"))
-    link.recordings = folder
-    api = WatchApi(accounts, port, ("runs", link.name, "recording.mcap"), LocalRobots())
-    api.robots.links[link.name] = link  # it isn't followed: there's only its recording
+    feed.recordings = folder
+    api = WatchApi(accounts, port, ("runs", feed.name, "recording.mcap"), LocalRobots())
+    api.robots.feeds[feed.name] = feed  # it isn't followed: there's only its recording
     return api

@@ -1,4 +1,4 @@
-"""The door to a robot on its own computer: Unix sockets that only its user can open, with a line of JSON a message.
+"""A server for a robot on its own computer: Unix sockets that only its user can open, with a line of JSON a message.
 
 The emergency stop has a socket of its own, whose thread does nothing else: no number of other commands delays it.
 """
