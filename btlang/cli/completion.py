@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from btlang.support.record import Record
 
 _TAKES_FILES = frozenset(("FILE", "FILE|CODE", "OUT", "DIR", "FOLDER", "NAME|DIR", "ROBOT", "LANG"))
-"""Names of values that are, or may be, paths."""
+"""The names of values that are, or may be, paths."""
 
 
 class CompletedValue(Record):

@@ -94,7 +94,7 @@ WORDS = (
     ),
     WORLD,
 )  # fmt: skip
-"""Which words there are, and which places."""
+"""The options that say which words there are, and which places."""
 READING = (
     *WORDS,
     Option(
@@ -103,7 +103,7 @@ READING = (
     ),
     Option("--include-root", metavar="DIR", help="missions may also include files below DIR"),
 )  # fmt: skip
-"""How missions are read."""
+"""The options that say how missions are read."""
 MAIN = Option("--main", default="", metavar="ID", help="which tree to use if the file holds several")
 FORMAT = Option(
     "--format", choices="btlang.diagnostics.report:FORMATS", default="text",
@@ -122,7 +122,7 @@ ROBOT_WORDS = Option(
     "--robot", default="", metavar="ROBOT",
     help="read missions with the words and the world of this robot: a robot file or a name",
 )  # fmt: skip
-"""For verbs that read missions and run nothing."""
+"""An option for verbs that read missions and run nothing."""
 
 SPEED = Option("--speed", type=speed, default="real", help="real, max, or a factor of real time")
 ROBOT_SPEED = Option("--speed", type=speed, default="real", metavar="SPEED", help="real, max, or a factor of real time")
@@ -166,7 +166,7 @@ ADDRESS = (
         "--port", type=port, default=8443, metavar="PORT", help="port that the server listens on (default: %(default)s)"
     ),
 )  # fmt: skip
-"""Where a server listens."""
+"""The options that say where a server listens."""
 COMPANIONS = (
     Option("--serve", action="store_true", help="also start a server, as btc serve does"),
     *ADDRESS,
@@ -179,7 +179,7 @@ COMPANIONS = (
         help="with --join, the first time: the code that btc robot invite printed there",
     ),
 )  # fmt: skip
-"""The programs beside a robot's own."""
+"""The options that start programs beside a robot's own."""
 TASK_LAYER = (
     Option("--rules", metavar="FILE", help="file of house rules, which apply during and between missions"),
     Option("--schedules", metavar="FILE", help="TOML file of schedules"),
@@ -197,7 +197,7 @@ TASK_LAYER = (
         help="let missions bring this pack, or the keyword files below DIR; these run Python (default: none)",
     ),
 )  # fmt: skip
-"""For any verb that brings a robot up."""
+"""The options of any verb that brings a robot up."""
 
 
 def body_options(*platforms: str) -> tuple[Option, Option]:

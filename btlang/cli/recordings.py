@@ -15,8 +15,7 @@ from btlang.cli.run import pictures_of
 from btlang.pictures.terminal_map import TerminalMap
 from btlang.recording.bundle import ROBOT
 from btlang.recording.diff import first_difference
-from btlang.recording.open import open_recording
-from btlang.recording.reader import RecordedNodes, Recording
+from btlang.recording.reader import RecordedNodes, Recording, open_recording
 from btlang.recording.replay import Player, ReplayTimeline, adapt_picture
 from btlang.recording.story import Story
 from btlang.robots.body_file import shipped_bodies

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from btlang.engine.instance import Compiled
 
 BEFORE, AFTER = 0, 1
-"""Where a hook is: before a node begins, or when it has ended."""
+"""The places of a hook: before a node begins, or when it has ended."""
 BREAK, REPLACE = 0, 1
-"""What it does: pauses until it is unlocked, or gives the node a status."""
+"""The actions of a hook: it pauses until it is unlocked, or gives the node a status."""
 
 
 class Hook:

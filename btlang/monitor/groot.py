@@ -68,7 +68,7 @@ class GrootServer:
                 reason = os.strerror(error.errno or 0).lower()
                 raise MissionError([diagnostic("BT086", NOWHERE, port=str(at), reason=reason)]) from None
         self.breakpoints = Breakpoints(controls.pause, controls.resume, self._reached)
-        """For the engine of the run; see btlang.engine.engine.Engine."""
+        """The hooks of the engine of the run; see btlang.engine.engine.Engine."""
         self._tree_id = os.urandom(16)
         self._tree: GrootTree | None = None
         self._make: Callable[[], GrootTree] | None = None

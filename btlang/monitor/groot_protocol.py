@@ -15,11 +15,11 @@ BREAKPOINT_REACHED, BREAKPOINT_UNLOCK = b"N", b"U"
 TOGGLE_RECORDING, TRANSITIONS = b"r", b"t"
 
 MOST_NODES = 65_535
-"""Nodes have numbers of 16 bits, from 1 on."""
+"""The most nodes: they have numbers of 16 bits, from 1 on."""
 MOST_TRANSITIONS = 1_000
-"""So many of the latest are kept for a client that records."""
+"""The number of latest transitions that are kept for a client that records."""
 RESET = 10
-"""Is added to the last status of a node that was reset."""
+"""A number that is added to the last status of a node that was reset."""
 CODES = {IDLE: 0, RUNNING: 1, SUCCESS: 2, FAILURE: 3, SKIPPED: 4}
 NAMES = {"IDLE": IDLE, "RUNNING": RUNNING, "SUCCESS": SUCCESS, "FAILURE": FAILURE, "SKIPPED": SKIPPED}
 _HEADER = struct.Struct("<BcI")
@@ -54,16 +54,6 @@ def statuses(codes: bytes) -> bytes:
     return b"".join(map(_STATUS.pack, range(1, len(codes) + 1), codes))
 
 
-def read_statuses(data: bytes) -> dict[int, int]:
-    """Return the code of each node by its number."""
-    return dict(_STATUS.iter_unpack(data))
-
-
 def transition(microseconds: int, uid: int, code: int) -> bytes:
     """Return a change of a status, at a time since the recording began."""
     return _TRANSITION.pack(microseconds & 0xFFFFFFFF, microseconds >> 32 & 0xFFFF, uid, code)
-
-
-def read_transitions(data: bytes) -> list[tuple[int, int, int]]:
-    """Yield microseconds, number and code of each transition."""
-    return [(low | high << 32, uid, code) for low, high, uid, code in _TRANSITION.iter_unpack(data)]

@@ -33,7 +33,7 @@ class SvgSurface:
             f"<title>{title.translate(_ESCAPES)}</title>",
         ]
         self._parts: list[tuple[float, str]] = []
-        """Lines of the file, each with its `z`."""
+        """The lines of the file, each with its `z`."""
         self.box(0, 0, width, height, fill=PAPER)
 
     def text(

@@ -30,7 +30,7 @@ _BOLD = {
     0x410: "77 76 76 64 89 68 122 71 84 84 82 83 100 84 85 84 73 73 68 77 99 77 93 81 124 133 94 104 76 73 117 77 67 "
     "70 63 52 81 68 100 58 70 70 68 73 82 69 69 69 72 59 58 65 99 65 74 69 106 111 75 90 63 59 97 64",
 }
-"""Advances of the family in hundredths of the size, for each of the characters from a first one on."""
+"""The advances of the family in hundredths of the size, for each of the characters from a first one on."""
 _BY_CATEGORY = {"Mn": 0, "Me": 0, "Cf": 0, "Ll": 70, "Lu": 80, "So": 130}  # of other characters; "So" has emoji
 _FULL_WIDTH = 103  # of the rest: a Chinese character, or the mark for one that a font does not have
 

@@ -19,7 +19,7 @@ BUBBLES = {
     "hear": ("#fdf1f7", "#9c3f74"),
     "call": ("#fde4da", "#c0440c"),
 }
-"""Fill and edge of what is said: by the robot, by people, and when it calls for help."""
+"""The fill and edge of what is said: by the robot, by people, and when it calls for help."""
 
 
 class Look(Record):
@@ -39,7 +39,7 @@ PASSED_OVER = Look("»", "skipped", "#6b7680", "#e9ecef")
 NEVER = Look("", "never reached", "#9aa3ab", "#f6f7f8")
 
 LOOKS = {SUCCESS: SUCCEEDED, FAILURE: FAILED, IDLE: HALTED, RUNNING: UNDER_WAY, SKIPPED: PASSED_OVER}
-"""By the last status of a node; IDLE stands for one that was halted while it ran."""
+"""The looks by the last status of a node; IDLE stands for one that was halted while it ran."""
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -32,7 +32,7 @@ _ROUND = 0.3  # metres around everything
 _STEP = 0.05  # metres between points of the way that are kept
 _ROBOT, _PERSON, _PLACE, _THING, _WALL, _WAY = "bold cyan", "bold magenta", "bold", "yellow", "dim", "green"
 LEAST_WIDTH, LEAST_HEIGHT = 16, 5
-"""Cells in which a map is of use."""
+"""The cells in which a map is of use."""
 
 
 class TerminalMap:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 START, END = ("white", "#1f4e79"), ("#f2b134", "#5c3d00")
-"""Fill and edge of the robot's body."""
+"""The fill and edge of the robot's body."""
 _COLOURS = ((0.62, 0.79, 0.93), (0.03, 0.19, 0.42))
 _ARROWS = 60.0  # points between two
 _STEP = 3.0  # points; the way is drawn in pieces no shorter

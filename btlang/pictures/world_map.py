@@ -119,7 +119,7 @@ DOOR_COLOUR, _ROUTE = "#2f6f8f", "#cc79a7"
 _GAP, _HATCH = 5.0, 7.0  # points between the dots of a route, and between the lines of a zone
 
 At = Callable[[float, float], tuple[float, float]]
-"""Points of the canvas, of metres."""
+"""A function from metres to points of the canvas."""
 
 
 def draw_zones(canvas: Surface, world: World, at: At) -> None:

@@ -66,7 +66,8 @@ STATE = RecordingChannel("/robot/state", "btlang.RobotState", _object(
 THINGS = RecordingChannel("/robot/things", "btlang.Things", _object(
     **_COMMON, things={"type": "array", "items": {"type": "array"}},
 ))  # fmt: skip
-"""People and objects that moved, or that the robot begins or ceases to see: see btlang.run.robot_state.Whereabouts."""
+"""The people and objects that moved, or that the robot begins or ceases to see: see btlang.run.robot_state.Whereabouts.
+"""
 VALUES = RecordingChannel("/btlang/values", "btlang.Values", _object(**_COMMON, values={"type": "object"}))
 POSE = RecordingChannel("/robot/pose", "foxglove.PoseInFrame", _object(timestamp=_TIME, frame_id=_TEXT, pose=_POSE))
 SCAN = RecordingChannel("/robot/scan", "foxglove.LaserScan", _object(

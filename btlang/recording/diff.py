@@ -12,7 +12,7 @@ from btlang.api import Mission, parse_file
 from btlang.backends.tree_diff import differences
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.status import NAMES
-from btlang.recording.open import is_recording, open_recording
+from btlang.recording.reader import is_recording, open_recording
 from btlang.recording.story import Story
 from btlang.run.events import Event, StatusesChanged
 from btlang.text.output import show

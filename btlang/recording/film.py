@@ -12,8 +12,7 @@ from btlang.engine.compile import outline
 from btlang.engine.status import NAMES
 from btlang.passes.scripts import is_prepared
 from btlang.recording.diff import compare_endings, describe_step, first_pair, mission_differences, run_differences
-from btlang.recording.open import open_recording
-from btlang.recording.reader import RecordedNodes
+from btlang.recording.reader import RecordedNodes, open_recording
 from btlang.recording.story import Story
 from btlang.robots.world_problem import read_world
 from btlang.run.bus import BLOCK
@@ -36,7 +35,7 @@ if TYPE_CHECKING:
 
 
 MOST_CHANGES = 200_000
-"""Of statuses in a film; a longer run ends there."""
+"""The limit of changes of statuses in a film; a longer run ends there."""
 _MOST_EVENTS = 20_000
 _MOST_STATES = 50_000
 _MOST_PLACES = 200_000  # of people and objects
@@ -204,7 +203,7 @@ def side_by_side(one: str, other: str) -> dict[str, Any]:
 
 
 MOST_SECONDS = 3600.0
-"""Of the mission's time."""
+"""The limit of the mission's time."""
 _MOST_TICKS = 72_000
 _RATE = 20.0
 _ENDING = 2.0  # seconds that a stopped run may take at least to end

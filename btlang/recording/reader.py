@@ -1,17 +1,21 @@
-"""Reads recordings, also those that end in the middle of a record."""
+"""The reader of recordings, also of those that end in the middle of a record, and their missions."""
 
 from __future__ import annotations
 
 import json
 import struct
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import cached_property
 
+from btlang.api import Mission
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import reason_of
+from btlang.engine.compile import outline
 from btlang.engine.status import NAMES
 from btlang.engine.status_trace import Changes
+from btlang.recording.bundle import open_mission
 from btlang.recording.channels import CLASSES, LOG, POSE, SCAN, STATE, STATUSES, THINGS, VALUES
 from btlang.recording.recorder import ABOUT
 from btlang.robots.geometry import Pose
@@ -27,8 +31,9 @@ if TYPE_CHECKING:
 
     from btlang.engine.instance import Fault, NodeInstance
 
+
 MOST_BYTES = 64_000_000
-"""Of one record: a broken length would fill the memory."""
+"""The limit of one record: a broken length would fill the memory."""
 _STATUSES = range(len(NAMES))
 _FOR_OTHERS = frozenset((POSE.topic, SCAN.topic, LOG.topic))  # which say again what our own messages do
 
@@ -209,3 +214,29 @@ def _changes(data: Mapping[str, Any], size: int) -> Changes:
 def _with_ports(nodes: RecordedNodes, index: int, ports: Mapping[str, str]) -> Node:
     node: Node = nodes.node(index).replace(ports=tuple(ports.items()))
     return node
+
+
+_MAGIC = b"\x89MCAP0\r\n"
+
+
+def is_recording(path: str) -> bool:
+    """Return whether the file begins as a recording does."""
+    try:
+        with open(path, "rb") as file:
+            return file.read(len(_MAGIC)) == _MAGIC
+    except OSError:
+        return False
+
+
+@contextmanager
+def open_recording(
+    path: str, keywords: Sequence[str] | None = None
+) -> Iterator[tuple[Recording, Mission, RecordedNodes]]:
+    """Give a recording, its mission and the nodes of that; with `keywords` the mission may be run.
+
+    Raises MissionError.
+    """
+    recording = read_recording(path)
+    name, language = recording.about.get("mission", "a mission"), recording.about.get("language", "en")
+    with open_mission(recording.files, name, language, keywords) as mission:
+        yield recording, mission, RecordedNodes(*outline(mission.tree))

@@ -26,7 +26,7 @@ class Story:
         self._history = FailureHistory(nodes)  # type: ignore[arg-type]  # which asks for nodes and parents only
         self._began: dict[int, tuple[float, Node]] = {}
         self.notes: list[tuple[float, int, str]] = []
-        """What was done: when it began, the number of the node (-1: none), and the words."""
+        """The things that were done: when each began, the number of the node (-1: none), and the words."""
         self._ended: Ended | None = None
         self._latest = 0.0
 

@@ -143,7 +143,7 @@ class ReplCommands:
         self.saved = draft.text
         """The mission as some file has it."""
         self.draft = ""
-        """What the next line begins with."""
+        """The text that the next line begins with."""
         self.clear_screen: Callable[[], object] = lambda: None
 
     @property

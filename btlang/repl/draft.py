@@ -28,7 +28,7 @@ from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.shipped import ENGLISH
 
 ENTRY = "prompt"
-"""What messages call the source of an entry."""
+"""The name of the source of an entry in messages."""
 
 
 class DraftEntry(Record):

@@ -28,7 +28,7 @@ _ENDS_NOTHING = frozenset((
     "unless", "while", "until", "provided", "repeat", "try", "retry", "check", "wait_until",
     "whenever", "in_parallel", "in_order",
 ))  # fmt: skip
-"""Tokens that no sentence ends with."""
+"""The tokens that no sentence ends with."""
 _MOST_TRIES = 3
 _OPERANDS = frozenset(("command", "condition", "unknown", "define"))
 

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from btlang.run.events import Sink
 
 INLINE = "inline"
-"""Called in the thread of the run: for sinks that only keep what they get."""
+"""A policy: called in the thread of the run, for sinks that only keep what they get."""
 BLOCK = "block"
-"""Gets every event, in a thread of its own; the run waits where it is MOST_WAITING events behind."""
+"""A policy: gets every event, in a thread of its own; the run waits where it is MOST_WAITING events behind."""
 DROP_OLDEST = "drop oldest"
-"""In a thread of its own; what is more than MOST_WAITING events behind is lost."""
+"""A policy: in a thread of its own; what is more than MOST_WAITING events behind is lost."""
 NEWEST = "newest"
-"""In a thread of its own; gets the latest event whenever it is ready for one."""
+"""A policy: in a thread of its own; gets the latest event whenever it is ready for one."""
 MOST_WAITING = 10_000
 _PATIENCE = 2.0  # seconds that a sink which may lose events gets at the end
 
@@ -51,7 +51,7 @@ class Bus:
         self.clock = Clock() if clock is None else clock
         self.errors: list[Exception] = []
         self.slow: list[SlowSink] = []
-        """Known after `close`."""
+        """The sinks that were slow, known after `close`."""
         self.closed = False
         self.before: Callable[[], object] | None = None
         self._number = 0

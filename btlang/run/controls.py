@@ -126,7 +126,7 @@ class Controls:
 
 
 PATIENCE = 20.0
-"""Real seconds that a process gets to end: for halting, the robot's way to rest and the end of its connection."""
+"""The real seconds that a process gets to end: for halting, the robot's way to rest and the end of its connection."""
 _STOPS_AFTER = 1.0  # real seconds of these after which the robot is stopped from here
 _TO_END = ("SIGINT", "SIGTERM", "SIGHUP")
 

@@ -62,7 +62,10 @@ class Event(Record):
     alarms: ClassVar[bool] = False
     """Whether something is wrong: the page says so in another colour."""
     line: ClassVar[str] = ""
-    """What people read of it, a verb first. Fields are in braces; what is in brackets needs ones that say something."""
+    """The line that people read of it, a verb first.
+
+    Fields are in braces; what is in brackets needs ones that say something.
+    """
     t: float
     run: str
     number: int
@@ -515,6 +518,6 @@ ROBOT_EVENTS: dict[str, type[Event]] = {
         Switched, Given, Pictured, LanguageChosen, StrokePlanned, GestureStarted, PartChanged, Warned, Troubled,
     )
 }  # fmt: skip
-"""What robots report, by the kinds of btlang.robots.robot.Robot.on_event."""
+"""The events that robots report, by the kinds of btlang.robots.robot.Robot.on_event."""
 LOGGED: tuple[type[Event], ...] = (StatusChanged, *ROBOT_EVENTS.values(), RobotEvent, Overrun, Ended)
-"""What a log has."""
+"""The events of a log."""

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 MOST = 10
-"""So many different failures are kept for a node, the latest ones."""
+"""The number of different failures that are kept for a node, the latest ones."""
 
 
 class Attempt(Record):
@@ -90,7 +90,7 @@ class FailureHistory:
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
         self.ended = 0.0
-        """When the mission failed."""
+        """The time when the mission failed."""
         self._tried: dict[int, Attempts] = {}  # below a node in its present run
         self._failed: dict[int, dict[int, Attempts]] = {}  # by node: the children whose status is FAILURE, latest last
         self._since: dict[int, float] = {}  # when a running leaf began

@@ -30,7 +30,7 @@ class Pace:
         self._woken = False
         self.late = 0
         self.stepped = 0.0
-        """Seconds of the latest sleep for which the robot was already stepped; who steps it sets it to 0."""
+        """The seconds of the latest sleep for which the robot was already stepped; who steps it sets it to 0."""
         self.real = False
         self._kept_step = speed < math.inf
 

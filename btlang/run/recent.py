@@ -15,7 +15,9 @@ if TYPE_CHECKING:
     from btlang.run.events import Event
 
 MOST_EVENTS = 10_000
-"""So many are kept, where each change of a status counts: what is kept is garbage to look through while robots move."""
+"""The number of events that are kept, where each change of a status counts: what is kept is garbage to look through
+while robots move.
+"""
 
 
 class RecentEvents:

@@ -146,7 +146,7 @@ class Runner:
             self._overruns = Overruns(engine, engine.stopwatch, self._pause, self._bus)
         self.ticks = 0
         self.after_tick: Callable[[], object] | None = None
-        """Called after each tick of the tree, in the thread of the run."""
+        """A function to call after each tick of the tree, in the thread of the run."""
         self._requests: deque[Callable[[], object]] = deque()
         self._thread = 0  # that of `run`, while it goes on
         self.controls.robot = robot

@@ -77,9 +77,9 @@ class Shape:
 
 
 HALTED = IDLE + 1
-"""Was RUNNING and was halted."""
+"""The status of a node that was RUNNING and was halted."""
 SUSPENDED = HALTED + 1
-"""Was halted by a pause, or by the end of the run."""
+"""The status of a node that was halted by a pause, or by the end of the run."""
 
 
 class Snapshot(Record):

@@ -44,4 +44,6 @@ class _Pause:
 
 
 gc_paused = _Pause()
-"""`with gc_paused:` makes a long mission compile in half the time, and the time of a line no longer grows."""
+"""A pause of Python's search for garbage: `with gc_paused:` makes a long mission compile in half the time, and the time
+of a line no longer grows.
+"""

@@ -1,7 +1,7 @@
 """The names of files of tests; apart from what reads them, which most commands don't need."""
 
 ENDING = ".test.txt"
-"""Of the files in which `btc test` looks for tests."""
+"""The ending of files in which `btc test` looks for tests."""
 
 
 def is_test_file(path: str) -> bool:

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 _IDLE = MissionText("repeat forever: wait 24 h")
 KEPT = 90 * DAY
-"""Seconds for which tasks that are over are kept, where nobody says something else."""
+"""The seconds for which tasks that are over are kept by default."""
 _SLOW = 1.0  # ticks per second between tasks where no time is lost by waiting
 _WHEELS = {"base", "navigation"}
 _EMPTY = 1.0  # percent of the battery below which no mission begins that needs the wheels
@@ -228,7 +228,7 @@ def _over(robot: str | Connect, over: str | None) -> str:
 
 
 LABEL = "robot file"
-"""Of the schedules that a file of schedules has made, and their person."""
+"""The label of schedules that a file of schedules has made, and their person."""
 _ENDING = ".txt"
 
 

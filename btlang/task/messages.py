@@ -326,7 +326,7 @@ COMMANDS: dict[str, type[Command]] = {
         InviteVisitor, Down, Status, Report, Trail, Components, ChangeComponent, Picture, Voice, Urdf,
     )
 }  # fmt: skip
-"""By their names."""
+"""The classes of commands by their names."""
 
 
 class Answer(Record):

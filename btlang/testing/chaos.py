@@ -44,7 +44,7 @@ class Chaos:
         self.broken = ""
         """The first rule that did not hold, and when."""
         self.troubles: list[str] = []
-        """What went wrong in the world, and when."""
+        """The faults in the world, and when they came."""
         self._observed, self._robot, self._controls, self._words = observed, robot, controls, words
         self._random = Random(seed)
         self._pending = list(self._planned(limit))

@@ -37,19 +37,19 @@ class Observations:
 
     def __init__(self, commands: Mapping[str, NamedCommand]) -> None:
         self.now = 0.0
-        """Seconds of mission time."""
+        """The mission time in seconds."""
         self.outcome: Outcome | None = None
         self.is_over = False
         """Whether the mission has ended; its outcome is known a little later, when the robot is at rest."""
         self.reached: set[str] = set()
         self.held: set[str] = set()
         self.met: set[str] = set()
-        """Who and what was seen for the first time."""
+        """The people and things that were seen for the first time."""
         self.bumps = self.drops = self.calls = 0
         self.seen: dict[int, int] = {}
-        """Of each node that ran, by its number, the statuses that it had: a bit for each."""
+        """The statuses that each node had that ran, by its number: a bit for each."""
         self.nodes: dict[int, Node] = {}
-        """These nodes."""
+        """The nodes of a mission by their numbers."""
         self.running: dict[int, Node] = {}
         """The commands under way."""
         self._said: list[str] = []

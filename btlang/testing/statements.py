@@ -1,13 +1,11 @@
-"""The lines of a test, by the words that they begin with, and what may follow at the end of a text."""
+"""The lines of a test, by the words that they begin with."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.frontends.mission.completion.completer import Completion, completions
 from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, Line, Words
@@ -29,7 +27,7 @@ OPENERS = {
     "never": "never it has bumped",
     "finally": "finally the mission succeeds",
 }
-"""What a line may begin with, and an example of each."""
+"""The words that a line may begin with, and an example of each."""
 _QUOTE = '"'
 _FILES = {("in", "world"), ("on", "robot"), ("under", "rules")}
 
@@ -132,45 +130,3 @@ def _run(text: Words, first: int, last: int, vocabulary: Lexicon) -> ScriptState
 
 def _unread(span: Span, opener: str) -> MissionError:
     return MissionError([diagnostic("BT180", span, words=span.text, wanted=OPENERS[opener])])
-
-
-_OPENED = re.compile(
-    r"(?P<opener>\s*(?:then\s+|and\s+)*"
-    r"(?:(?:within|for|after)\s+\S+\s+[a-z]+,?\s+(?!\s)|(?:with|when|before|always|never|finally),?\s+|(?=\S)))(?P<rest>.*)",
-    re.IGNORECASE,
-)
-_BLOCK = re.compile(
-    r"\n(?P<margin>[ \t]+)run:[ \t]*\n(?P<mission>(?:(?P=margin)[ \t]+\S.*\n|[ \t]*\n)*(?P=margin)[ \t]+.*)\Z"
-)
-
-
-def completions_in_tests(text: str, vocabulary: Lexicon) -> tuple[Completion, ...]:
-    """Return all that may follow; `vocabulary` has the words of the tests (see test_file.WORDS) and of their world."""
-    block = _BLOCK.search(text)
-    if block is not None:
-        return _shifted(completions(block["mission"], vocabulary), block.start("mission"))
-    begin = text.rfind("\n") + 1
-    line = text[begin:]
-    word = line.strip()
-    found: list[Completion] = []
-    if begin and (not word or word.isalpha()):
-        start = begin + len(line) - len(word)
-        found = [
-            Completion(opener, start, "connective", f"for example: {example}")
-            for opener, example in OPENERS.items()
-            if opener.startswith(word) and opener != word
-        ]
-    opened = _OPENED.fullmatch(line)
-    if opened is None or not begin:
-        return tuple(found)
-    first = opened["opener"].split()[-1:]
-    head, _, rest = opened["rest"].rpartition(",") if first in (["when"], ["before"]) else ("", "", opened["rest"])
-    openers = ("",) if first == ["with"] or (first == ["when"] and head) else ("check ", "")
-    for opener in openers:
-        at = begin + len(line) - len(rest.lstrip()) - len(opener)
-        found += _shifted(completions(opener + rest.lstrip(), vocabulary), at)
-    return tuple({(one.text, one.start): one for one in found}.values())
-
-
-def _shifted(found: tuple[Completion, ...], by: int) -> tuple[Completion, ...]:
-    return tuple(one.replace(start=one.start + by) for one in found)

@@ -238,7 +238,7 @@ _MAKERS = {"generator": _generator, "function": _function, "thread": _function, 
 
 
 USUAL_LIMIT = 600.0
-"""Seconds of mission time after which a test is cut where it says nothing else."""
+"""The seconds of mission time after which a test is cut where it says nothing else."""
 
 EVENT, HOLDS, WITHIN, FOR, BEFORE, ALWAYS, NEVER, FINALLY = (
     "event", "holds", "within", "for", "before", "always", "never", "finally",

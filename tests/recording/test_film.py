@@ -15,8 +15,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.engine.compile import outline
 from btlang.engine.status import IDLE
 from btlang.recording.film import Film, try_mission
-from btlang.recording.open import open_recording
-from btlang.recording.reader import RecordedNodes
+from btlang.recording.reader import RecordedNodes, open_recording
 from btlang.run.events import Event
 from btlang.run.snapshot import RunFollower
 from btlang.text.source import Source

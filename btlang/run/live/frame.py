@@ -33,7 +33,7 @@ _MEANINGS = {
 }  # fmt: skip
 _LABELS = {IDLE: "dim", RUNNING: "bold", FAILURE: "red", SKIPPED: "dim", SUSPENDED: "bold"}
 SIGNALS = (("Ctrl-C", "stop"), *((("Ctrl-\\", "emergency stop"),) if hasattr(signal, "SIGQUIT") else ()))
-"""What works without keys."""
+"""The keys that work everywhere, as signals."""
 
 
 class Signs(Record):

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 GONE = ""
-"""In place of a key: the terminal is gone."""
+"""A value in place of a key: the terminal is gone."""
 LEFT, RIGHT = "left", "right"
 """The arrow keys that are handed on."""
 _KEY = re.compile(r"\x1b(?:[\[O][0-?]*[ -/]*[@-~]?|.)?|.", re.DOTALL)  # one, or an arrow key or the like

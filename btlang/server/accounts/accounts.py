@@ -65,11 +65,11 @@ NEEDED: dict[type[Command], UserRole] = {
 
 
 IDLE, LONGEST = 8 * 3600.0, 7 * 86_400.0
-"""Seconds after which a session ends that nobody uses, and after which every one does."""
+"""The seconds after which a session ends that nobody uses, and after which every one does."""
 _NOTED = 60.0  # seconds between two notes that a session or token is used
 _TOKEN = "btl_"
 MOST_ENTRIES = 100_000
-"""Of the trail."""
+"""The limit of the trail."""
 _NOT_COPIED = ("session",)  # else a restore would bring back one that was logged out
 _STEPS = [
     (

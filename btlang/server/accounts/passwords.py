@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 SHORTEST, LONGEST = 8, 4096
-"""Characters; the first is that of NIST SP 800-63B."""
+"""The least and the most characters; the first is that of NIST SP 800-63B."""
 _AT_ONCE = 2
 _MOST_WAITING = 32
 
@@ -94,7 +94,7 @@ class Verifier:
 
 
 FREE = 5
-"""Wrong passwords that cost nothing: people mistype."""
+"""The number of wrong passwords that cost nothing: people mistype."""
 _FIRST, _LONGEST = 1.0, 60.0  # seconds
 _FORGOTTEN = 900.0  # seconds after which a wrong password counts no more
 _MOST_KNOWN = 10_000

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from btlang.task.store.sqlite import Sqlite
 
 VALID = 3600.0
-"""Seconds for which a code is good."""
+"""The seconds for which a code is good."""
 _BEGIN, _SECRET, _PIN = "btr_", 16, 32  # of a code; the bytes in it
 
 

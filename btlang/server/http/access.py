@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 COOKIE = "__Host-btlang"
-"""Its prefix makes browsers take it from this host over TLS alone, and send it nowhere else."""
+"""The name of the cookie. Its prefix makes browsers take it from this host over TLS alone, and send it nowhere else."""
 CSRF = "x-csrf-token"
 _KNOWN = 10.0  # seconds for which somebody who was looked up is known
 _MOST_KNOWN = 2000
@@ -166,7 +166,7 @@ def _cookie(header: str, name: str) -> str:
 
 
 MOST_BYTES = 1_000_000
-"""Of the body of a request."""
+"""The limit of the body of a request."""
 _PATIENCE = 15.0  # seconds for it
 
 

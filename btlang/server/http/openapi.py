@@ -41,7 +41,7 @@ LIBRARY = {
     "/api/robot-files": LibraryKind.ROBOT,
     "/api/tests": LibraryKind.TEST,
 }
-"""What the library has, by the paths of its routes."""
+"""The contents of the library, by the paths of its routes."""
 _WORLD = {"type": "string", "description": "The name of a world of the library, instead of the world of the robot."}
 _PAGE = {"type": "string", "description": "Which page of a session asks; only its newest request of a kind waits."}
 _ARGUMENTS: dict[str, dict[str, Any]] = {

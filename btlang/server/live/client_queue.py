@@ -15,15 +15,15 @@ if TYPE_CHECKING:
     from typing import Any
 
 _MOST = 2000
-"""Messages that may wait, beside statuses. A client that reads so slowly has to subscribe again."""
+"""The number of messages that may wait, beside statuses. A client that reads so slowly has to subscribe again."""
 _MUCH = 4_000_000
-"""Characters of answers and topics that may wait until a client has to read first."""
+"""The characters of answers and topics that may wait until a client has to read first."""
 TOPICS = {
     "tree": ("run", "statuses"), "tasks": ("change",), "events": ("event",), "robot": ("robot", "asking", "doing"),
     "map": ("map", "things", "scan", "way"), "components": ("components",),
     "body": ("joints", "speech"),
 }  # fmt: skip
-"""What somebody may want to hear, with the kinds of messages of each. Whether a robot is up everybody hears."""
+"""The topics of a subscription, with the kinds of messages of each. Everybody hears whether a robot is up."""
 _TOPIC = {kind: topic for topic, kinds in TOPICS.items() for kind in kinds}
 
 
@@ -62,7 +62,7 @@ class ClientQueue:
         self._statuses: dict[str, RobotNews] = {}
         self._states: dict[tuple[str, str], RobotNews] = {}
         self.topics: Container[str] = TOPICS
-        """Of which the messages are taken."""
+        """The topics whose messages are taken."""
         self._topics: dict[str, deque[str]] = {}
         self._length = 0  # of answers and topics
         self._full = self._is_closed = False

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 SCREENS = ("robots", "watch", "tasks", "write", "runs")
 MOST_PAGES, MOST_PAGES_OF_USER = 200, 20
 LONGEST = 200
-"""Characters of the name of a robot or mission."""
+"""The characters of the name of a robot or mission."""
 _PAUSE = 0.2  # seconds between two lists of people
 
 
@@ -120,7 +120,7 @@ class ClientProtocol:
         self.refusal: dict[str, Any] = {"type": "auth_invalid", "text": "This token isn't valid."}
         self._robots, self._do, self._presence = robots, do, PagePresence()
         self._watchers: dict[ConnectedClient, tuple[frozenset[str] | None, dict[str, int]]] = {}
-        """With the robots that they watch, None for all, and the last changes that they know."""
+        """The clients with the robots that they watch, None for all, and the last changes that they know."""
         robots.came = self._came
 
     def token(self, data: dict[str, Any]) -> object:

@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 
 
 LONGEST = 32_000_000
-"""Bytes of a line from a robot."""
+"""The bytes of a line from a robot."""
 STREAM = 4
-"""Bytes of the number of a stream, before what happens on a robot elsewhere."""
+"""The bytes of the number of a stream, before what happens on a robot elsewhere."""
 
 
 class LocalConnection:

@@ -41,7 +41,7 @@ class RobotFeed:
         self.name = name
         self.is_elsewhere = connection is not None
         self.seen = seen
-        """When it last said something, in seconds since 1970."""
+        """The time when it last said something, in seconds since 1970."""
         self.words = Words()
         self.recordings = ""
         """The folder of its recordings, "" if they aren't on this computer."""

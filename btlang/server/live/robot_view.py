@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 STATES = ("asking", "components", "doing", "joints", "map", "robot", "scan", "speech", "things", "way")
-"""Kinds of messages of which only the newest one counts."""
+"""The kinds of messages of which only the newest one counts."""
 
 
 class RobotView:
@@ -21,7 +21,7 @@ class RobotView:
         self.change: int | None = None
         """The number of the last change of a task."""
         self.runs: dict[bool, dict[str, Any]] = {}
-        """By whether it is that of a task; the latest one is the last."""
+        """The runs by whether they are those of a task; the latest one is the last."""
         self.statuses: dict[str, dict[str, Any]] = {}
         """All statuses and words of a run as one message, by the id of the run."""
         self.states: dict[str, dict[str, Any]] = {}

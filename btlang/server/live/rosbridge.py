@@ -107,7 +107,10 @@ def _kill(process: Process) -> None:
 
 
 _NAME = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(?:/[A-Za-z][A-Za-z0-9_]*)*")
-"""Of the graph. Names with a part that begins with _ are for ROS itself: they would go past the rules of goals."""
+"""The form of names of the graph.
+
+Names with a part that begins with _ are for ROS itself: they would go past the rules of goals.
+"""
 _LONGEST_NAME = 200  # characters of a name or an id
 _SHOWN = 100  # characters of what is refused
 
@@ -127,7 +130,7 @@ OPERATIONS = {
     "send_action_goal": _Operation("action", UserRole.OPERATOR),
     "cancel_action_goal": _Operation("action", UserRole.VIEWER),
 }
-"""With the least role for each. To end what one began needs none."""
+"""The operations with the least role for each. To end what one began needs none."""
 
 
 class Rosbridge:

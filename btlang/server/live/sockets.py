@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 _LOG_IN = 10.0  # seconds that somebody has for that
 REVOKED, FORBIDDEN, LOST = 4001, 4003, 1011
-"""Codes with which a socket is closed."""
+"""The codes with which a socket is closed."""
 _UNSUPPORTED = 1003  # the code for what isn't text
 
 

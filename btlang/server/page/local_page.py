@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 PAGE = BUILT / "index.html"
 OPEN = 60.0
-"""Seconds in which the address has to be opened."""
+"""The seconds in which the address has to be opened."""
 _HOST = "127.0.0.1"
 _USER = "you"
 _LEFT = 3.0  # seconds without a window after which the page was closed, and not loaded again
@@ -64,7 +64,7 @@ class LocalApi(Api):
         accounts.add(_USER, self.role, "")
         self.ticket = secrets.token_urlsafe(32)
         self.entered: Callable[[], object] = lambda: None
-        """Called when a browser was let in."""
+        """A function to call when a browser was let in."""
         self._port, self._screen = port, screen
         self._until: float | None = time.monotonic() + OPEN
 
@@ -117,7 +117,7 @@ class LocalPage:
         self._api, self._file = api, os.path.join(folder, "open.html")
         self.place = f"http://{_HOST}:{port}"
         self.address = f"{self.place}/login#token={api.ticket}"
-        """Lets a browser in, once."""
+        """The address that lets a browser in, once."""
         self._seen = time.monotonic()
         api.entered = self._forget
 

@@ -26,7 +26,7 @@ from btlang.editing.rename import rename
 from btlang.editing.words import Words
 from btlang.frontends.table import frontend_of
 from btlang.recording.film import Film, side_by_side, try_mission
-from btlang.recording.open import open_recording
+from btlang.recording.reader import open_recording
 from btlang.server.http.access import AccessError, text_in
 from btlang.support.gc_pause import gc_paused
 from btlang.support.record import Record
@@ -107,7 +107,7 @@ def _write_film(read: Callable[[], dict[str, Any]]) -> bytes:
 
 
 TESTS = "tests"
-"""What tests are called in messages."""
+"""The name of tests in messages."""
 MOST_CHARACTERS = 200_000
 _PATIENCE = 10.0  # seconds for one text
 
@@ -182,7 +182,7 @@ TRIES: Mapping[str, TextQuery] = {
     ),
     "try": TextQuery("A run of a mission in the simulated world, as a film.", _of_mission(try_mission)),
 }
-"""What takes longer: it has a process of its own."""
+"""The queries that take longer: they have a process of their own."""
 ASKED = {**DOES, **TRIES}
 
 

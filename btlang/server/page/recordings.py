@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 NAME = re.compile(r"[\w-]+(\.\d+)?\.mcap", re.ASCII)
 """The names that recordings may have."""
 MOST = 200
-"""In a list, the newest."""
+"""The number of recordings in a list, the newest."""
 PIECE = 49_152
-"""Bytes that are read at once."""
+"""The bytes that are read at once."""
 
 
 def list_recordings(folder: str) -> list[dict[str, Any]]:
@@ -82,7 +82,7 @@ def _checked(folder: str) -> str:
 
 _LATEST = 1e11  # seconds since 1970
 MOST_BYTES = 100_000_000
-"""Of a recording that is fetched to be shown."""
+"""The limit of a recording that is fetched to be shown."""
 
 
 class Fetched:

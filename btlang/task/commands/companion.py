@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _AGAIN = 1.0  # seconds until one that crashed is started again
 _PATIENCE = 10.0  # seconds that it has to end
 _ENDED = 0, 2, 130, 143
-"""Exit codes of one that has nothing more to do, or that was refused: trying again wouldn't help."""
+"""The exit codes of a companion that has nothing more to do, or that was refused: trying again wouldn't help."""
 _PACKAGES = ("argon2", "cryptography")
 
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     Handle = Callable[[Any, str], Answer]
 
 MOST_BYTES = 4_000_000
-"""Of one message: a line without an end would fill the memory."""
+"""The limit of one message: a line without an end would fill the memory."""
 _LEAVE = 2.0  # seconds that the last answers get
 _RATE = 20.0  # messages of one kind in a second, if nobody says another one
 _UNREADABLE = object()

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 MOST_CHARACTERS = 200_000
-"""Of a text from others that isn't a mission; a world or robot file takes some seconds to read at most."""
+"""The limit of a text from others that isn't a mission; a world or robot file takes some seconds to read at most."""
 _LONGEST_NAME = 200
 _CALLED = {
     LibraryKind.MISSION: "mission",

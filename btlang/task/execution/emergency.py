@@ -11,7 +11,7 @@ from collections.abc import Callable
 from contextlib import suppress
 
 _SIZE = 512
-"""Bytes of the file: it is written over in place, which a full disk doesn't keep anybody from."""
+"""The bytes of the file: it is written over in place, which a full disk doesn't keep anybody from."""
 _UNREADABLE = "its latch can't be read"
 _OWN = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)  # nobody leads it to another file, or makes it wait
 _AGAIN = 1.0  # seconds after which a file that couldn't be written is tried again
@@ -43,11 +43,11 @@ class EmergencyLatch:
     def __init__(self, path: str, halt: Callable[[], object]) -> None:
         self._path, self._halt = path, halt
         self.reason = _read(path)
-        """Why the robot is stopped, "" if it isn't."""
+        """The reason why the robot is stopped, "" if it isn't."""
         self.stops: list[str] = []
         """The reasons of all stops of this process: one may be released before anybody has taken notice of it."""
         self.listeners: list[Callable[[], object]] = []
-        """Called a moment after a stop or a release, in another thread."""
+        """The functions to call a moment after a stop or a release, in another thread."""
         self._kept = self.reason
         self._changed = threading.Event()
         self._writing = threading.Lock()  # which `stop` doesn't take

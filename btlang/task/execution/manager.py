@@ -21,7 +21,7 @@ _AGE, _MOST_BONUS = 600.0, 10  # seconds of waiting that count as one of priorit
 _MOST_LATE = 1000  # tasks that a schedule makes at most of the times that were missed
 CUT_OFF = "the robot was cut off"
 ENDED = "ended"
-"""In place of a saved run: the status with which its tree ended."""
+"""A key in place of a saved run: the status with which its tree ended."""
 
 
 class TaskManager:

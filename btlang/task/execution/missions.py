@@ -104,7 +104,7 @@ class MissionReader:
 
 
 _PREFIX = "house "
-"""Of the names that the rules define, in the tree of a mission, which may define the same ones."""
+"""The prefix of names that the rules define, in the tree of a mission, which may define the same ones."""
 _ROLES = ("whenever", "reaction", "work")
 _EXAMPLE = "whenever the battery is below 20%, go to the dock then charge to 80%"
 

@@ -101,7 +101,7 @@ def reason_of(outcome: Outcome) -> str:
 
 
 MOST_BYTES = 1_000_000_000
-"""Of all recordings together; the oldest go first."""
+"""The limit of all recordings together; the oldest go first."""
 _FREE = 100_000_000  # bytes of the disk that recordings leave to others
 _EACH = 200_000_000  # bytes of one, which then goes on in another file
 
@@ -116,7 +116,7 @@ class Recordings:
     ) -> None:
         self._folder, self._trouble, self._most = folder, trouble, most_bytes
         self.problem = ""
-        """Why there are no recordings, "" if there are."""
+        """The reason why there are no recordings, "" if there are."""
         self._latest: Recorder | None = None
 
     def recorder(self, mission: Mission, task: int) -> Recorder | None:

@@ -252,7 +252,7 @@ _SILENT: tuple[dict[str, Any], ...] = (
     {"type": "joints", "positions": []},
     {"type": "speech", "text": "", "start": 0, "end": 0},
 )
-"""What somebody takes for granted to whom nothing else was said."""
+"""The states that a watcher takes for granted until it gets others."""
 
 
 class _Watcher:

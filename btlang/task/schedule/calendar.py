@@ -38,7 +38,7 @@ ORDINALS = {
     "last": LAST,
 }
 ORDINAL_ENDINGS = (*NTH.values(), "th")
-"""Behind the figures of an ordinal number."""
+"""The endings behind the figures of an ordinal number."""
 
 
 class Days(Record):
@@ -94,9 +94,9 @@ class Days(Record):
 _LONGEST = 80  # characters of a name that may be a misspelling
 _EXAMPLE = "Europe/Berlin"
 _NO_ZONES = ("Factory", "localtime", "posixrules")
-"""Files beside those of the zones: placeholders and settings."""
+"""The files beside those of the zones: placeholders and settings."""
 _COPIES = ("posix/", "right/")
-"""Folders with all zones once more; those in the second one count leap seconds, which clocks don't."""
+"""The folders with all zones once more; those in the second one count leap seconds, which clocks don't."""
 
 
 def read_zone(name: str) -> ZoneInfo | None:

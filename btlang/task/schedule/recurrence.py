@@ -26,7 +26,7 @@ _BEFORE = timedelta(days=3)
 _DAY = int(DAY)
 _FARTHEST = 366 * DAY
 _BACK = (10, 366 * 9)
-"""Days to look back: where the first ones have no time, it's one of each year, or a 29 February."""
+"""The days to look back: where the first ones have no time, it's one of each year, or a 29 February."""
 _MOMENT = "tomorrow at 9:00"
 _PAST_MOMENT = "yesterday at 9:00"
 
@@ -120,7 +120,7 @@ class _Moment:
 
     example = _MOMENT
     named: ClassVar[dict[str, int]] = {"today": 0, "tomorrow": 1}
-    """Days that have a name, by their distance from today."""
+    """The days that have a name, by their distance from today."""
     openers: ClassVar[tuple[str, ...]] = ("on",)
     otherwise = "is in the past"
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 PATIENCE = 10.0
-"""Seconds of waiting for another process, after which a call gives up."""
+"""The seconds of waiting for another process, after which a call gives up."""
 _MOST_IDLE = 4  # connections
 OWNED: set[int] = set()
 """The open files (on a server: the connections) that end an ownership when they are closed."""
@@ -66,7 +66,7 @@ class Database(ABC):
     begin: ClassVar[Mapping[Mode, Sequence[str]]]
     """The statements that begin a transaction."""
     row_lock: ClassVar[Mapping[Mode, str]]
-    """What ends a query for rows that nobody else may change until the end of the transaction: one in the mode WRITE
+    """The end of a query for rows that nobody else may change until the end of the transaction: one in the mode WRITE
     leaves out those that others change at this moment, one that is ALONE waits for them.
     """
     is_shared: ClassVar[bool]
@@ -74,7 +74,7 @@ class Database(ABC):
 
     def __init__(self, place: str, errors: tuple[type[Exception], ...]) -> None:
         self.place = place
-        """For messages: without a password."""
+        """The place for messages: without a password."""
         self._errors: tuple[type[Exception], ...] = (*errors, UnicodeEncodeError, OverflowError, NestedTooDeep)
         self._idle: list[Any] = []
         self._is_closed = False

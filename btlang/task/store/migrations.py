@@ -71,8 +71,10 @@ MIGRATIONS: list[Step] = [
             WHERE state NOT IN ('canceled', 'completed', 'error', 'failed', 'killed', 'skipped')""",
     ),
 ]
-"""What leads from version 0, an empty database, to 1, from there to 2, and so on. A step that was released is never
-changed. The statements are for SQLite and PostgreSQL both; the first three columns of a table have its key.
+"""The steps from version 0, an empty database, to 1, from there to 2, and so on.
+
+A step that was released is never changed. The statements are for SQLite and PostgreSQL both; the first three columns of
+a table have its key.
 """
 
 

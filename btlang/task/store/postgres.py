@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 SCHEMES = ("postgresql", "postgres")
 _CHANGING, _OWNING = 0x62746C01, 0x62746C02
-"""Of advisory locks, together with the name of the schema."""
+"""The numbers of advisory locks, together with the name of the schema."""
 _NAME = "btlang: "
 _SILENT = 30  # seconds: who says nothing for so long has lost the connection
 _REASONS = {
@@ -43,7 +43,7 @@ _REASONS = {
     "XX001": "it's damaged",
     "XX002": "it's damaged",
 }
-"""By the code of the error, or how that begins."""
+"""The reasons by the code of the error, or how that begins."""
 
 
 class Postgres(Database):

@@ -38,7 +38,7 @@ _READERS: dict[str, Callable[[Any], Any]] = {
     "float | None": lambda number: None if number is None else float(number),  # RETURNING may give a whole number
     **{kind.__name__: kind for kind in (TaskState, Restart, Overlap, Missed, LibraryKind)},
 }
-"""By the annotation of the field. Other ones are as in the table."""
+"""The readers of values by the annotation of the field. Other values are as in the table."""
 
 
 def columns_of(kind: type[Record]) -> str:
@@ -96,7 +96,7 @@ def _readers(kind: type[Record]) -> list[Callable[[Any], Any] | None]:
 TASK = columns_of(Task)
 IN_TURN = "(priority + bonus) DESC, position, id"
 NOT_OVER = "state NOT IN ({})".format(", ".join(f"'{state}'" for state in sorted(FINAL)))
-"""Word by word the condition of the index `task_turn`: only then SQLite uses it. Few tasks of a store are not over."""
+"""The condition of the index `task_turn`, word by word: only then SQLite uses it. Few tasks of a store are not over."""
 NEXT = (
     f"SELECT {TASK} FROM task WHERE {NOT_OVER} AND (state = '{TaskState.QUEUED}' OR state = '{TaskState.DELAYED}'"
     f" AND token = '') AND (earliest IS NULL OR earliest <= ?)"
@@ -107,7 +107,7 @@ AHEAD = f"(priority + bonus) = ? AND {WAITS} AND id <> ? AND (position < ? OR (p
 """The tasks before another one of the same priority, but for a third."""
 _QUEUED = f"{NOT_OVER} AND state = '{TaskState.QUEUED}'"
 SINCE = "CASE WHEN earliest > created THEN earliest ELSE created END"
-"""Since when a task waits."""
+"""The time since when a task waits."""
 UNBEGUN = f"{_QUEUED} AND started IS NULL"
 """A task that began in time may go on, or begin again, after its deadline."""
 TIMES = (

@@ -43,7 +43,7 @@ _REASONS = {
     "SQLITE_IOERR": "the disk can't be read or written",
     "SQLITE_TOOBIG": "a text is too long",
 }
-"""By the name of the error, or how that begins."""
+"""The reasons by the name of the error, or how that begins."""
 
 
 class Sqlite(Database):

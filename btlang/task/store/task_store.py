@@ -50,7 +50,9 @@ class TaskStore:
         self._database = database
         self._is_owner = False
         self.listeners: list[Callable[[], object]] = []
-        """Called after a change of a task by this process, in the thread that made it: they must be fast."""
+        """The functions to call after a change of a task by this process, in the thread that made it: they must be
+        fast.
+        """
 
     @property
     def place(self) -> str:
