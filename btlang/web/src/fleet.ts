@@ -207,7 +207,7 @@ export class Fleet {
   }
 
   /** There is no connection: what was known may no longer be true. */
-  lose(): void {
+  disconnect(): void {
     for (const robot of this.robots.values()) this.tell(robot, "offline", null);
   }
 

@@ -13,7 +13,7 @@ export interface Listener {
 }
 
 /** An editor is for reading alone until what is kept is in it. */
-export class Keeping {
+export class SavedMission {
   kept: Kept = { text: "", revision: 0 };
   draft: Draft;
   private writing: ReturnType<typeof setTimeout> | undefined;
