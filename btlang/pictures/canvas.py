@@ -167,7 +167,7 @@ class Canvas:
         self.keep()
 
     def lay(self) -> None:
-        """Draw what was added since the last time over the pixels, and takes it off the canvas."""
+        """Draw what was added since the last time over the pixels, and take it off the canvas."""
         for artist in sorted(self._new, key=lambda new: new.get_zorder()):
             self.axes.draw_artist(artist)
             artist.remove()

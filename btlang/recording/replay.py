@@ -141,7 +141,7 @@ class Player:
         self.seek(max(0.0, (self._now if self._wanted is None else self._wanted) + seconds))
 
     def next_failure(self) -> None:
-        """Go on to the next time at which a node failed, and pauses there; does nothing if none follows."""
+        """Go on to the next time at which a node failed, and pause there; do nothing if none follows."""
         following = next((t for t in self._timeline.failures if t > self._now), None)
         if following is not None:
             self._controls.pause()

@@ -73,7 +73,7 @@ class Bus:
         self._sinks.append(sink)
 
     def emit(self, kind: type[Event], /, *data: Any, **more: Any) -> None:
-        """Make an event of a class and hands it to all sinks."""
+        """Make an event of a class and hand it to all sinks."""
         if self.before is not None and kind is not StatusesChanged:
             self.before()
         with self._numbering:  # for no longer: an emergency stop reports from a thread of its own

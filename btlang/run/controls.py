@@ -64,7 +64,7 @@ class Controls:
         self.wake()
 
     def toggle(self) -> None:
-        """Pause, or resumes."""
+        """Pause, or resume."""
         if self.paused:
             self.resume()
         else:

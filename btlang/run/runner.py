@@ -223,7 +223,7 @@ class Runner:
             self._requests.popleft()()
 
     def run(self) -> Outcome:
-        """Run to the end, the time limit, a stop or Ctrl-C; then halts the tree and brings the robot to rest.
+        """Run to the end, the time limit, a stop or Ctrl-C; then halt the tree and bring the robot to rest.
 
         An emergency stop counts also where it comes during the latter. An exception other than KeyboardInterrupt does
         the same and comes through.

@@ -168,7 +168,7 @@ def warn_of_motion(standstill: Standstill) -> bool:
 
 @contextmanager
 def interrupted_by_signals() -> Iterator[list[int]]:
-    """Let a signal to end, or that the terminal is gone, halts the robot as Ctrl-C does; a caller's own handler stays.
+    """Let a signal to end, or that the terminal is gone, halt the robot as Ctrl-C does; a caller's own handler stays.
 
     The list keeps those that came.
     """

@@ -106,7 +106,7 @@ class DeviceBench:
         return self._first(lambda: self._loop.silent(self._device.name), seconds, "is not silent")
 
     def close(self) -> None:
-        """Bring it to rest, and lets go of its port."""
+        """Bring it to rest, and let go of its port."""
         self._loop.close()
 
     def _first(self, look: Callable[[], Found | None], seconds: float, problem: str) -> Found:

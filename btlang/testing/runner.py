@@ -290,7 +290,7 @@ def run_test(
 
 
 def run_chaos(test: MissionTest, seed: int, sinks: Iterable[Sink] = ()) -> Result:
-    """Run the mission of a test while the world goes wrong, and watches the rules of safety (see Chaos).
+    """Run the mission of a test while the world goes wrong, and watch the rules of safety (see Chaos).
 
     What the test expects doesn't count, but its events at the start and its fakes do. Raises MissionError.
     """

@@ -150,7 +150,7 @@ class LiveScreen:
         self._drawn, self._known = [], {}
 
     def end(self) -> None:
-        """Show the cursor again; does nothing where the terminal is gone."""
+        """Show the cursor again; do nothing where the terminal is gone."""
         with suppress(OSError, ValueError):
             self._write(_SHOW_CURSOR)
 

@@ -35,7 +35,7 @@ class NodeChoice:
         return self.room <= 0
 
     def add(self, node: int) -> bool:
-        """Show a node where its row, and those for what is then left out around it, fit; else does nothing."""
+        """Show a node where its row, and those for what is then left out around it, fit; else do nothing."""
         at = bisect_left(self.nodes, node)
         following = self.nodes[at] if at < len(self.nodes) else len(self._shape)
         if following == node:

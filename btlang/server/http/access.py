@@ -200,7 +200,7 @@ async def json_object(request: Request) -> dict[str, Any]:
 
 
 def read_object(text: bytes | str) -> dict[str, Any]:
-    """Raise AccessError (400)."""
+    """Read the JSON object of a request. Raises AccessError (400)."""
     try:
         data = load_json(text)
     except ValueError:

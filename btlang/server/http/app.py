@@ -133,7 +133,10 @@ class Api:
             raise AccessError(503, str(error)) from None
 
     def feed(self, robot: str) -> RobotFeed:
-        """Raise AccessError (404, 409) if there is no such robot, or several where none was named."""
+        """Return the feed of a robot.
+
+        Raises AccessError (404, 409) if there is no such robot, or several where none was named.
+        """
         feed = self.robots.get(robot)
         if feed is None and robot:
             raise AccessError(404, f"There's no robot '{robot}'.")

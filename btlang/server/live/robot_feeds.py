@@ -124,7 +124,7 @@ class RobotFeed:
             catching_up.cancel()
 
     async def follow(self) -> None:
-        """Read what happens, until it is cancelled; goes on after the last change when the robot is up again."""
+        """Read what happens, until it is cancelled; go on after the last change when the robot is up again."""
         while True:
             with suppress(*_BROKEN):
                 async with aclosing(self._messages(self._view.change)) as messages:

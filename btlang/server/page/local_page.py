@@ -196,7 +196,7 @@ def local_page(make: Callable[[Accounts, int, str], LocalApi], port: int = 0) ->
 
 
 def say_where(page: LocalPage, what: str, browser: bool) -> None:
-    """Open the browser, or else prints the address that lets somebody in: where it opens nobody has to see that."""
+    """Open the browser, or else print the address that lets somebody in: where it opens nobody has to see that."""
     if browser and page.open():
         show(f"{what} in the browser at {page.place}. If none opens, use --no-browser.")
     else:

@@ -85,14 +85,14 @@ class Executor:
         self._thread: threading.Thread | None = None
 
     def start(self) -> None:
-        """Take up what was left when the robot's process ended, then does what is due, until `halt`."""
+        """Take up what was left when the robot's process ended, then do what is due, until `halt`."""
         self._manager.recover(self._now(), self._emergency.reason)
         self._closing = self._hangs = False
         self._thread = threading.Thread(target=self._work, name="btlang executor", daemon=True)
         self._thread.start()
 
     def halt(self) -> bool:
-        """End the run under way as its task says for a restart, and brings the robot to rest. May be called twice.
+        """End the run under way as its task says for a restart, and bring the robot to rest. May be called twice.
 
         False if a command hangs: then the robot was stopped, and the executor goes on once that command ends.
         """
@@ -170,7 +170,7 @@ class Executor:
         self.wake()
 
     def resume(self) -> str:
-        """End a pause, and lets tasks begin again after a house rule failed; return what it ended, "" for nothing."""
+        """End a pause, and let tasks begin again after a house rule failed; return what it ended, "" for nothing."""
         ended = ["the pause"] if self._paused else []
         self._paused = False
         if self._store.setting(_BLOCKED):

@@ -59,7 +59,7 @@ class TaskManager:
         return found
 
     def refresh(self, now: float) -> list[Task]:
-        """Make the tasks whose scheduled times have come, and skips those whose deadline has passed.
+        """Make the tasks whose scheduled times have come, and skip those whose deadline has passed.
 
         Returns tasks under way that their schedules replace.
         """

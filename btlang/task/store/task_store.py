@@ -128,8 +128,9 @@ class TaskStore:
         person: str = "",
         **fields: Any,
     ) -> Task | None:
-        """Bring a task from one of the states `before` into another, sets its reason to the cause, and other fields by
-        name. None, and no change, if it isn't in one of those states; a final state it never leaves.
+        """Bring a task from one of the states `before` into another; set its reason to the cause, and `fields` by name.
+
+        None, and no change, if it isn't in one of those states; a final state it never leaves.
         """
         with self._database.transaction() as execute:
             noted = TaskChange(id, time, state, cause, person)
