@@ -15,8 +15,7 @@ from moving_svg import FASTER, MovingSurface
 
 import btlang
 from btlang.pictures import letters
-from btlang.pictures.run_record import PathSample, RunRecord, outcome
-from btlang.pictures.statuses import LastStatuses
+from btlang.pictures.run_record import LastStatuses, PathSample, RunRecord, outcome
 from btlang.pictures.surface import BUBBLES, INK, LOOKS, NEVER, SMALL, SOFT, TITLE, Look
 from btlang.pictures.track import END, draw_body, way
 from btlang.pictures.tree_layout import Maker, TreeLayout, lay_out

@@ -16,7 +16,7 @@ from typing import Any
 import btlang
 from btlang import PUBLIC
 from btlang.run.events import LOGGED, Event
-from btlang.run.json_log import describe_event
+from btlang.run.logs import describe_event
 from btlang.support.field_types import field_type
 from btlang.task.commands import schema as command_schema
 from btlang.tree.catalogue import CATALOGUE, POST_CONDITIONS, PRE_CONDITIONS, NodeKind, Port

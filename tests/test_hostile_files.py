@@ -15,7 +15,7 @@ from btlang.components.plain import packed
 from btlang.maps.data_text import ForeignFileError, read_data
 from btlang.recording.channels import messages
 from btlang.run.events import RobotEvent, Sampled
-from btlang.run.json_log import JsonLog
+from btlang.run.logs import JsonLog
 from btlang.run.robot_state import Movements
 from btlang.task.store.records import MissionText, Task
 from btlang.task.store.task_store import open_store

@@ -22,8 +22,8 @@ from btlang.robots.body_file import shipped_bodies
 from btlang.robots.world_problem import read_world
 from btlang.run.controls import Controls
 from btlang.run.events import Event
-from btlang.run.lines import PlainLines
 from btlang.run.live.keys import LEFT, RIGHT
+from btlang.run.logs import PlainLines
 from btlang.run.terminal import live_view
 from btlang.session import Session
 from btlang.text.output import show
@@ -99,7 +99,7 @@ def _write_log(path: str, recording: Recording, mission: Mission, nodes: Recorde
     """Write a recording as a log of BehaviorTree.CPP."""
     from btlang.backends.files import write_file
     from btlang.monitor.groot import groot_tree
-    from btlang.monitor.groot_tree import to_btlog
+    from btlang.monitor.groot_protocol import to_btlog
 
     write_file(path, to_btlog(groot_tree(nodes, mission), recording.events(nodes)))
     show(f"Wrote {path}.")

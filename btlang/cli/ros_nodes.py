@@ -166,7 +166,7 @@ def _spin_actions(connection: Connection, ids: Sequence[str], vocabulary: Lexico
     from btlang.ros.serving import server
     from btlang.ros.serving.goal_executor import GoalExecutor
     from btlang.run.bus import Bus
-    from btlang.run.lines import PlainLines
+    from btlang.run.logs import PlainLines
     from btlang.run.runner import Runner
     from btlang.run.terminal import STILL_MOVING, warn_of_motion
 

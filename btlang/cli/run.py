@@ -112,7 +112,7 @@ def pictures_of(mission: Mission, run: str | None, tree: str | None, quiet: bool
     sinks: list[Sink] = []
     written: list[str] = []
     if tree is not None:
-        from btlang.pictures.statuses import LastStatuses
+        from btlang.pictures.run_record import LastStatuses
 
         statuses = LastStatuses()
         sinks.append(statuses)

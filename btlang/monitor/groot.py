@@ -16,7 +16,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.engine.status import IDLE, RUNNING
 from btlang.monitor import groot_protocol as protocol
 from btlang.monitor.breakpoints import Breakpoints
-from btlang.monitor.groot_tree import GrootTree, models_of
+from btlang.monitor.groot_protocol import GrootTree, models_of
 from btlang.run.bus import INLINE
 from btlang.run.controls import Controls
 from btlang.run.events import Event, Sampled, StatusesChanged

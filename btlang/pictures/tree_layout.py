@@ -10,7 +10,7 @@ from math import ceil, sqrt
 from btlang.engine.status import FAILURE
 from btlang.passes.scripts import is_prepared
 from btlang.pictures.letters import make_printable, width, wrap_text
-from btlang.pictures.statuses import LastStatuses, by_definition
+from btlang.pictures.run_record import LastStatuses, by_definition
 from btlang.pictures.surface import SMALL, TEXT
 from btlang.printer.phrase import MARKUP, seconds
 from btlang.support.record import Record

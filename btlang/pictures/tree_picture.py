@@ -32,7 +32,7 @@ from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.pictures.statuses import LastStatuses
+    from btlang.pictures.run_record import LastStatuses
     from btlang.pictures.surface import Surface
 
 

@@ -20,7 +20,7 @@ from btlang.run.events import (
     Troubled,
     Warned,
 )
-from btlang.run.json_log import as_json, describe_event
+from btlang.run.logs import as_json, describe_event
 from btlang.run.robot_state import Movements
 from btlang.support.record import Record
 from btlang.text.json_text import shallow

@@ -17,7 +17,7 @@ from btlang.recording.story import Story
 from btlang.robots.world_problem import read_world
 from btlang.run.bus import BLOCK
 from btlang.run.events import LOGGED, Event, PeriodPassed, Sampled, StatusesChanged
-from btlang.run.json_log import as_json
+from btlang.run.logs import as_json
 from btlang.run.robot_state import Movements, round_scan
 from btlang.run.snapshot import KnownNodes, RunState, Shape, text_and_places
 from btlang.session import Session

@@ -14,8 +14,7 @@ from btlang.diagnostics.render import render
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.status import FAILURE
 from btlang.run.controls import PATIENCE, Controls, emergency_signal
-from btlang.run.json_log import JsonLog
-from btlang.run.lines import PlainLines, brief
+from btlang.run.logs import JsonLog, PlainLines, brief
 from btlang.run.outcome import Outcome, Standstill
 from btlang.run.pace import are_many
 from btlang.run.sampler import Sampler

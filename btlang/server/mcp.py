@@ -19,7 +19,7 @@ from btlang.diagnostics.reading import MOST_BYTES
 from btlang.editing.partial import partial_reading
 from btlang.recording.film import simulate
 from btlang.robots.mission_vocabulary import world_vocabulary
-from btlang.run.lines import PlainLines
+from btlang.run.logs import PlainLines
 from btlang.text.source import Source, Span
 from btlang.vocabulary.listing import listing, overview
 

@@ -10,8 +10,7 @@ from btlang.engine.engine import Engine
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.engine.status_trace import Changes
 from btlang.pictures.run_picture import numbers
-from btlang.pictures.run_record import RunRecord, Sighting
-from btlang.pictures.statuses import LastStatuses, by_definition
+from btlang.pictures.run_record import LastStatuses, RunRecord, Sighting, by_definition
 from btlang.pictures.track import place_of, sighting_at, ways
 from btlang.robots.geometry import Point
 from btlang.robots.world_file import load_world

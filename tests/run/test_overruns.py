@@ -21,8 +21,7 @@ from btlang.run import pace as overruns
 from btlang.run import terminal
 from btlang.run.bus import Bus
 from btlang.run.events import Overrun
-from btlang.run.json_log import JsonLog
-from btlang.run.lines import PlainLines
+from btlang.run.logs import JsonLog, PlainLines
 from btlang.run.runner import Runner
 from btlang.tree.node import Node, Tree
 

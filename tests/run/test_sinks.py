@@ -10,8 +10,7 @@ from btlang.engine.instance import Fault, NodeInstance
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.engine.status_trace import Changes
 from btlang.run.events import Bumped, Dropped, Event, FaultInjected, Printed, RobotEvent, Said, StatusesChanged, Stuck
-from btlang.run.json_log import JsonLog
-from btlang.run.lines import PlainLines
+from btlang.run.logs import JsonLog, PlainLines
 from btlang.text.source import Source, Span
 from btlang.tree.node import Node
 

@@ -13,7 +13,7 @@ import pytest
 
 from btlang.engine.status import IDLE, NAMES
 from btlang.run.events import LOGGED, Event, StatusesChanged
-from btlang.run.json_log import as_json, describe_event
+from btlang.run.logs import as_json, describe_event
 from tests.server.test_robot_view import CASES, UNKNOWN, slowly, view_of
 from tests.web.packages import WEB, installed, node
 

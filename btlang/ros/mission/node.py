@@ -17,7 +17,7 @@ from btlang.ros.mission.services import create_services
 from btlang.ros.mission.setup import Setup
 from btlang.ros.mission.topics import ERROR, OK, WARN, Topics
 from btlang.ros.mission.tree_topic import TreeTopic
-from btlang.run.lines import PlainLines
+from btlang.run.logs import PlainLines
 from btlang.task import messages
 from btlang.task.execution.emergency import shut_latch
 from btlang.task.live.feed import TaskFollower

@@ -8,9 +8,9 @@ from collections.abc import Callable, Sequence
 
 from btlang.engine.compile import outline
 from btlang.run.events import PeriodPassed
-from btlang.run.lines import PlainLines
 from btlang.run.live import frame
 from btlang.run.live.selection import LEAST_HEIGHT
+from btlang.run.logs import PlainLines
 from btlang.run.snapshot import RunState, Shape
 from btlang.text.escaping import one_line
 

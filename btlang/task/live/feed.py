@@ -14,7 +14,7 @@ from btlang.engine.status import NAMES
 from btlang.passes.scripts import is_prepared
 from btlang.run.bus import INLINE
 from btlang.run.events import LOGGED, Arrived, DoorMoved, Ended, Event, PeriodPassed, StatusesChanged, Stopped
-from btlang.run.json_log import as_json
+from btlang.run.logs import as_json
 from btlang.run.robot_state import RobotState, ask_sensor, round_scan
 from btlang.run.snapshot import Doing, KnownNodes, text_and_places
 from btlang.session import Run
