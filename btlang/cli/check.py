@@ -50,9 +50,9 @@ class _FileCheck:
             return
         from btlang.projects.files import find_named_files
 
-        with self._reporting():
+        with self._report_errors():
             for path in find_named_files(self._options.file):
-                with self._reporting(), hint_at_text(path, "check"):
+                with self._report_errors(), hint_at_text(path, "check"):
                     self._add(read_source(path, self._options.include_root))
 
     def _add(self, source: Source) -> None:
@@ -69,7 +69,7 @@ class _FileCheck:
             done += (both := mended_together(self._trees, self._problems_together))
             self._trees = [source for source, _ in both]
         for source, count in done:
-            with self._reporting():
+            with self._report_errors():
                 self._put(source, count)
 
     def _put(self, source: Source, count: int) -> None:
@@ -87,7 +87,7 @@ class _FileCheck:
         """Report what is wrong now."""
         report, robot = self._options.report, self._options.robot
         for source in self._alone:
-            with self._reporting():
+            with self._report_errors():
                 if is_test_file(source.name):
                     from btlang.testing.test_file import check_tests  # most files are missions
 
@@ -98,16 +98,16 @@ class _FileCheck:
                         report.add(and_means_then_now(mission.syntax, mission.vocabulary))
                     mission.check(robot)
         if self._trees:
-            with self._reporting():
+            with self._report_errors():
                 problems = self._problems_together(self._trees)
                 report.add(problems)
                 self.failed |= any(problem.is_error for problem in problems)
         for source in self._trees if robot and not self.failed else ():
-            with self._reporting():
+            with self._report_errors():
                 parse_mission(source, self._options).check(robot)
 
     @contextmanager
-    def _reporting(self) -> Iterator[None]:
+    def _report_errors(self) -> Iterator[None]:
         """Add errors to the report, and go on with the rest."""
         try:
             yield

@@ -51,11 +51,11 @@ def run_act(options: argparse.Namespace) -> int:
     body, over = runs_on(options.robot, options.over)
     if act == "record":
         return record(items[0], options.out, body, over)
-    gesture = _named(items[0], body)
+    gesture = _find_gesture(items[0], body)
     return _play(options, body, over, gesture) if act == "play" else _draw(options.out, body, gesture)
 
 
-def _named(name: str, body: Body) -> Gesture:
+def _find_gesture(name: str, body: Body) -> Gesture:
     found = body.gestures.get(name)
     if found is None:
         near = nearest(name, body.gestures)

@@ -59,7 +59,10 @@ def replay(options: argparse.Namespace) -> int:
             controls.paused = view is not None and start > -math.inf
         speed = {"real": 1.0, "max": math.inf}.get(options.speed, options.speed)
         sinks.append(lines if view is None else view)
-        with nullcontext() if view is None else view, _shown(options.groot, controls, mission, nodes) as monitors:
+        with (
+            nullcontext() if view is None else view,
+            _show_in_groot(options.groot, controls, mission, nodes) as monitors,
+        ):
             sinks += monitors
             try:
                 player.play(speed, start)
@@ -84,7 +87,9 @@ def _keys(player: Player, controls: Controls) -> list[ViewKey]:
 
 
 @contextmanager
-def _shown(port: int | None, controls: Controls, mission: Mission, nodes: RecordedNodes) -> Iterator[list[Sink]]:
+def _show_in_groot(
+    port: int | None, controls: Controls, mission: Mission, nodes: RecordedNodes
+) -> Iterator[list[Sink]]:
     """Give the sinks that show a replay to Groot2. Raises MissionError (BT085, BT086)."""
     if port is None:
         yield []

@@ -229,12 +229,12 @@ def _unit(options: argparse.Namespace) -> str:
     return _UNIT.format(
         note=_SECRET if _has_password(options.store) else "",
         name=options.name or USUAL_NAME,
-        command=" ".join(map(_quoted, words)),
+        command=" ".join(map(_quote, words)),
         folder=folder.replace("%", "%%"),
     )
 
 
-def _quoted(word: str) -> str:
+def _quote(word: str) -> str:
     """Quote a word of a command line for systemd."""
     plain = word.replace("\\", "\\\\").replace('"', '\\"').replace("%", "%%").replace("$", "$$")
     return plain if _PLAIN.fullmatch(word) else f'"{plain}"'

@@ -30,7 +30,7 @@ def read_robot_file(act: str, path: str) -> int:
         pass_on(urdf(read_body(source)))
         return 0
     if act == "import":
-        pass_on(_imported(source))
+        pass_on(_import(source))
         return 0
     if act == "show":
         show("\n".join(draw_robot(read_body(source))))
@@ -42,7 +42,7 @@ def read_robot_file(act: str, path: str) -> int:
     return 0
 
 
-def _imported(source: Source) -> str:
+def _import(source: Source) -> str:
     from btlang.robots.motion.urdf_reader import read_urdf  # brings numpy
 
     try:

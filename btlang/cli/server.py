@@ -66,11 +66,11 @@ def serve(options: argparse.Namespace) -> int:
     if options.ros:
         require_package("rclpy")
     if options.no_tls and not _is_loopback(options.host):
-        raise _refused(options, "without TLS it listens on this computer alone")
+        raise _refuse(options, "without TLS it listens on this computer alone")
     accounts = Accounts(server_folder())
     if not accounts.users() and not _is_loopback(options.host):
         reason = f"there are no users yet; make one first: btc user add {_ADMINISTRATOR} --role administrator"
-        raise _refused(options, reason)
+        raise _refuse(options, reason)
     certificate = None if options.no_tls else _certificate(options)
     listener = open_listener(options.host, options.port)
     password = _first_password(accounts)
@@ -79,7 +79,7 @@ def serve(options: argparse.Namespace) -> int:
     scheme = "http" if certificate is None else "https"
 
     def ready() -> None:
-        show(f"The server is up: {scheme}://{_shown(options.host)}:{port}")
+        show(f"The server is up: {scheme}://{_format_host(options.host)}:{port}")
         if certificate is not None:
             show(f"Fingerprint (SHA-256): {certificate.fingerprint}")
         if password:
@@ -94,7 +94,7 @@ def serve(options: argparse.Namespace) -> int:
             Api(accounts, load_key(server_folder()), ros=options.ros), listener, certificate, control_path(), ready
         )
     except (OSError, ssl.SSLError) as error:
-        raise _refused(options, reason_of(error)) from None
+        raise _refuse(options, reason_of(error)) from None
     finally:
         accounts.close()
     return 0
@@ -123,9 +123,9 @@ def _certificate(options: argparse.Namespace) -> Certificate:
         tls(given)
         return given
     except (OSError, ssl.SSLError) as error:
-        raise _refused(options, f"its certificate can't be used: {reason_of(error)}") from None
+        raise _refuse(options, f"its certificate can't be used: {reason_of(error)}") from None
     except ValueError:
-        raise _refused(options, "its certificate can't be read: it must be in PEM") from None
+        raise _refuse(options, "its certificate can't be read: it must be in PEM") from None
 
 
 def listener_path() -> str:
@@ -156,10 +156,10 @@ def _first_password(accounts: Accounts) -> str:
     return password
 
 
-def _refused(options: argparse.Namespace, reason: str) -> MissionError:
-    place = f"{_shown(options.host)}:{options.port}"
+def _refuse(options: argparse.Namespace, reason: str) -> MissionError:
+    place = f"{_format_host(options.host)}:{options.port}"
     return MissionError([diagnostic("BT201", NOWHERE, place=place, reason=reason)])
 
 
-def _shown(host: str) -> str:
+def _format_host(host: str) -> str:
     return f"[{host}]" if ":" in host else host

@@ -60,7 +60,7 @@ def _do(options: argparse.Namespace, accounts: Accounts) -> None:
             used = "never used" if token.used is None else f"used at {format_moment(token.used, now)}"
             show(f"{one_line(token.name)}  {used}")
         return
-    show(_changed(options, accounts))
+    show(_change(options, accounts))
 
 
 def _copy(options: argparse.Namespace, accounts: Accounts) -> None:
@@ -78,17 +78,17 @@ def _copy(options: argparse.Namespace, accounts: Accounts) -> None:
         show(f"Wrote {one_line(path)}.")
 
 
-def _changed(options: argparse.Namespace, accounts: Accounts) -> str:
+def _change(options: argparse.Namespace, accounts: Accounts) -> str:
     """Do what changes something; return what to say."""
     from btlang.server.accounts.passwords import hash_password
 
     act, name, item = options.act, options.name, options.item
     if act == "add":
         _check_name(name)
-        accounts.add(name, _role(options.role, act), hash_password(_asked_password(name)))
+        accounts.add(name, _role(options.role, act), hash_password(_ask_password(name)))
         return f"'{one_line(name)}' may come in as {options.role}."
     if act == "passwd":
-        accounts.set_password(name, hash_password(_asked_password(name)))
+        accounts.set_password(name, hash_password(_ask_password(name)))
         return f"'{one_line(name)}' has another password, and is logged out everywhere."
     if act == "role":
         accounts.set_role(name, _role(item or options.role, act))
@@ -119,7 +119,7 @@ def _role(role: str, act: str) -> UserRole:
     return choose_member(UserRole, role, "role", act)
 
 
-def _asked_password(name: str) -> str:
+def _ask_password(name: str) -> str:
     """Ask for a password: twice at a terminal, else a line of standard input."""
     from btlang.server.accounts.passwords import problem
 

@@ -194,7 +194,7 @@ class PageWriter:
     def _models(self, file: str) -> Iterator[str]:
         """Yield the nodes that a file describes."""
         models = sorted(self._project.described[file], key=lambda model: (model.kind, model.id))
-        yield from table(("node", "kind", "ports", "what it does"), map(_described, models))
+        yield from table(("node", "kind", "ports", "what it does"), map(_describe, models))
 
     def _link(self, chapter: TreeChapter, page: str = "") -> str:
         """Link to a chapter, from the page of a file."""
@@ -220,7 +220,7 @@ def to_markdown(tree: Tree, vocabulary: Lexicon) -> str:
     return PageWriter(project).page(title, pictures=False)
 
 
-def _described(model: NodeModel) -> tuple[str, ...]:
+def _describe(model: NodeModel) -> tuple[str, ...]:
     return code(model.id), model.kind, ", ".join(code(port.name) for port in model.ports), escape_markdown(model.text)
 
 

@@ -74,7 +74,7 @@ def clip_text(text: str, room: float, size: float, bold: bool = False) -> str:
     """Return the text, or as much of it as fits with an ellipsis."""
     if width(text, size, bold) <= room:
         return text
-    count = _fitting(text, room - width("…", size, bold), size, bold)
+    count = _fit(text, room - width("…", size, bold), size, bold)
     return text[:count].rstrip() + "…"
 
 
@@ -84,11 +84,11 @@ def _first_line(words: list[str], room: float, size: float, bold: bool) -> tuple
         count += 1
     if count:
         return " ".join(words[:count]), words[count:]
-    cut = max(1, _fitting(words[0], room, size, bold))  # a word that is wider than a line
+    cut = max(1, _fit(words[0], room, size, bold))  # a word that is wider than a line
     return words[0][:cut], [words[0][cut:], *words[1:]]
 
 
-def _fitting(text: str, room: float, size: float, bold: bool) -> int:
+def _fit(text: str, room: float, size: float, bold: bool) -> int:
     """Return how many characters from the start fit."""
     used = 0
     for count, character in enumerate(text):

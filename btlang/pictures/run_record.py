@@ -187,7 +187,7 @@ class RunRecord:
                 self._sight(event.t, self._movements.changed(event.state.things))
         elif isinstance(event, StatusesChanged) and self.track:
             for change in event:
-                self._changed(change, event.valued.get(change.index, change.node))
+                self._take_change(change, event.valued.get(change.index, change.node))
         elif self.track:
             self._happened(event)
 
@@ -202,7 +202,7 @@ class RunRecord:
         else:
             self.track.append(sample)
         for name in self._put_down:
-            self._moved(t, name, ask_sensor(partial(robot.locate, name)) or robot.pose.ahead(robot.radius))
+            self._move(t, name, ask_sensor(partial(robot.locate, name)) or robot.pose.ahead(robot.radius))
         self._put_down.clear()
 
     def _sight(self, t: float, things: list[Whereabouts]) -> None:
@@ -228,7 +228,7 @@ class RunRecord:
             self._mark(event, "")
         elif isinstance(event, Grasped):
             self._mark(event, event.name)
-            self._moved(event.t, event.name, None)
+            self._move(event.t, event.name, None)
         elif isinstance(event, Released | Dropped | Given) and event.name:
             self._mark(event, event.name)
             self._put_down.append(event.name)
@@ -236,11 +236,11 @@ class RunRecord:
     def _mark(self, event: Event, text: str, who: str = "") -> None:
         self.marks.append(PictureMark(event.t, event.tag, text, self.track[-1].pose, who))
 
-    def _moved(self, t: float, name: str, place: Point | None) -> None:
+    def _move(self, t: float, name: str, place: Point | None) -> None:
         self.moved[name] = place
         self.moves.append((t, name, place))
 
-    def _changed(self, event: StatusChanged, node: Node) -> None:
+    def _take_change(self, event: StatusChanged, node: Node) -> None:
         """Record a change; `node` has the values that its ports name."""
         if event.path == "/":  # after a pause it runs again
             self.ended = None if event.status == RUNNING else (event.status, event.t)

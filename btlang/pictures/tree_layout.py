@@ -139,7 +139,7 @@ class Maker:
         if has_children:
             shape = "decorator" if kind is not None and kind.most == 1 else "control"
             return TreeBox(
-                shape, make_printable(_named(node)), kind.symbol if kind is not None else "", parent, role, status
+                shape, make_printable(_name(node)), kind.symbol if kind is not None else "", parent, role, status
             )
         shape = "action" if kind is not None or self._is_action(node) else "condition"
         skipped = " (skipped)" if node.port("_skipIf") == "true" else ""
@@ -160,7 +160,7 @@ def _plain(node: Node) -> tuple[tuple[str, str], ...]:
     return tuple((key, text) for key, text in node.ports if key != "_skipIf")
 
 
-def _named(node: Node) -> str:
+def _name(node: Node) -> str:
     """Return the id with its ports in short: `Repeat x3`, `Timeout 5 s`."""
     words = [node.name, node.id]
     kind = CATALOGUE.get(node.id)

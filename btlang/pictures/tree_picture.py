@@ -97,7 +97,7 @@ class _TreePicture:
     ) -> None:
         self._signs = has_run
         layouts = [lay_out(sheet.boxes, has_run) for sheet in sheets]
-        pieces = list(zip(sheets, layouts, _arranged(layouts), strict=True))
+        pieces = list(zip(sheets, layouts, _arrange(layouts), strict=True))
         width = max(x + layout.width for _, layout, (x, _) in pieces) + _MARGIN
         width = max(width, min(letters.width(title, TITLE, True), _LEAST_WIDE) + 2 * _MARGIN)
         height = max(y + layout.height for _, layout, (_, y) in pieces) + _MARGIN
@@ -204,7 +204,7 @@ class _TreePicture:
             x += letters.width(look.word, TEXT) + 40
 
 
-def _arranged(layouts: list[TreeLayout]) -> list[tuple[float, float]]:
+def _arrange(layouts: list[TreeLayout]) -> list[tuple[float, float]]:
     """Return upper left corners: the main tree, and below it the subtrees in rows."""
     corners = [(_MARGIN, _MARGIN + HEADING)]
     area = sum((layout.width + 36) * (layout.height + 30 + _TITLE) for layout in layouts)

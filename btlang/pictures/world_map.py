@@ -69,7 +69,7 @@ class Placer:
         for ring in _RINGS:
             for step in range(_DIRECTIONS):
                 area = _beside(x, y, width, height, gap + ring, 2 * pi * step / _DIRECTIONS)
-                covered = self._covered(area)
+                covered = self._cover(area)
                 cost = (
                     (_OVERLAP + 4 * covered if covered else 0)
                     + self._hidden(area)
@@ -83,7 +83,7 @@ class Placer:
         self.taken.append(best)
         return best, overlap
 
-    def _covered(self, area: Area) -> float:
+    def _cover(self, area: Area) -> float:
         sheet = self._sheet
         inside = area.overlap(sheet) >= area.width * area.height - 1e-6
         return sum(area.overlap(other) for other in self.taken) + (0.0 if inside else _OUTSIDE)

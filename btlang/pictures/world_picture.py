@@ -31,11 +31,11 @@ def draw_world(world: World, path: str, title: str) -> None:
     """
     kind = picture_ending(path, STILL)
     with open_drawing(path, kind) as sheet:
-        data = _drawn(sheet, world, title).encoded(kind)
+        data = _draw(sheet, world, title).encoded(kind)
     write_file(path, data)
 
 
-def _drawn(sheet: Callable[[float, float, str], Surface], world: World, title: str) -> Surface:
+def _draw(sheet: Callable[[float, float, str], Surface], world: World, title: str) -> Surface:
     drawn = WorldMap(world, _ROOM)
     area = drawn.area
     wide = max(area.width, _LEAST_WIDE)

@@ -107,10 +107,10 @@ class CppSources:
             text = _COMMENT.sub(lambda match: match[0] if match[0][0] == '"' else " " * len(match[0]), source.text)
             if _REGISTERING in text:
                 self._registering_enums.append(text)
-            for match in _found(_REGISTERED, text):
+            for match in _find(_REGISTERED, text):
                 place = Span(source, match.start(), match.end())
                 registered[match["id"]] = (match["class"].rpartition(":")[2], place)
-            heads = sorted(_found((*_CLASSES, _MEMBER), text), key=lambda head: head.start())
+            heads = sorted(_find((*_CLASSES, _MEMBER), text), key=lambda head: head.start())
             ends = [head.start() for head in heads[1:]] + [len(text)]
             for head, end in zip(heads, ends, strict=False):
                 place = Span(source, head.start(), head.end())
@@ -137,7 +137,7 @@ class CppSources:
                     yield Source(data.decode(errors="replace"), path)
 
 
-def _found(patterns: Iterable[re.Pattern[str]], text: str) -> Iterator[re.Match[str]]:
+def _find(patterns: Iterable[re.Pattern[str]], text: str) -> Iterator[re.Match[str]]:
     return (match for pattern in patterns for match in pattern.finditer(text))
 
 

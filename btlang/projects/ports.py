@@ -25,12 +25,12 @@ def place_of(node: Node) -> Span:
 
 def attribute_name(node: Node, port: str) -> Span:
     """Return the name of an attribute; the start tag where it has no such attribute."""
-    return _found(node, port, 1)
+    return _find(node, port, 1)
 
 
 def attribute_value(node: Node, port: str) -> Span:
     """Return the text of an attribute, without its quotes; the start tag where it has no such attribute."""
-    return _found(node, port, 2)
+    return _find(node, port, 2)
 
 
 def id_place(node: Node) -> Span:
@@ -42,7 +42,7 @@ def id_place(node: Node) -> Span:
     return attribute_value(node, "ID")
 
 
-def _found(node: Node, port: str, group: int) -> Span:
+def _find(node: Node, port: str, group: int) -> Span:
     span = place_of(node)
     for match in _ATTRIBUTE.finditer(span.text):
         if match[1] == port:
@@ -118,7 +118,7 @@ def port_problems(uses: DescribedUses) -> Iterator[Diagnostic]:
     ports = {port.name: port for port in model.ports}
     others = [port for other, _ in uses.others for port in other.ports]
     given = [dict(node.ports) for node in uses.nodes]
-    lacking = _lacking(uses, others)
+    lacking = _find_lacking(uses, others)
     optional = {port.name for port in model.ports if _may_be_left_out(port, others, given)}
     for node in uses.nodes:
         own = dict(node.ports)
@@ -153,7 +153,7 @@ def _near(name: str, given: Iterable[str], ports: Iterable[str]) -> list[str]:
     return nearest(name.lower(), [port for port in ports if port not in given])
 
 
-def _lacking(uses: DescribedUses, others: Iterable[PortModel]) -> dict[str, list[Node]]:
+def _find_lacking(uses: DescribedUses, others: Iterable[PortModel]) -> dict[str, list[Node]]:
     """Return the ports that nodes have and the model lacks, with these nodes: another model has them, or several nodes
     do and they aren't misspelt.
     """

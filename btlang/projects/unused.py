@@ -71,13 +71,13 @@ def unread_subtree_ports(nodes: Iterable[Node], trees: Mapping[str, Node]) -> It
         if node.id != SUBTREE or used not in trees:
             continue
         if used not in named:
-            named[used] = _named(trees[used], trees)
+            named[used] = _find_names(trees[used], trees)
         for name, _ in node.ports:
             if name != "ID" and name[:1] != "_" and _WORD.fullmatch(name) and name not in named[used]:
                 yield diagnostic("BT235", attribute_value(node, name), key=name, port=name, id=used)
 
 
-def _named(root: Node, trees: Mapping[str, Node]) -> set[str]:
+def _find_names(root: Node, trees: Mapping[str, Node]) -> set[str]:
     """Return all words of a tree that may be keys, and of those that see its keys by their own names."""
     words: set[str] = set()
     waiting, done = [root], set[str]()

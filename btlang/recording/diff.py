@@ -77,7 +77,7 @@ def compare_endings(one: Iterable[Event], other: Iterable[Event]) -> list[int]:
 
 def run_differences(one: Iterable[str], other: Iterable[str]) -> Iterator[str]:
     """Yield what only one of the stories of two runs has, whenever it was: `-` the first one, `+` the second."""
-    lines = [[_parted(line) for text in story for line in text.splitlines()] for story in (one, other)]
+    lines = [[_split(line) for text in story for line in text.splitlines()] for story in (one, other)]
     done = [[words for _, words in story] for story in lines]
     for tag, first, last, begin, end in SequenceMatcher(a=done[0], b=done[1], autojunk=False).get_opcodes():
         if tag != "equal":
@@ -85,7 +85,7 @@ def run_differences(one: Iterable[str], other: Iterable[str]) -> Iterator[str]:
             yield from (f"+ {time}{words}" for time, words in lines[1][begin:end])
 
 
-def _parted(line: str) -> tuple[str, str]:
+def _split(line: str) -> tuple[str, str]:
     """Return the time at the start of a line of a story, and the rest."""
     match = re.match(r" *[\d.]+ s  ", line)
     return (match[0].strip() + "  ", line[match.end() :]) if match else ("", re.sub(r" after [\d.]+ s", "", line))

@@ -39,7 +39,7 @@ class Story:
                 for change in event:
                     node = event.valued.get(change.index, change.node)
                     if self._is_said(node) or is_asked_wait(change.node):
-                        self._changed(change.index, change.status, change.t, node, change.reason)
+                        self._take_change(change.index, change.status, change.t, node, change.reason)
             elif isinstance(event, Chosen):
                 self._note(event.t, -1, f"It chooses {event.name}, the {event.how} {event.type}.")
             elif isinstance(event, FaultInjected | Notice | PartChanged) and event.text:
@@ -99,7 +99,7 @@ class Story:
         entry = self._mission.vocabulary.entry(node.id)
         return entry is not None and entry.sort == "action" and bool(entry.phrases)
 
-    def _changed(self, index: int, status: int, t: float, node: Node, reason: str) -> None:
+    def _take_change(self, index: int, status: int, t: float, node: Node, reason: str) -> None:
         if status == RUNNING:
             self._began[index] = t, node
             return

@@ -83,7 +83,7 @@ class ReplScreen:
             complete_while_typing=True,
             history=history,
             multiline=True,
-            on_text_changed=self._changed,
+            on_text_changed=self._change,
         )
         self.application: Application[str] = Application(
             layout=self._layout(),
@@ -163,7 +163,7 @@ class ReplScreen:
     def _is_unfinished(self) -> bool:
         return self.preview().unfinished and self._refused != self.buffer.text
 
-    def _changed(self, _: Buffer) -> None:
+    def _change(self, _: Buffer) -> None:
         self.note, self.leaving, self.asks = "", False, False
         self._keep()
 
@@ -212,13 +212,13 @@ class ReplScreen:
         parts: list[RenderableType] = []
         for problem in seen.problems[:_MOST_PROBLEMS] if not (unfinished and seen.midword) else ():
             if unfinished:
-                parts.append(_indented(problem.message, _UNFINISHED))
+                parts.append(_indent(problem.message, _UNFINISHED))
                 break
             style = {"error": "red", "warning": "yellow"}.get(problem.kind.severity, "cyan")
             start, end = problem.span.start, min(problem.span.end, len(self.buffer.text))
             if "\n" not in self.buffer.text and len(PROMPT) + len(self.buffer.text) < self._columns():
                 parts.append(Text(" " * (len(PROMPT) + start) + "^" * max(1, end - start), style))
-            parts += [_indented(line, style) for line in (problem.message, *problem.hint.splitlines())]
+            parts += [_indent(line, style) for line in (problem.message, *problem.hint.splitlines())]
         return Group(*parts)
 
     def _tree_lines(self) -> Iterator[str]:
@@ -293,5 +293,5 @@ class _Marks(Lexer):
         return line_of
 
 
-def _indented(text: str, style: str) -> Padding:
+def _indent(text: str, style: str) -> Padding:
     return Padding(Text(text, style), (0, 0, 0, len(CONTINUED)))

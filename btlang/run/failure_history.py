@@ -107,9 +107,9 @@ class FailureHistory:
     def __call__(self, event: Event) -> None:
         if isinstance(event, StatusesChanged):
             for index, status, _, reason in event.without_paths():
-                self._changed(index, status, event.t, reason)
+                self._take_change(index, status, event.t, reason)
 
-    def _changed(self, index: int, status: int, t: float, reason: str) -> None:
+    def _take_change(self, index: int, status: int, t: float, reason: str) -> None:
         above = self.engine.parent(index)
         self._failed.get(above, {}).pop(index, None)
         if status == RUNNING:
@@ -186,7 +186,7 @@ class _Report:
 
     def lines(self, colour: str) -> Iterator[str]:
         failure, story = self._failure, self._story
-        named = self._named(failure.index)
+        named = self._name(failure.index)
         last, before = self._apart(story.tried)
         yield f"The mission failed after {story.ended:.1f} s."
         yield f"{failure.path if failure.span is None else failure.span.place}: {self._words(failure.index)}"
@@ -236,9 +236,9 @@ class _Report:
     def _attempt(self, attempt: Attempt) -> str:
         reason = attempt.reason or "done, but it didn't help"
         times = f" ({attempt.times} times, last at {attempt.last:.1f} s)" if attempt.times > 1 else ""
-        return f"{attempt.first:7.1f} s  {self._sentence(self._named(attempt.index))}: {reason}{times}"
+        return f"{attempt.first:7.1f} s  {self._sentence(self._name(attempt.index))}: {reason}{times}"
 
-    def _named(self, index: int) -> int:
+    def _name(self, index: int) -> int:
         """Return the node that a reason is about: that of a `not` is about what it denies, its child."""
         kind = CATALOGUE.get(self._story.engine.node(index).id)
         return index + 1 if kind is not None and len(kind.turns) == 2 else index

@@ -319,7 +319,7 @@ class KnownNodes:
     def new_statuses(self, codes: bytes) -> list[tuple[int, int]]:
         """Return number and status of each node that has another status by now; HALTED and SUSPENDED are IDLE."""
         before, self._codes = self._codes, codes.translate(_SHOWN)
-        return [(index, self._codes[index]) for index in _differing(before, self._codes)]
+        return [(index, self._codes[index]) for index in _find_differences(before, self._codes)]
 
     def new_words(self, valued: Mapping[int, Node], label: Callable[[Node], str]) -> list[tuple[int, str]]:
         """Return number and words of each node whose keys have other values by now."""
@@ -344,7 +344,7 @@ def text_and_places(syntax: Any, nodes: Spans) -> tuple[str, list[tuple[int, int
     return "" if source is None else source.text, places
 
 
-def _differing(before: bytes, after: bytes) -> Iterator[int]:
+def _find_differences(before: bytes, after: bytes) -> Iterator[int]:
     """Yield the positions that differ, found by halves: few nodes of a large tree change at a time."""
     spans = [(0, len(after))]
     while spans:

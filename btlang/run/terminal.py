@@ -118,9 +118,9 @@ def run_mission(
         with (
             interrupted_by_signals() as came,
             emergency_signal(controls.emergency_stop, controls.disable, PATIENCE, quits=True),
-            _opened(log) as file,
+            _open(log) as file,
             view if view is not None else nullcontext(),
-            _opened_monitors(open_monitors, controls) as monitors,
+            _open_monitors(open_monitors, controls) as monitors,
             open_session() as session,
         ):
             if file is not None:
@@ -216,7 +216,7 @@ def live_view(
 
 
 @contextmanager
-def _opened_monitors(
+def _open_monitors(
     open_monitors: Iterable[Callable[[Controls], AbstractContextManager[Monitor]]], controls: Controls
 ) -> Iterator[list[Monitor]]:
     with ExitStack() as stack:
@@ -224,7 +224,7 @@ def _opened_monitors(
 
 
 @contextmanager
-def _opened(log: str | None) -> Iterator[TextIO | None]:
+def _open(log: str | None) -> Iterator[TextIO | None]:
     if log is None:
         yield None
         return

@@ -52,7 +52,7 @@ def serve(options: argparse.Namespace) -> int:
     return 0
 
 
-def _answering(tool: Callable[..., dict[str, object]]) -> Callable[..., dict[str, object]]:
+def _answer_problems(tool: Callable[..., dict[str, object]]) -> Callable[..., dict[str, object]]:
     """Return the tool, which answers with the messages where a text can't be used."""
 
     @wraps(tool)
@@ -77,7 +77,7 @@ class Tools:
         lines = listing(self._vocabulary, search) if search.strip() else overview(self._vocabulary, command="words")
         return {"ok": True, "lines": lines}
 
-    @_answering
+    @_answer_problems
     def check(self, text: str) -> dict[str, object]:
         """Return the messages about a mission.
 
@@ -87,13 +87,13 @@ class Tools:
         mission.check()
         return {"ok": True, "messages": _messages(mission.warnings)}
 
-    @_answering
+    @_answer_problems
     def explain(self, text: str) -> dict[str, object]:
         """Return how each sentence of a mission is understood, with brackets, and as a behavior tree."""
         mission = self._mission(text)
         return {"ok": True, "explanation": mission.explain(), "messages": _messages(mission.warnings)}
 
-    @_answering
+    @_answer_problems
     def understand(self, text: str) -> dict[str, object]:
         """Each sentence of what a person has said: its reading in controlled English, or what isn't understood of it.
 
@@ -101,7 +101,7 @@ class Tools:
         """
         return partial_reading(text, self._vocabulary, self._mission)
 
-    @_answering
+    @_answer_problems
     def simulate(self, text: str, seconds: float = 600.0, ticks: int = 12_000) -> dict[str, object]:
         """Run a mission on the simulated robot as fast as possible, for at most so many seconds and ticks.
 

@@ -127,7 +127,7 @@ class TaskLayer:
             self.executor,
             self.emergency,
             self.session,
-            self._admitted,
+            self._admit,
             self.now,
             down,
             self._needs,
@@ -151,7 +151,7 @@ class TaskLayer:
 
     def add(self, mission: MissionText, person: str = "", **fields: Any) -> Task:
         """Queue a mission of the robot's owner, with these fields of its task. Raises MissionError."""
-        self._admitted(mission)
+        self._admit(mission)
         return self.handler.add(mission, person, **fields)
 
     def stop(self, person: str) -> None:
@@ -208,7 +208,7 @@ class TaskLayer:
             "talks": takes_talk(self.session),
         }  # fmt: skip
 
-    def _admitted(self, text: MissionText) -> Mission:
+    def _admit(self, text: MissionText) -> Mission:
         """Return a mission that this robot can do. Raises MissionError with all reasons why it can't."""
         self.reader.check(text.keywords)
         mission = self.reader.read(text)
@@ -311,7 +311,7 @@ def _schedule(table: Table) -> AddSchedule:
     try:
         read_rule(rule, zone)
     except MissionError as error:
-        raise table.problem("every", _plain(error)) from None
+        raise table.problem("every", _first_message(error)) from None
     return table.finish(
         AddSchedule(
             rule, name=table.text("mission"), zone=zone,
@@ -325,7 +325,7 @@ def _schedule(table: Table) -> AddSchedule:
     )  # fmt: skip
 
 
-def _plain(error: MissionError) -> str:
+def _first_message(error: MissionError) -> str:
     """Return the first message with its advice, as part of a sentence."""
     first = error.diagnostics[0]
     return f"{first.message} {first.hint}".strip().rstrip(".")

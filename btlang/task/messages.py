@@ -359,7 +359,7 @@ def read_command(data: object) -> Command:
             continue
         if field not in kind.fields:
             raise wrong(kind.tag, f"it has no field '{field}'")
-        given[field] = _checked(kind, field, value)
+        given[field] = _check_field(kind, field, value)
     missing = [field for field in kind.fields if field not in given and field not in kind.field_defaults]
     if missing:
         raise wrong(kind.tag, f"the field '{missing[0]}' is missing")
@@ -376,7 +376,7 @@ def as_json(command: Command) -> dict[str, Any]:
     return written
 
 
-def _checked(kind: type[Command], field: str, value: Any) -> Any:
+def _check_field(kind: type[Command], field: str, value: Any) -> Any:
     annotation = kind.__annotations__[field]
     expected, described = field_type(annotation)
     texts = annotation == "tuple[str, ...]"

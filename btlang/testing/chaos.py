@@ -47,7 +47,7 @@ class Chaos:
         """The faults in the world, and when they came."""
         self._observed, self._robot, self._controls, self._words = observed, robot, controls, words
         self._random = Random(seed)
-        self._pending = list(self._planned(limit))
+        self._pending = list(self._plan(limit))
         self._stopped_at: float | None = None
 
     def __call__(self, event: Event) -> None:
@@ -92,7 +92,7 @@ class Chaos:
         entry = self._words.entry(node.id)
         return set(entry.resources) if entry is not None and entry.sort == "action" else set()
 
-    def _planned(self, limit: float) -> Iterator[Trouble]:
+    def _plan(self, limit: float) -> Iterator[Trouble]:
         """Plan faults in the order of time."""
         at = 0.0
         end = self._random.uniform(0.0, min(limit, 120.0)) if self._random.random() < _STOPS else limit
@@ -102,9 +102,9 @@ class Chaos:
             yield end, "an emergency stop", self._stop
 
     def _kinds(self) -> Sequence[Callable[[float], tuple[str, Callable[[], object]]]]:
-        kinds = [self._slip, self._silence, self._dropped_goal]
+        kinds = [self._slip, self._silence, self._drop_goal]
         world = self._robot.world
-        kinds += [self._blocked] if world.places else []
+        kinds += [self._block] if world.places else []
         kinds += [self._in_the_way] if world.objects or world.people else []
         return kinds + ([self._weak_hand] if self._robot.body.hand("right") is not None else [])
 
@@ -123,14 +123,14 @@ class Chaos:
     def _silence(self, at: float) -> tuple[str, Callable[[], object]]:
         return "the laser scanner is silent", self._fault(at, "silent scanner")
 
-    def _blocked(self, at: float) -> tuple[str, Callable[[], object]]:
+    def _block(self, at: float) -> tuple[str, Callable[[], object]]:
         place = self._random.choice(self._robot.world.places).name
         return f"the way to {said(place)} is blocked", self._fault(at, "blocked", place=place)
 
     def _weak_hand(self, at: float) -> tuple[str, Callable[[], object]]:
         return "the right hand is weak", self._fault(at, "weak hand", hand="right")
 
-    def _dropped_goal(self, at: float) -> tuple[str, Callable[[], object]]:
+    def _drop_goal(self, at: float) -> tuple[str, Callable[[], object]]:
         return "a goal is dropped", lambda: self._robot.drop_goal("the goal was dropped")
 
     def _in_the_way(self, at: float) -> tuple[str, Callable[[], object]]:

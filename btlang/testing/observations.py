@@ -61,11 +61,11 @@ class Observations:
         if isinstance(event, PeriodPassed):
             self.now = event.t
         elif isinstance(event, StatusesChanged):
-            self._changed(event)
+            self._take_change(event)
         elif isinstance(event, Said):
-            self._said.append(_plain(event.text))
+            self._said.append(_normalize(event.text))
         elif isinstance(event, Printed):
-            self._printed.append(_plain(event.text))
+            self._printed.append(_normalize(event.text))
         elif isinstance(event, Arrived):
             self.reached.add(event.name)
         elif isinstance(event, Grasped):
@@ -81,11 +81,11 @@ class Observations:
 
     def said_times(self, text: str) -> int:
         """Return how often the robot has begun to say it."""
-        return self._said.count(_plain(text))
+        return self._said.count(_normalize(text))
 
     def printed_times(self, text: str) -> int:
         """Return how often it was shown."""
-        return self._printed.count(_plain(text))
+        return self._printed.count(_normalize(text))
 
     def times(self, text: str, status: int) -> int:
         """Return how often a command has ended with SUCCESS or FAILURE, or has begun (RUNNING)."""
@@ -96,7 +96,7 @@ class Observations:
         command = self._commands[text]
         return any(command.matches(node) for node in self.running.values())
 
-    def _changed(self, event: StatusesChanged) -> None:
+    def _take_change(self, event: StatusesChanged) -> None:
         for index, status, before, _ in event.changes:
             node = self.nodes.get(index)
             if node is None:
@@ -121,7 +121,7 @@ class Observations:
                         self._times[text, one] = self._times.get((text, one), 0) + 1
 
 
-def _plain(text: str) -> str:
+def _normalize(text: str) -> str:
     return text.casefold().strip(" .!")
 
 
@@ -157,7 +157,7 @@ class Coverage:
 
     def lines(self, name: str) -> list[str]:
         """Return the counts of the mission with this name, and its tree with what never happened."""
-        missing = {id(node): self._missing(at) for at, node in enumerate(self._nodes)}
+        missing = {id(node): self._find_missing(at) for at, node in enumerate(self._nodes)}
         ran = sum(bool(bits) for bits in self._seen)
         possible = sum(len(self._outcomes(at)) for at in range(len(self._nodes)))
         happened = possible - sum(
@@ -176,7 +176,7 @@ class Coverage:
         ends = self._ends.get(id(self._nodes[at]), endings.SUCCESS | endings.FAILURE)
         return [one for one, bit in _ENDS.items() if ends & bit]
 
-    def _missing(self, at: int) -> str:
+    def _find_missing(self, at: int) -> str:
         seen = self._seen[at]
         if not seen:
             return "never ran"

@@ -272,7 +272,7 @@ def run_test(
         script = Script(test, observed, session.robot, controls, values)
         if script.broken is None:
             run.bus.add(script)
-            outcome = _executed(run, controls)
+            outcome = _execute(run, controls)
     seconds, is_cut = 0.0, False
     if outcome is not None:
         observed.outcome, observed.is_over, seconds = outcome, True, outcome.seconds
@@ -302,14 +302,14 @@ def run_chaos(test: MissionTest, seed: int, sinks: Iterable[Sink] = ()) -> Resul
         Script(test.replace(steps=()), observed, session.robot, controls, Blackboard())  # for its setup
         chaos = Chaos(seed, test.limit, observed, session.robot, controls, test.mission.vocabulary)
         run.bus.add(chaos)
-        outcome = _executed(run, controls)
+        outcome = _execute(run, controls)
         chaos.end()
     seen = statuses_seen(test.mission.tree, observed)
     problem = "\n".join((chaos.broken, *(f"  {line}" for line in chaos.troubles))) if chaos.broken else ""
     return Result(test.name, test.place, seed, outcome.seconds, problem, seen=seen, troubles=tuple(chaos.troubles))
 
 
-def _executed(run: Run, controls: Controls) -> Outcome:
+def _execute(run: Run, controls: Controls) -> Outcome:
     """Raise KeyboardInterrupt at Ctrl-C, which ends all tests and not only this one."""
     outcome = run.execute()
     if outcome.stopped == "interrupted" and not controls.stopped:

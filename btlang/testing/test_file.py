@@ -123,8 +123,8 @@ class _TestFileReader:
             raise MissionError(self._problems)
         try:
             mission = self._mission(runs[0])
-            if rules := self._named_file("rules"):
-                mission = read_house_rules(self._parsed(read_source(rules, _root(self._source)))).around(mission)
+            if rules := self._find_file("rules"):
+                mission = read_house_rules(self._parse(read_source(rules, _root(self._source)))).around(mission)
         except MissionError as error:  # the other lines need its words
             moved_problems = [move_problem(problem, self._source) for problem in error.diagnostics]
             raise MissionError([*self._problems, *moved_problems]) from None
@@ -148,34 +148,34 @@ class _TestFileReader:
         )  # fmt: skip
 
     def _mission(self, run: ScriptStatement) -> Mission:
-        world = self._named_file("world") or None
-        self._robot = self._named_file("robot")
+        world = self._find_file("world") or None
+        self._robot = self._find_file("robot")
         if self._robot:
             body = body_of(self._robot)
             self._robot_words = words_of(body)
             world = world or body.world or None
         self._world = world
         if run.file is not None:
-            mission = self._given(_named(run.file), world)
+            mission = self._given(_name(run.file), world)
             if mission is not None:
                 return mission
-            return self._parsed(read_source(self._path(run.file), _root(self._source)))
+            return self._parse(read_source(self._path(run.file), _root(self._source)))
         if run.block is None:
             raise MissionError([_problem("BT181", run.span, "it runs no mission", 'run "patrol.txt"')])
-        return self._parsed(_only(self._source, run.block))
+        return self._parse(_only(self._source, run.block))
 
-    def _parsed(self, source: Source) -> Mission:
+    def _parse(self, source: Source) -> Mission:
         """Parse a mission in the words of the robot and the names of the world of the test. Raises MissionError."""
         return parse_tree(source, keywords=self._robot_words, world=self._world)
 
-    def _named_file(self, kind: str) -> str:
+    def _find_file(self, kind: str) -> str:
         """Return the path that the first statement of a kind names; "" where none does."""
         return next((self._path(one.file) for one in self._statements if one.kind == kind), "")
 
     def _path(self, named: Span | None) -> str:
         """Return where a file lies that the test names. Raises MissionError where that is no folder of the user's."""
         assert named is not None
-        path, real = included_path(_named(named), self._source)
+        path, real = included_path(_name(named), self._source)
         if not self._source.roots or not any(is_below(real, root) for root in (*self._source.roots, "")):
             raise MissionError([diagnostic("BT001", named, file=path, reason=OUTSIDE)])
         if not os.path.isfile(real):
@@ -183,7 +183,7 @@ class _TestFileReader:
         return path
 
 
-def _named(file: Span) -> str:
+def _name(file: Span) -> str:
     return file.text.strip("\"'“”„’‘")  # noqa: RUF001
 
 

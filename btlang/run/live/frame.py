@@ -54,7 +54,7 @@ class ViewWords:
 
     def __init__(self, nodes: Sequence[Node], label: Callable[[Node], str], parents: Sequence[int] = ()) -> None:
         self._nodes = nodes
-        self.asked = _asked(nodes, parents)
+        self.asked = _is_asked(nodes, parents)
         """Whether a node is in a condition of the node above, whose failure is an answer and no mistake."""
         self._label = label
         self._known: dict[int, tuple[str, str]] = {}
@@ -73,7 +73,7 @@ class ViewWords:
         return found
 
 
-def _asked(nodes: Sequence[Node], parents: Sequence[int]) -> list[bool]:
+def _is_asked(nodes: Sequence[Node], parents: Sequence[int]) -> list[bool]:
     asked = [False] * len(nodes)
     for index, parent in enumerate(parents):
         if parent >= 0:

@@ -130,14 +130,14 @@ class LiveScreen:
         known, self._known = self._known, {}
         lines: list[str] = []
         for line in frame[: rows - 1]:
-            drawn = known.get((line, width)) or self._rendered(line, width)
+            drawn = known.get((line, width)) or self._render(line, width)
             self._known[line, width] = drawn
             lines.append(drawn)
         redraw = bool(above) or width != self._width
         if lines == self._drawn and not redraw:
             return
         parts = [_BEGIN, self._to_the_top(width)]
-        parts += [_staying(part.expandtabs(), width + 1) for line in above for part in line.split("\n")]
+        parts += [_staying_line(part.expandtabs(), width + 1) for line in above for part in line.split("\n")]
         parts += self._changes(lines, redraw)
         parts.append(_END)
         self._drawn, self._width = lines, width
@@ -173,7 +173,7 @@ class LiveScreen:
         up = sum(rows) - 1
         return f"\r\x1b[{up}A" if up else "\r"
 
-    def _rendered(self, line: Line, width: int) -> str:
+    def _render(self, line: Line, width: int) -> str:
         text = Text.assemble(*line, no_wrap=True, end="")
         text.truncate(width, overflow="ellipsis" if self._console.encoding.startswith("utf") else "crop")
         with self._console.capture() as captured:
@@ -185,7 +185,7 @@ class LiveScreen:
         self._output.flush()
 
 
-def _staying(line: str, columns: int) -> str:
+def _staying_line(line: str, columns: int) -> str:
     """Return a line above the frame.
 
     It erases what it is written over: what is erased at once, tmux keeps in its history.

@@ -260,20 +260,20 @@ class Accounts:
                 return None
             if token.used is None or token.used < now - _NOTED:
                 self._note("token", id, now)
-            return self._identified(token.user, id, is_session=False)
+            return self._identify(token.user, id, is_session=False)
         login = self._one(Login, "session", "id = ?", id)
         if login is None or login.used < now - IDLE or login.created < now - LONGEST:
             return None
         if login.used < now - _NOTED:
             self._note("session", id, now)
-        return self._identified(login.user, id, is_session=True)
+        return self._identify(login.user, id, is_session=True)
 
     def still(self, identity: Identity) -> Identity | None:
         """Return the same identity as it is now, perhaps with another role; None if it was revoked."""
         table = "session" if identity.is_session else "token"
         with self.database.transaction(Mode.READ) as execute:
             found = execute(f"SELECT 1 FROM {table} WHERE id = ?", (identity.id,))
-        return self._identified(identity.user, identity.id, is_session=identity.is_session) if found else None
+        return self._identify(identity.user, identity.id, is_session=identity.is_session) if found else None
 
     def log(self, user: str, address: str, what: str, outcome: str) -> None:
         """Add to the trail, from which the oldest entries go: who tries again and again can't fill the disk."""
@@ -301,7 +301,7 @@ class Accounts:
         fill_from_backup(self.database, path, _STEPS, _NOT_COPIED)
         self._changed()
 
-    def _identified(self, name: str, id: str, *, is_session: bool) -> Identity | None:
+    def _identify(self, name: str, id: str, *, is_session: bool) -> Identity | None:
         user = self.user(name)
         return None if user is None else Identity(user.name, user.role, id, is_session)
 

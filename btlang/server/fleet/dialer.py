@@ -69,7 +69,7 @@ def key_for(settings: DialerSettings) -> Key:
 
     Raises RefusedError and OSError.
     """
-    known = _kept(settings.kept)
+    known = _read_key(settings.kept)
     if known is not None and settings.code in ("", known.code):
         return known
     if not settings.code:
@@ -82,7 +82,7 @@ def key_for(settings: DialerSettings) -> Key:
     return made
 
 
-def _kept(path: str) -> Key | None:
+def _read_key(path: str) -> Key | None:
     with suppress(FileNotFoundError, ValueError, TypeError), open(path, encoding="utf-8") as file:
         return Key(**json.load(file))
     return None

@@ -50,7 +50,7 @@ class Fleet:
 
     def robots(self) -> list[FleetRobot]:
         """Return all robots that were invited, by name."""
-        return self._found("1 = 1 ORDER BY name")
+        return self._find("1 = 1 ORDER BY name")
 
     def invite(self, name: str, pin: bytes) -> str:
         """Make a code for a robot; `pin` is the server's (accounts/certificate.py). Raises MissionError (BT187)."""
@@ -77,7 +77,7 @@ class Fleet:
 
         The same again is no second use, since the first answer may have been lost.
         """
-        known = self._found("key = ?", hash_secret(key))
+        known = self._find("key = ?", hash_secret(key))
         if known:
             return known[0]
         with self._database.transaction() as execute:
@@ -85,7 +85,7 @@ class Fleet:
                 "UPDATE robot SET key = ? WHERE code = ? AND key = '' AND invited > ?",
                 (hash_secret(key), hash_secret(code), self._clock() - VALID),
             )
-        joined = self._found("key = ?", hash_secret(key))
+        joined = self._find("key = ?", hash_secret(key))
         return joined[0] if joined else None
 
     def saw(self, name: str) -> None:
@@ -93,7 +93,7 @@ class Fleet:
         with self._database.transaction() as execute:
             execute("UPDATE robot SET seen = ? WHERE name = ?", (self._clock(), name))
 
-    def _found(self, condition: str, *values: object) -> list[FleetRobot]:
+    def _find(self, condition: str, *values: object) -> list[FleetRobot]:
         with self._database.transaction(Mode.READ) as execute:
             rows = execute(f"SELECT {columns_of(FleetRobot)} FROM robot WHERE {condition}", values)
         return [from_row(FleetRobot, row) for row in rows]

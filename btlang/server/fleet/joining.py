@@ -88,7 +88,7 @@ class Dialed:
         finally:
             if self.socket is socket:
                 self.socket = None
-                self._lose("stop")
+                self._refuse_waiting("stop")
                 for reader in self._streams.values():
                     reader.feed_eof()
 
@@ -96,12 +96,12 @@ class Dialed:
         """Settle what was under way when the connection broke."""
         if instance != self._instance:
             self._instance = instance
-            self._lose("command")  # it may have been done: who knew that is gone
+            self._refuse_waiting("command")  # it may have been done: who knew that is gone
         for message, answer in tuple(self._waiting.values()):
             if not answer.done():
                 await self._send(message)
 
-    def _lose(self, kind: str) -> None:
+    def _refuse_waiting(self, kind: str) -> None:
         for message, answer in self._waiting.values():
             if message["type"] == kind and not answer.done():
                 answer.set_exception(ConnectionResetError("the connection broke"))
@@ -186,7 +186,7 @@ class Joins:
         await socket.accept()
         with suppress(WebSocketDisconnect, RuntimeError, OSError):
             async with asyncio.timeout(_JOIN):
-                robot, instance = await self._admitted(socket, address)
+                robot, instance = await self._admit(socket, address)
             way = None if robot is None else await self._way(robot)
             if robot is None or way is None:
                 reason = "it isn't known here, its code is too old, or it was revoked"
@@ -204,7 +204,7 @@ class Joins:
             finally:
                 noting.cancel()
 
-    async def _admitted(self, socket: WebSocket, address: str) -> tuple[FleetRobot | None, str]:
+    async def _admit(self, socket: WebSocket, address: str) -> tuple[FleetRobot | None, str]:
         try:
             data = read_object(await socket.receive_text())
             key, code, instance = (text_in(data, name) for name in ("key", "code", "instance"))

@@ -97,9 +97,9 @@ class Api:
             *(self._route(f"/api/{kind}", partial(self._text, kind), "POST") for kind in ASKED),
             self._route("/api/recordings", self._recordings, "GET"),
             self._route("/api/recordings/{name}", self._recording, "GET"),
-            self._route("/api/films/{name}", partial(self._shown, film, ()), "GET"),
-            self._route("/api/trees/{name}", partial(self._shown, tree, ()), "GET"),
-            self._route("/api/comparisons/{name}", partial(self._shown, comparison, ("with",)), "GET"),
+            self._route("/api/films/{name}", partial(self._show_film, film, ()), "GET"),
+            self._route("/api/trees/{name}", partial(self._show_film, tree, ()), "GET"),
+            self._route("/api/comparisons/{name}", partial(self._show_film, comparison, ("with",)), "GET"),
             self._route("/api/urdf", self._urdf, "GET"),
             self._route("/metrics", self._metrics, "GET"),
             Route("/openapi.json", lambda request: JsonResponse(document())),
@@ -187,7 +187,7 @@ class Api:
         return self._logged_in(identity, secret)
 
     def _logged_in(self, identity: Identity, secret: str) -> Response:
-        response = JsonResponse(self._described(identity))
+        response = JsonResponse(self._describe(identity))
         response.set_cookie(value=secret, max_age=int(LONGEST), **self._cookie)
         return response
 
@@ -208,7 +208,7 @@ class Api:
         return response
 
     async def _me(self, request: Request) -> Response:
-        return JsonResponse(self._described(await self._who(request)))
+        return JsonResponse(self._describe(await self._who(request)))
 
     async def _robots(self, request: Request) -> Response:
         await self._who(request)
@@ -270,7 +270,7 @@ class Api:
         path = await asyncio.to_thread(path_of, feed.recordings, name)
         return FileResponse(path, media_type="application/octet-stream")
 
-    async def _shown(self, show: Callable[..., bytes], others: tuple[str, ...], request: Request) -> Response:
+    async def _show_film(self, show: Callable[..., bytes], others: tuple[str, ...], request: Request) -> Response:
         """Return what a page shows of a recording, and of the `others` that the query names."""
         feed = await self._recorder(request)
         names = [request.path_params["name"], *(request.query_params.get(other, "") for other in others)]
@@ -339,7 +339,7 @@ class Api:
         robot = request.query_params.get("robot", "")
         return await self.send(await self._who(request), robot, command, address_of(request))
 
-    def _described(self, identity: Identity) -> dict[str, Any]:
+    def _describe(self, identity: Identity) -> dict[str, Any]:
         described = {"ok": True, "user": identity.user, "role": identity.role, "version": VERSION}
         return {**described, "csrf": self.access.csrf(identity)} if identity.is_session else described
 

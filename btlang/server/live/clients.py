@@ -65,13 +65,13 @@ class PagePresence:
             number = next(self._numbers)
         if place != before:
             self._pages[client] = number, place
-            self._changed()
+            self._send_presence()
         return number
 
     def leave(self, client: ConnectedClient) -> None:
         """Forget a page whose socket has ended."""
         if self._pages.pop(client, None) is not None:
-            self._changed()
+            self._send_presence()
 
     def _make_room(self, client: ConnectedClient) -> None:
         user = client.identity.user
@@ -79,7 +79,7 @@ class PagePresence:
         if own >= MOST_PAGES_OF_USER or len(self._pages) >= MOST_PAGES:
             raise AccessError(429, "Too many pages are open to list them all.")
 
-    def _changed(self) -> None:
+    def _send_presence(self) -> None:
         if self._sending is None:
             self._sending = asyncio.get_running_loop().call_later(_PAUSE, self._send)
 

@@ -47,26 +47,26 @@ class LocalConnection:
 
     async def ask(self, message: dict[str, Any]) -> Any:
         """See `RobotConnection`. Raises ValueError for an answer that isn't JSON."""
-        async with _connected(socket_path(self._name)) as (reader, writer):
+        async with _connect(socket_path(self._name)) as (reader, writer):
             writer.write(json.dumps(message).encode() + b"\n")
             return json.loads(await reader.readline())
 
     async def stop(self) -> None:
         """See `RobotConnection`. The socket is for nothing else."""
-        async with _connected(socket_path(self._name, stop=True)) as (reader, _):
+        async with _connect(socket_path(self._name, stop=True)) as (reader, _):
             if not await reader.read(16):
                 raise ConnectionError("it has hung up")
 
     @asynccontextmanager
     async def watching(self, request: dict[str, Any]) -> AsyncIterator[asyncio.StreamReader]:
         """See `RobotConnection`."""
-        async with _connected(socket_path(self._name)) as (reader, writer):
+        async with _connect(socket_path(self._name)) as (reader, writer):
             writer.write(json.dumps({"watch": request}).encode() + b"\n")
             yield reader
 
 
 @asynccontextmanager
-async def _connected(path: str) -> AsyncIterator[tuple[asyncio.StreamReader, asyncio.StreamWriter]]:
+async def _connect(path: str) -> AsyncIterator[tuple[asyncio.StreamReader, asyncio.StreamWriter]]:
     reader, writer = await asyncio.open_unix_connection(path, limit=LONGEST)
     try:
         yield reader, writer

@@ -145,7 +145,7 @@ class Sockets:
     async def _log_in(self, subprotocol: Subprotocol, socket: WebSocket) -> Identity | None:
         with suppress(AccessError):
             identity = await self._access.identify(socket.headers, changes=False)
-            return await _welcomed(subprotocol, socket, identity)
+            return await _welcome(subprotocol, socket, identity)
         if subprotocol.greeting is not None:
             await socket.send_json(subprotocol.greeting)
         async with asyncio.timeout(_LOG_IN):
@@ -154,13 +154,13 @@ class Sockets:
             token = subprotocol.token(read_object(text))
             found = await self._access.by_token(token) if isinstance(token, str) else None
             if found is not None:
-                return await _welcomed(subprotocol, socket, found)
+                return await _welcome(subprotocol, socket, found)
         await socket.send_json(subprotocol.refusal)
         await socket.close(FORBIDDEN)
         return None
 
 
-async def _welcomed(subprotocol: Subprotocol, socket: WebSocket, identity: Identity) -> Identity:
+async def _welcome(subprotocol: Subprotocol, socket: WebSocket, identity: Identity) -> Identity:
     message = subprotocol.welcome(identity)
     if message is not None:
         await socket.send_json(message)

@@ -59,17 +59,17 @@ class EditorFiles:
 
     def listed(self) -> list[dict[str, Any]]:
         """List all, the one that was opened first, and its tests last."""
-        saved = self._saved()
-        names = [self.name, *(name for name in self._included() if name not in saved), *list(saved)[1:]]
+        saved = self._savable_paths()
+        names = [self.name, *(name for name in self._included_paths() if name not in saved), *list(saved)[1:]]
         return [{"name": name, "saves": name in saved} for name in names]
 
     def read(self, name: str) -> dict[str, Any]:
         """Return the `text` of a file and its `revision`; of a tree also the name of the `tree`, that of its `copy`,
         and a `problem` if there's one.
         """
-        if (path := self._saved().get(name)) is not None:
+        if (path := self._savable_paths().get(name)) is not None:
             return _content(_text(path))
-        included = self._included()
+        included = self._included_paths()
         if name not in included:
             raise AccessError(404, "That file isn't open here.")
         return _content(included[name].text)
@@ -78,7 +78,7 @@ class EditorFiles:
         """Write a text that was made from a revision; where the file has another one by now, it is refused with the
         difference. Line ends stay those of the file.
         """
-        path = self._saved().get(name)
+        path = self._savable_paths().get(name)
         if path is None:
             raise AccessError(403, "Only the file that was opened can be saved, and its tests.")
         before = _text(path)
@@ -90,11 +90,11 @@ class EditorFiles:
         write_file(path, ("\ufeff" if before is not None and has_mark(path) else "") + text)
         return Answer(True, f"Saved {name}.", {"revision": _revision(text)}, "")
 
-    def _saved(self) -> dict[str, str]:
+    def _savable_paths(self) -> dict[str, str]:
         """Return the paths of those that can be saved, by their names."""
         return {os.path.basename(path): path for path in (self.path, self._tests) if path}
 
-    def _included(self) -> dict[str, Source]:
+    def _included_paths(self) -> dict[str, Source]:
         """Return the included files by their names as seen from the folder of the file; those that can't be read are
         left out.
         """
@@ -310,11 +310,11 @@ class EditorApi(LocalApi):
 
     async def _list_files(self, request: Request) -> Response:
         await self._who(request)
-        return _answered({"files": await asyncio.to_thread(self._files.listed)})
+        return _answer({"files": await asyncio.to_thread(self._files.listed)})
 
     async def _read_file(self, request: Request) -> Response:
         await self._who(request)
-        return _answered(await asyncio.to_thread(self._files.read, request.path_params["name"]))
+        return _answer(await asyncio.to_thread(self._files.read, request.path_params["name"]))
 
     async def _save_file(self, request: Request) -> Response:
         await self._who(request)
@@ -327,5 +327,5 @@ class EditorApi(LocalApi):
         return JsonResponse(answer.as_json(), 200 if answer.ok else 409)
 
 
-def _answered(data: dict[str, object]) -> Response:
+def _answer(data: dict[str, object]) -> Response:
     return JsonResponse(Answer(True, "", data, "").as_json())

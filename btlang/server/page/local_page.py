@@ -92,8 +92,8 @@ class LocalApi(Api):
         assert identity is not None
         return self._logged_in(identity, secret)
 
-    def _described(self, identity: Identity) -> dict[str, Any]:
-        return {**super()._described(identity), "screen": self._screen}
+    def _describe(self, identity: Identity) -> dict[str, Any]:
+        return {**super()._describe(identity), "screen": self._screen}
 
 
 class LocalRobots(RobotFeeds):

@@ -45,20 +45,20 @@ def in_units(answer: dict[str, Any], text: str) -> dict[str, Any]:
     Where it has `changes`, its own `start` and `end` are in the text with them.
     """
     units = Units(text)
-    made: dict[str, Any] = _converted(answer, units) if units.wide else answer
+    made: dict[str, Any] = _convert(answer, units) if units.wide else answer
     if "changes" in answer and "start" in answer:
         after = Units(changed(text, [Change(**change) for change in answer["changes"]]))
         made = {**made, "start": after.unit(answer["start"]), "end": after.unit(answer["end"])}
     return made
 
 
-def _converted(part: Any, units: Units) -> Any:
+def _convert(part: Any, units: Units) -> Any:
     if isinstance(part, Mapping):
         return {
-            key: _place(value, units) if key in ("start", "end", "of") else _converted(value, units)
+            key: _place(value, units) if key in ("start", "end", "of") else _convert(value, units)
             for key, value in part.items()
         }
-    return [_converted(each, units) for each in part] if isinstance(part, list | tuple) else part
+    return [_convert(each, units) for each in part] if isinstance(part, list | tuple) else part
 
 
 def _place(value: Any, units: Units) -> Any:

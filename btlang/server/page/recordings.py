@@ -40,7 +40,7 @@ def list_recordings(folder: str) -> list[dict[str, Any]]:
     """
     found: list[tuple[float, str, int]] = []
     with suppress(OSError):
-        for entry in os.scandir(_checked(folder)):
+        for entry in os.scandir(_check_folder(folder)):
             if NAME.fullmatch(entry.name):
                 status = entry.stat()
                 found.append((status.st_mtime, entry.name, status.st_size))
@@ -56,7 +56,7 @@ def list_recordings(folder: str) -> list[dict[str, Any]]:
 
 def path_of(folder: str, name: str) -> str:
     """Return the file of a recording. Raises AccessError (404)."""
-    path = os.path.join(_checked(folder), name)
+    path = os.path.join(_check_folder(folder), name)
     if not NAME.fullmatch(name) or not os.path.isfile(path):
         raise AccessError(404, "There's no such recording.")
     return path
@@ -74,7 +74,7 @@ def piece(folder: str, name: str, at: int) -> tuple[int, bytes]:
         raise AccessError(404, "There's no such recording.") from None
 
 
-def _checked(folder: str) -> str:
+def _check_folder(folder: str) -> str:
     if not folder:
         raise AccessError(404, "The recordings of this robot aren't on this computer.")
     return folder

@@ -120,7 +120,7 @@ def write_report(store: TaskStore, since: float, until: float) -> Iterator[str]:
     """
     tasks = [task for task in store.tasks() if since <= _time_of(task) < until]
     tasks.sort(key=lambda task: (_time_of(task), task.id))
-    yield f"From {format_moment(since, 0.0)} to {format_moment(until, 0.0)}: {_counted(tasks)}."
+    yield f"From {format_moment(since, 0.0)} to {format_moment(until, 0.0)}: {_count(tasks)}."
     schedules = {schedule.id: schedule for schedule in store.schedules()}
     for number in sorted({task.schedule for task in tasks if task.schedule}):
         group = [task for task in tasks if task.schedule == number]
@@ -132,7 +132,7 @@ def write_report(store: TaskStore, since: float, until: float) -> Iterator[str]:
 
 def _group(title: str, tasks: Sequence[Task]) -> Iterator[str]:
     yield ""
-    yield f"{title}: {_counted(tasks)}."
+    yield f"{title}: {_count(tasks)}."
     for task in tasks:
         if task.state is not TaskState.COMPLETED:
             reason = f": {one_line(task.reason)}" if task.reason else ""
@@ -140,7 +140,7 @@ def _group(title: str, tasks: Sequence[Task]) -> Iterator[str]:
             yield f"  {when}  task {task.id}, {shorten(task.mission)}: {task.state}{reason}"
 
 
-def _counted(tasks: Sequence[Task]) -> str:
+def _count(tasks: Sequence[Task]) -> str:
     done = sum(task.state is TaskState.COMPLETED for task in tasks)
     still_open = sum(task.state not in FINAL for task in tasks)
     rest = f", {still_open} not over yet" if still_open else ""

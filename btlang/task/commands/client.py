@@ -66,7 +66,7 @@ class RobotClient:
 
     def __init__(self, name: str = "") -> None:
         self.name = name or _only_name()
-        self._socket = _connected(self.name, socket_path(self.name))
+        self._socket = _connect(self.name, socket_path(self.name))
         self._lines = self._socket.makefile("rb")
 
     def send(self, command: Command) -> Answer:
@@ -98,17 +98,17 @@ def emergency_stop(name: str = "", reason: str = "") -> list[str]:
 
     Returns a line for each. Raises MissionError (BT185) if there is no such robot, BT195 if a latch can't be written.
     """
-    names = [name] if name else _listening() or robots_known()
-    lines = [_stopped(each, reason) for each in names]
+    names = [name] if name else _find_listening() or robots_known()
+    lines = [_report_stop(each, reason) for each in names]
     if not names or None in lines:
         raise _nobody(name or USUAL_NAME)
     return [each for each in lines if each is not None]
 
 
-def _stopped(name: str, reason: str) -> str | None:
+def _report_stop(name: str, reason: str) -> str | None:
     """Return what to say; None where there never was such a robot."""
     for stop in (True, False):
-        with suppress(MissionError, OSError), _connected(name, socket_path(name, stop=stop)) as connection:
+        with suppress(MissionError, OSError), _connect(name, socket_path(name, stop=stop)) as connection:
             if not stop:
                 connection.sendall(json.dumps(as_json(EmergencyStop(reason))).encode() + b"\n")
             if connection.recv(16):
@@ -124,7 +124,7 @@ def _stopped(name: str, reason: str) -> str | None:
 
 
 def _only_name() -> str:
-    listening = _listening()
+    listening = _find_listening()
     if len(listening) > 1:
         names = ", ".join(listening)
         what = f"Several robots are up: {names}"
@@ -132,17 +132,17 @@ def _only_name() -> str:
     return listening[0] if listening else USUAL_NAME
 
 
-def _listening() -> list[str]:
+def _find_listening() -> list[str]:
     """List the robots that are up."""
     found = []
     for name in names_up():
         with suppress(MissionError):
-            _connected(name, socket_path(name)).close()
+            _connect(name, socket_path(name)).close()
             found.append(name)
     return found
 
 
-def _connected(name: str, path: str) -> socket.socket:
+def _connect(name: str, path: str) -> socket.socket:
     connection = socket.socket(socket.AF_UNIX)
     connection.settimeout(_PATIENCE)
     try:

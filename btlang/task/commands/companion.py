@@ -50,7 +50,7 @@ class Companion:
         self._command = [sys.executable, "-P", "-m", *words]  # -P: a file beside the mission is no module
         self._began, self._closed = threading.Event(), threading.Event()
         self._spoke = False
-        self._process = self._begun()
+        self._process = self._begin()
         self._thread = threading.Thread(target=self._keep, daemon=True, name=f"btlang {name}")
 
     def start(self) -> int:
@@ -69,7 +69,7 @@ class Companion:
             self._process.kill()
         self._thread.join(_PATIENCE)
 
-    def _begun(self) -> subprocess.Popen[str]:
+    def _begin(self) -> subprocess.Popen[str]:
         process = subprocess.Popen(self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         assert process.stdin is not None
         with suppress(OSError):  # it has ended, and its exit code says why
@@ -95,7 +95,7 @@ class Companion:
             if self._closed.wait(_AGAIN):
                 return
             try:
-                self._process = self._begun()
+                self._process = self._begin()
             except OSError as error:
                 self._report(f"The {self._name} can't start: {reason_of(error)}")
                 return

@@ -244,12 +244,12 @@ class Handler:
         if command.priority is not None:
             moved = self._store.amend(task.id, priority=check_priority(command.priority, command.tag))
         else:
-            moved = self._moved_before(task, self._open(command.before))
+            moved = self._move_before(task, self._open(command.before))
         self._executor.wake()
         assert moved is not None
         return Answer(True, f"Task {task.id} has a new place.", {"task": self._data(moved)})
 
-    def _moved_before(self, task: Task, other: Task) -> Task | None:
+    def _move_before(self, task: Task, other: Task) -> Task | None:
         if task.id == other.id:
             raise refusal_error(task.id, "can't come before itself")
         for each in (task, other):

@@ -121,10 +121,10 @@ def _change(manager: Manager, act: ComponentChange, name: str, session: Session)
         file = session.robot.body.file
         if not file:
             raise ComponentError("the robot has no file to load it from")
-        manager.load(_named(read_body(file).components, name))
+        manager.load(_find_component(read_body(file).components, name))
 
 
-def _named(parts: Iterable[Any], name: str) -> Any:
+def _find_component(parts: Iterable[Any], name: str) -> Any:
     known = {part.name: part for part in parts}
     if name not in known:
         raise ComponentError(f'the robot file has no component "{name}"; it has {", ".join(known) or "none"}')

@@ -15,11 +15,11 @@ def schema() -> dict[str, Any]:
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "A command for a robot of btlang",
-        "oneOf": [_described(kind) for kind in COMMANDS.values()],
+        "oneOf": [_describe(kind) for kind in COMMANDS.values()],
     }
 
 
-def _described(kind: type[Command]) -> dict[str, Any]:
+def _describe(kind: type[Command]) -> dict[str, Any]:
     fields = {field: field_type(kind.__annotations__[field])[1] for field in kind.fields}
     return {
         "title": kind.__name__,

@@ -62,7 +62,7 @@ class SocketServer:
             os.close(self._lock)
             raise MissionError([diagnostic("BT190", NOWHERE, name=name)]) from None
         self._closed = False
-        self._sockets = [_listening(path) for path in self._paths]
+        self._sockets = [_listen(path) for path in self._paths]
         self._threads = [
             threading.Thread(target=self._accept, args=(0, self._begin), daemon=True, name="btlang door"),
             threading.Thread(target=self._accept, args=(1, self._be_stopped), daemon=True, name="btlang stop"),
@@ -108,7 +108,7 @@ class SocketServer:
                 with suppress(OSError, MissionError):
                     socket_folder()
                     self._sockets[which].close()
-                    self._sockets[which] = _listening(self._paths[which])
+                    self._sockets[which] = _listen(self._paths[which])
 
     def _begin(self, connection: socket.socket) -> None:
         threading.Thread(target=self._serve, args=(connection,), daemon=True, name="btlang caller").start()
@@ -174,7 +174,7 @@ def _read(line: bytes) -> object:
         return _UNREADABLE
 
 
-def _listening(path: str) -> socket.socket:
+def _listen(path: str) -> socket.socket:
     with suppress(FileNotFoundError):
         os.unlink(path)  # nobody listens there: the lock is ours
     listening = socket.socket(socket.AF_UNIX)

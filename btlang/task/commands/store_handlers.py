@@ -85,7 +85,7 @@ class LibraryHandler:
     def list(self, command: messages.Library, person: str) -> Answer:
         """List all texts of a kind, or what there is of one."""
         kind = choose_member(LibraryKind, command.kind, "kind", command.tag)
-        found = self._found(command, kind)
+        found = self._find(command, kind)
         now = self._now()
         lines = [
             f"{one_line(each.name)}, revision {each.number}: {one_line(each.person)}, {format_moment(each.time, now)}"
@@ -98,7 +98,7 @@ class LibraryHandler:
         empty = "The library is empty." if kind is LibraryKind.MISSION else f"The library has no {_CALLED[kind]}s."
         return Answer(True, "\n".join(lines) or empty, {f"{kind}s": data})
 
-    def _found(self, command: messages.Library, kind: LibraryKind) -> Sequence[Revision]:
+    def _find(self, command: messages.Library, kind: LibraryKind) -> Sequence[Revision]:
         if not command.name:
             return self._store.texts(kind)
         if command.revision is None:

@@ -54,7 +54,7 @@ class EmergencyLatch:
         self._closed = False
         if not os.path.lexists(path):
             _write(path, "")
-        self._seen = _changed_at(path)
+        self._seen = _change_time(path)
         self._thread = threading.Thread(target=self._keep, name="btlang emergency latch", daemon=True)
         self._thread.start()
 
@@ -72,7 +72,7 @@ class EmergencyLatch:
         """Open the latch. Raises OSError if the file can't be written: then it stays shut."""
         with self._writing:
             _write(self._path, "")
-            self._seen = _changed_at(self._path)
+            self._seen = _change_time(self._path)
             self._kept = self.reason = ""
         self._changed.set()
 
@@ -92,7 +92,7 @@ class EmergencyLatch:
             came = self._changed.wait(_LOOK if self._kept == self.reason else _AGAIN)
             self._changed.clear()
             with self._writing, suppress(OSError):
-                seen = _changed_at(self._path)
+                seen = _change_time(self._path)
                 if seen != self._seen and not self.reason:
                     self._seen, self._kept = seen, _read(self._path)
                     if self._kept:
@@ -101,7 +101,7 @@ class EmergencyLatch:
                 reason = self.reason
                 if reason and reason != self._kept:
                     _write(self._path, reason)
-                    self._seen, self._kept = _changed_at(self._path), reason
+                    self._seen, self._kept = _change_time(self._path), reason
             for listener in self.listeners if came else ():
                 listener()
 
@@ -110,7 +110,7 @@ def _reason(person: str, reason: str) -> str:
     return f"emergency stop by {person or 'somebody'}" + (f": {reason}" if reason else "")
 
 
-def _changed_at(path: str) -> int:
+def _change_time(path: str) -> int:
     """Return when the file was written last, 0 if there is none."""
     try:
         return os.lstat(path).st_mtime_ns

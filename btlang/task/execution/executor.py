@@ -271,7 +271,7 @@ class Executor:
             self._task, self._ending = task, None
         try:
             try:
-                run = self._prepared(task)
+                run = self._prepare(task)
                 self._change(task, TaskState.UNDERWAY, "it goes on" if task.saved else "it begins", started=self._now())
                 self._latest = task.saved
                 outcome = self._execute(run)
@@ -288,7 +288,7 @@ class Executor:
                 self._task = None
                 self._changed.notify_all()
 
-    def _prepared(self, task: Task) -> Run:
+    def _prepare(self, task: Task) -> Run:
         mission = self._rules.around(self._missions(task.mission))
         recorder = self._recordings.recorder(mission, task.id) if self._recordings is not None else None
         if recorder is not None:

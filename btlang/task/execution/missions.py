@@ -132,8 +132,8 @@ class HouseRules:
         root = mission.tree.root
         for rule in reversed(self._rules):
             condition, reaction, _ = rule.children
-            root = rule.replace(children=(_renamed(condition), _renamed(reaction), root))
-        own = tuple((_PREFIX + name, _renamed(body)) for name, body in self._mission.tree.subtrees)
+            root = rule.replace(children=(_rename(condition), _rename(reaction), root))
+        own = tuple((_PREFIX + name, _rename(body)) for name, body in self._mission.tree.subtrees)
         around: Mission = mission.replace(
             tree=Tree(root, (*own, *mission.tree.subtrees)), facts=(*self._mission.facts, *mission.facts)
         )
@@ -175,7 +175,7 @@ def _watches_on(node: Node) -> bool:
     return kind is not None and kind.endless and not node.children[0].children
 
 
-def _renamed(root: Node) -> Node:
+def _rename(root: Node) -> Node:
     """Return a tree with the names of the rules for subtrees."""
 
     def renamed(node: Node, children: list[Node]) -> Node:

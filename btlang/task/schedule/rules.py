@@ -189,10 +189,10 @@ class _RuleReader:
         other = words.takes("other")
         units = (*_LONG_UNITS, *_SHORT_UNITS) if other else _LONG_UNITS
         if (other or words.number() is not None) and (words.takes(*units) or words.weekdays()):
-            raise self._counted(first)
+            raise self._refuse_count(first)
         words.at = begin
 
-    def _counted(self, first: int) -> Unread:
+    def _refuse_count(self, first: int) -> Unread:
         short = self._words.since(first).text.split()[-1].lower() in _SHORT_UNITS
         example = "every 2 hours" if short else "every Tuesday, or on the second Tuesday of every month"
         return self._words.wrong("doesn't say where to start counting", first, example)
@@ -208,7 +208,7 @@ class _RuleReader:
         monthly = words.takes(*_EVERY_MONTH) or "month" in self._periods
         if every and not monthly:
             if weekday or is_day or words.takes(*_LONG_UNITS, *_SHORT_UNITS):
-                raise self._counted(first)
+                raise self._refuse_count(first)
             words.at = begin  # `every second` alone
             return False
         most = _MOST_IN_MONTH if weekday else 31

@@ -89,7 +89,7 @@ class Database(ABC):
         Raises StoreError, also for what the database refuses inside.
         """
         with self._turn(mode):
-            connection = self._begun(mode)
+            connection = self._begin(mode)
             try:
                 yield partial(self._execute, connection)
                 self._run(connection, "COMMIT")
@@ -161,7 +161,7 @@ class Database(ABC):
         assert isinstance(error, Exception)
         return store_error(self.place, self._reason(error))
 
-    def _begun(self, mode: Mode) -> Any:
+    def _begin(self, mode: Mode) -> Any:
         """Return a connection in a transaction."""
         while True:
             with self._lock:

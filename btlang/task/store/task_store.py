@@ -134,7 +134,7 @@ class TaskStore:
         """
         with self._database.transaction() as execute:
             noted = TaskChange(id, time, state, cause, person)
-            changed = self._changed(execute, noted, before, {"reason": cause, **fields})
+            changed = self._notify_change(execute, noted, before, {"reason": cause, **fields})
         if changed is not None:
             self._notify()
         return changed
@@ -359,14 +359,14 @@ class TaskStore:
             [task] = found
             noted = TaskChange(task.id, now, TaskState.STANDBY, "its turn", "")
             fields = {"reason": noted.cause, "attempts": task.attempts + 1}
-            return self._changed(execute, noted, (task.state,), fields)
+            return self._notify_change(execute, noted, (task.state,), fields)
 
     def _latest(self, execute: Execute, name: str, kind: LibraryKind) -> Revision | None:
         query = f"SELECT {_REVISION} FROM revision WHERE kind = ? AND name = ? ORDER BY number DESC LIMIT 1"
         found = self._records(Revision, execute(query, (kind.value, name)))
         return found[0] if found else None
 
-    def _changed(
+    def _notify_change(
         self, execute: Execute, noted: TaskChange, before: Collection[TaskState], fields: Mapping[str, Any]
     ) -> Task | None:
         _check(Task, fields)
