@@ -72,7 +72,7 @@ def draw_layers() -> bytes:
             y = top + layer * (high + gap) + high / 2
             sheet.line(((at, y), (left + wide + 7, y)), colour=_ALARM)
             sheet.polygon(((left + wide + 1, y), (left + wide + 8, y - 4), (left + wide + 8, y + 4)), fill=_ALARM)
-    return sheet.encoded(".svg")
+    return sheet.encode(".svg")
 
 
 def _arrow(sheet: SvgSurface, x: float, start: float, end: float, colour: str = SOFT) -> None:

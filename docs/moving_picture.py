@@ -149,7 +149,7 @@ def moving_picture(path: Path) -> bytes:
     draw_headline(surface, watcher.record, end, map_top - 16)
     draw_map(surface, map, still, watcher.record, cup, end)
     MovingTree(surface, watcher, end).draw(_MARGIN + _LEFT + 24, _TOP - 6)
-    return surface.encoded(".svg")
+    return surface.encode(".svg")
 
 
 def draw_clock(surface: MovingSurface, record: RunRecord, end: float, right: float) -> None:

@@ -148,7 +148,7 @@ class Canvas:
         artist.set_linestyle((0, (2, 2)) if dashed else "solid")
         return self.add(artist, z)
 
-    def shaded(self, points: Points, colours: Sequence[str], *, line: float = 1, z: float = 0) -> Artist:
+    def draw_shaded(self, points: Points, colours: Sequence[str], *, line: float = 1, z: float = 0) -> Artist:
         """Draw a line through the points whose pieces have a colour each."""
         from matplotlib.collections import LineCollection
 
@@ -185,7 +185,7 @@ class Canvas:
         """Return width and height, and the pixels row by row as red, green, blue and opacity."""
         return self._agg.get_width_height(), bytes(self._agg.buffer_rgba())
 
-    def encoded(self, kind: str) -> bytes:
+    def encode(self, kind: str) -> bytes:
         """Return the bytes of a file, `kind` is ".png"; the same picture gives the same bytes."""
         out = io.BytesIO()
         about = {"Title": self._title, "Software": "btlang"}

@@ -80,7 +80,7 @@ class SvgSurface:
             stroke_dasharray=f"{_number(2 * line)} {_number(2 * line)}" if dashed else None,
         )  # fmt: skip
 
-    def shaded(self, points: Points, colours: Sequence[str], *, line: float = 1, z: float = 0) -> None:
+    def draw_shaded(self, points: Points, colours: Sequence[str], *, line: float = 1, z: float = 0) -> None:
         for piece, colour in zip(pairwise(points), colours, strict=True):
             self.line(piece, colour=colour, line=line, z=z)
 
@@ -90,7 +90,7 @@ class SvgSurface:
         yield
         self._parts.append((0, "</g>"))
 
-    def encoded(self, kind: str) -> bytes:
+    def encode(self, kind: str) -> bytes:
         """Return the file. The same picture gives the same bytes."""
         assert kind == ".svg"
         lines = [line for _, line in sorted(self._parts, key=itemgetter(0))]

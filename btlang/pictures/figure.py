@@ -45,7 +45,7 @@ def draw_gesture(body: Body, gesture: Gesture, rehearsal: Rehearsal, path: str, 
             top = _MARGIN + row * (_HIGH * _SCALE + 26)
             canvas.text(left + _WIDE * _SCALE, top + 8, says, align="center")
             _draw(canvas, body, rehearsal.angles[_index(rehearsal, seconds)], left, top + 16)
-        return canvas.encoded(kind)
+        return canvas.encode(kind)
 
 
 def _moments(gesture: Gesture, rehearsal: Rehearsal) -> list[tuple[float, str]]:

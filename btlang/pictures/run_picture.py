@@ -79,7 +79,7 @@ class RunPicture:
 
                 data = animate(self._world, self.record, self._title)
             else:
-                data = _Still(sheet, self._world, self.record, self._title).canvas.encoded(kind)
+                data = _Still(sheet, self._world, self.record, self._title).canvas.encode(kind)
         write_file(path, data)
 
 

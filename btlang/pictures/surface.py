@@ -84,11 +84,11 @@ if TYPE_CHECKING:
         ) -> object:  # fmt: skip
             """Draw a line through the points."""
 
-        def shaded(self, points: Points, colours: Sequence[str], *, line: float = 1, z: float = 0) -> object:
+        def draw_shaded(self, points: Points, colours: Sequence[str], *, line: float = 1, z: float = 0) -> object:
             """Draw a line through the points whose pieces have a colour each."""
 
         def group(self, title: str) -> AbstractContextManager[object]:
             """Return what is drawn within is one thing, which a viewer that can do so names."""
 
-        def encoded(self, kind: str) -> bytes:
+        def encode(self, kind: str) -> bytes:
             """Return the bytes of a file of a kind that the surface can make, ".svg" or ".png"."""

@@ -48,7 +48,7 @@ def draw_track(canvas: Surface, map: WorldMap, record: RunRecord) -> list[tuple[
     pieces = list(pairwise(points))
     shades = [shade(i / max(1, len(pieces) - 1)) for i in range(len(pieces))]
     canvas.line(points, colour="white", line=3.6, z=1.1)
-    canvas.shaded(points, shades, line=2, z=1.2)
+    canvas.draw_shaded(points, shades, line=2, z=1.2)
     gone = _ARROWS / 2
     for ((ax, ay), (bx, by)), colour in zip(pieces, shades, strict=True):
         gone += hypot(bx - ax, by - ay)

@@ -88,7 +88,7 @@ def picture_of(sheets: list[Sheet], title: str, kind: str, path: str = "", *, ha
     After a run, nodes have signs.
     """
     with open_drawing(path, kind) as sheet:
-        return _TreePicture(sheets, title, has_run, sheet).surface.encoded(kind)
+        return _TreePicture(sheets, title, has_run, sheet).surface.encode(kind)
 
 
 class _TreePicture:

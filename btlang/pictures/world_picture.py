@@ -31,7 +31,7 @@ def draw_world(world: World, path: str, title: str) -> None:
     """
     kind = picture_ending(path, STILL)
     with open_drawing(path, kind) as sheet:
-        data = _draw(sheet, world, title).encoded(kind)
+        data = _draw(sheet, world, title).encode(kind)
     write_file(path, data)
 
 

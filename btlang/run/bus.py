@@ -77,7 +77,7 @@ class Bus:
         if self.before is not None and kind is not StatusesChanged:
             self.before()
         with self._numbering:  # for no longer: an emergency stop reports from a thread of its own
-            event = kind.stamped(self.clock.now, self.run, self._number, *data, **more)
+            event = kind.stamp(self.clock.now, self.run, self._number, *data, **more)
             self._number += event.count
         for sink in tuple(self._sinks):
             try:

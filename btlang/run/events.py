@@ -88,7 +88,7 @@ class Event(Record):
         return _FIELD.sub(fill, self.line)
 
     @classmethod
-    def stamped(cls, t: float, run: str, number: int, /, *data: Any, **more: Any) -> Event:
+    def stamp(cls, t: float, run: str, number: int, /, *data: Any, **more: Any) -> Event:
         """Return an event of this class that happens now. The only place that fills in the common fields."""
         return cls(t, run, number, time(), *data, **more)
 

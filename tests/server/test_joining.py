@@ -159,17 +159,17 @@ def test_codes(tmp_path: Path) -> None:
         first = fleet.invite("kim", b"p" * 32)
         second = fleet.invite("kim", b"p" * 32)  # the first one is good no longer
         assert pin_in(second) == b"p" * 32
-        assert fleet.admitted("a" * 40, first) is None
+        assert fleet.admit("a" * 40, first) is None
         now[0] = VALID + 1
-        assert fleet.admitted("a" * 40, second) is None
+        assert fleet.admit("a" * 40, second) is None
         third = fleet.invite("kim", b"p" * 32)
-        assert fleet.admitted("a" * 40, third) is not None
-        assert fleet.admitted("a" * 40, third) is not None  # the answer may have been lost
-        assert fleet.admitted("b" * 40, third) is None
+        assert fleet.admit("a" * 40, third) is not None
+        assert fleet.admit("a" * 40, third) is not None  # the answer may have been lost
+        assert fleet.admit("b" * 40, third) is None
         with pytest.raises(MissionError, match="revoke it first"):
             fleet.invite("kim", b"p" * 32)
         fleet.revoke("kim")
-        assert fleet.admitted("a" * 40, third) is None
+        assert fleet.admit("a" * 40, third) is None
         with pytest.raises(MissionError, match="isn't known"):
             fleet.revoke("kim")
     for wrong in ("", "btr_", third[:-4], third + "AAAA", "btr_\0"):

@@ -199,7 +199,7 @@ class Dialer:
 
     async def _recordings(self) -> str:
         """Return the folder of the recordings, "" if the robot makes none."""
-        async with asyncio.timeout(_PATIENCE), self._sockets.watching({"rate": 1.0}) as reader:
+        async with asyncio.timeout(_PATIENCE), self._sockets.watch({"rate": 1.0}) as reader:
             return str(json.loads(await reader.readline())["recordings"])
 
     async def _stop(self, id: str) -> None:
@@ -213,7 +213,7 @@ class Dialer:
         """Forward what happens on the robot, as fast as the connection takes it."""
         number = stream.to_bytes(STREAM, "big")
         with suppress(OSError, WebSocketException):
-            async with self._sockets.watching(request) as reader:
+            async with self._sockets.watch(request) as reader:
                 while (data := await reader.read(_PART)) and self._connection is not None:
                     await self._connection.send(number + data)
         await self._send({"type": "watched", "stream": stream})

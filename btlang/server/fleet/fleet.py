@@ -72,7 +72,7 @@ class Fleet:
                 raise refusal_error(f"The robot '{name}'", "isn't known")
         self._changed()
 
-    def admitted(self, key: str, code: str) -> FleetRobot | None:
+    def admit(self, key: str, code: str) -> FleetRobot | None:
         """Return the robot whose key it is, None for nobody's; that of a good code becomes known.
 
         The same again is no second use, since the first answer may have been lost.

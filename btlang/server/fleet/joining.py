@@ -58,7 +58,7 @@ class Dialed:
         return await self._answer(message)
 
     @asynccontextmanager
-    async def watching(self, request: dict[str, Any]) -> AsyncIterator[asyncio.StreamReader]:
+    async def watch(self, request: dict[str, Any]) -> AsyncIterator[asyncio.StreamReader]:
         """See `Reach`."""
         number, reader = next(self._numbers), asyncio.StreamReader(limit=LONGEST)
         self._streams[number] = reader
@@ -208,7 +208,7 @@ class Joins:
         try:
             data = read_object(await socket.receive_text())
             key, code, instance = (text_in(data, name) for name in ("key", "code", "instance"))
-            robot = await asyncio.to_thread(self._fleet.admitted, key, code) if len(key) >= 32 else None
+            robot = await asyncio.to_thread(self._fleet.admit, key, code) if len(key) >= 32 else None
         except (MissionError, AccessError):
             robot, instance = None, ""
         if robot is not None:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
         async def stop(self) -> None:
             """Send the emergency stop; when it returns, the robot has it."""
 
-        def watching(self, request: dict[str, Any]) -> AbstractAsyncContextManager[asyncio.StreamReader]:
+        def watch(self, request: dict[str, Any]) -> AbstractAsyncContextManager[asyncio.StreamReader]:
             """Give what happens (see task/live/feed.py), a line of JSON each."""
 
     class RemoteConnection(RobotConnection, Protocol):
@@ -58,7 +58,7 @@ class LocalConnection:
                 raise ConnectionError("it has hung up")
 
     @asynccontextmanager
-    async def watching(self, request: dict[str, Any]) -> AsyncIterator[asyncio.StreamReader]:
+    async def watch(self, request: dict[str, Any]) -> AsyncIterator[asyncio.StreamReader]:
         """See `RobotConnection`."""
         async with _connect(socket_path(self._name)) as (reader, writer):
             writer.write(json.dumps({"watch": request}).encode() + b"\n")

@@ -141,7 +141,7 @@ class RobotFeed:
 
     async def _messages(self, after: int | None) -> AsyncGenerator[dict[str, Any]]:
         """Yield what the robot sends to a watcher, until it ends."""
-        async with self._connection.watching({"rate": RATE, "after": after}) as reader:
+        async with self._connection.watch({"rate": RATE, "after": after}) as reader:
             while True:
                 async with asyncio.timeout(_SILENT):  # which, unlike wait_for, takes all that is there in one go
                     line = await reader.readline()

@@ -140,7 +140,7 @@ class PageMonitor:
         raise ConnectionError("a run has no recordings")
 
     @asynccontextmanager
-    async def watching(self, request: dict[str, Any]) -> AsyncIterator[asyncio.StreamReader]:
+    async def watch(self, request: dict[str, Any]) -> AsyncIterator[asyncio.StreamReader]:
         """See `btlang.server.live.robot_connection.RobotConnection`. The feed waits for news in a thread."""
         reader, loop, is_over = asyncio.StreamReader(limit=LONGEST), asyncio.get_running_loop(), threading.Event()
 

@@ -143,9 +143,9 @@ class _Moment:
 
     def relative(self) -> float | None:
         """Read `in 10 minutes`; None if the text isn't of that kind."""
-        return self.shifted(1, "in 10 minutes") if self.words.takes("in") else None
+        return self.shift(1, "in 10 minutes") if self.words.takes("in") else None
 
-    def shifted(self, sign: int, example: str, end: str = "") -> float:
+    def shift(self, sign: int, example: str, end: str = "") -> float:
         """Move a time by so much: `10 minutes`, `1 h 30 min`, `2 days`, up to a word at the end.
 
         Days are those of the clock on the wall.
@@ -180,7 +180,7 @@ class _Moment:
             if words.takes(","):
                 continue
             first = words.at
-            found = words.needed_time() if words.takes("at") else words.listed_time()
+            found = words.need_time() if words.takes("at") else words.read_listed_time()
             day = self._day() if found is None else None
             if (found is not None and time is not None) or (day is not None and days is not None):
                 raise words.wrong(f"is a second {'time' if day is None else 'day'}", first)
@@ -188,7 +188,7 @@ class _Moment:
         if time is None:
             raise words.incomplete("doesn't say at what time", "at 9:00")
         if days is not None and days.single and days.single[0]:
-            return self.checked(moment_of(date(*days.single), time, read_zone(self.zone)))
+            return self.check(moment_of(date(*days.single), time, read_zone(self.zone)))
         moment = self.nearest(Recurrence(Rule(days or Days(), (time,)), self.zone))
         if moment is None:
             raise words.incomplete("never comes again")
@@ -216,7 +216,7 @@ class _Moment:
         """Choose the one that is meant of times that come again."""
         return recurrence.next(self.now)
 
-    def checked(self, moment: float) -> float:
+    def check(self, moment: float) -> float:
         """Check a time on a day that is said. Raises Unread if it can't be meant."""
         return moment
 
@@ -228,12 +228,12 @@ class _PastMoment(_Moment):
     otherwise = "is still to come"
 
     def relative(self) -> float | None:
-        return self.shifted(-1, "10 minutes ago", "ago") if self.words.ends_with("ago") else None
+        return self.shift(-1, "10 minutes ago", "ago") if self.words.ends_with("ago") else None
 
     def nearest(self, recurrence: Recurrence) -> float | None:
         return recurrence.last(self.now)
 
-    def checked(self, moment: float) -> float:
+    def check(self, moment: float) -> float:
         if moment > self.now:
             raise self.words.wrong(self.otherwise, 0)
         return moment

@@ -89,7 +89,7 @@ class _RuleReader:
     def _read_part(self) -> None:
         words, first = self._words, self._words.at
         if words.takes("at"):
-            self._read_times(first, words.needed_time())
+            self._read_times(first, words.need_time())
         elif (time := words.time_of_day()) is not None:
             self._read_times(first, time)
         elif words.takes("on hour"):
@@ -122,7 +122,7 @@ class _RuleReader:
     def _read_times(self, first: int, time: int) -> None:
         """Read the times behind the first one."""
         self._once(first, bool(self._times), "times are")
-        more = self._words.listed(self._words.listed_time, "at", goes_on=True)
+        more = self._words.read_list(self._words.read_listed_time, "at", goes_on=True)
         self._times = tuple(sorted({time, *more}))
 
     def _read_window(self, first: int, *joining: str) -> None:
@@ -134,11 +134,11 @@ class _RuleReader:
                 raise words.unknown(_WINDOW)
             places.append(words.at)
             hour = words.hour()
-            times.append(words.needed_time() if hour is None else hour[0])
+            times.append(words.need_time() if hour is None else hour[0])
             bare.append(hour is not None and hour[1])
         if any(bare) and words.says_half(first):  # `between 2 and 4 pm`: that may be 2:00 or 14:00
             words.at = places[bare.index(True)]
-            words.needed_time()
+            words.need_time()
         begin, end = times
         if all(bare) and 0 < end < begin <= _NOON:
             ways = [f"between {shown(begin)} and {shown(either)}" for either in (end + _NOON, end)]
@@ -200,7 +200,7 @@ class _RuleReader:
     def _read_ordinals(self, first: int, *, every: bool) -> bool:
         """Read `1st and 15th of every month`, `second Tuesday of every month`."""
         words, begin = self._words, self._words.at
-        numbers = words.listed(words.ordinal)
+        numbers = words.read_list(words.ordinal)
         if not numbers:
             return False
         weekday = words.weekdays()
@@ -234,7 +234,7 @@ class _RuleReader:
 
     def _weekdays(self) -> tuple[tuple[int, ...], bool]:
         """Read a list of weekdays, and whether it says that every week is meant."""
-        found = self._words.listed(self._words.weekdays, "on every", "on each", "on", *_EVERY)
+        found = self._words.read_list(self._words.weekdays, "on every", "on each", "on", *_EVERY)
         days = {day for those, _ in found for day in those}
         return tuple(sorted(days)), any(weekly for _, weekly in found)
 

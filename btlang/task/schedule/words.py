@@ -123,7 +123,7 @@ class ScheduleWords:
         self.at += found is not None
         return found
 
-    def listed(self, item: Callable[[], T | None], *openers: str, goes_on: bool = False) -> list[T]:
+    def read_list(self, item: Callable[[], T | None], *openers: str, goes_on: bool = False) -> list[T]:
         """Read a list: what a function reads again and again, with commas or `and` between, and with or without one of
         some words before it. With `goes_on` the first one of the list is read already.
         """
@@ -155,7 +155,7 @@ class ScheduleWords:
         self.at = found[1]
         return int(seconds_of(found[0]))
 
-    def needed_time(self) -> int:
+    def need_time(self) -> int:
         """Read a time of day. Raises Unread if the next words are none."""
         time = self.time_of_day()
         if time is not None:
@@ -166,12 +166,12 @@ class ScheduleWords:
         arguments = dict(explained.arguments)
         raise Unread(explained.span, arguments["problem"], self.at, arguments["example"], fix=explained.fix)
 
-    def listed_time(self) -> int | None:
+    def read_listed_time(self) -> int | None:
         """Read a time of day in a list. Raises Unread for one or two figures that aren't one, nor a day."""
         time, first = self.time_of_day(), self.at
         if time is None and re.match(r"\d\d?\b", self.ahead()):
             if self.calendar_date() is None and self.ordinal() is None:
-                self.needed_time()
+                self.need_time()
             self.at = first
         return time
 
