@@ -167,7 +167,7 @@ def _builder(kind: NodeKind) -> str:
     head = _wrapped(f"def {builder_name(kind.id)}(", parameters, ") -> Behavior:", "")
     values = ", ".join(f'"{port}": {_parameter(port)}' for port in kind.ports)
     arguments = [f'"{kind.id}"', given, f"{{{values}}}", "name", "scripts"]
-    about = f"The node {kind.id} of {kind.origin}." if kind.origin != "btlang" else f"The node {kind.id} of btlang."
+    about = f"Make the node {kind.id} of {kind.origin}."
     text = textwrap.fill(f"{about} {kind.text}".strip(), 112, subsequent_indent="    ")
     end = "\n    " if "\n" in text else ""
     body = _wrapped("    return built(", arguments, ")", "    ")
