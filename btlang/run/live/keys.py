@@ -1,13 +1,14 @@
-"""Single keys of a terminal, read in a thread of their own."""
+"""Single keys of a terminal, read in a thread of their own, and Ctrl-Z, which gives the terminal back first."""
 
 from __future__ import annotations
 
 import os
 import re
 import select
+import signal
 import threading
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 
 try:
     import termios
@@ -101,3 +102,28 @@ class Keys:
                     self._pressed(key)
                 elif key in _ARROWS:
                     self._pressed(_ARROWS[key])
+
+
+@contextmanager
+def stoppable(leave: Callable[[], object], come_back: Callable[[], object]) -> Iterator[None]:
+    """Call `leave` before the process is stopped and `come_back` when it goes on, from the main thread.
+
+    In another thread, or where there are no such signals, it does nothing.
+    """
+    if not hasattr(signal, "SIGTSTP") or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(*_: object) -> None:
+        leave()
+        os.kill(os.getpid(), signal.SIGSTOP)
+
+    def go_on(*_: object) -> None:
+        come_back()
+
+    before = {signal.SIGTSTP: signal.signal(signal.SIGTSTP, stop), signal.SIGCONT: signal.signal(signal.SIGCONT, go_on)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

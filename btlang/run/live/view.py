@@ -13,9 +13,8 @@ from btlang.run.bus import INLINE
 from btlang.run.events import PeriodPassed
 from btlang.run.live import frame
 from btlang.run.live.board import Board
-from btlang.run.live.keys import GONE, Keys
+from btlang.run.live.keys import GONE, Keys, stoppable
 from btlang.run.live.screen import LiveScreen, capture_output
-from btlang.run.live.stopping import stoppable
 from btlang.support.record import Record
 from btlang.text.output import is_unicode
 
