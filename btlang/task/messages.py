@@ -1,6 +1,6 @@
 """What may be asked of a robot: a class for each command. The CLI, the library, ROS 2 and servers all send these.
 
-As JSON a command is an object with its name under "command" and its fields; `command_schema.py` describes them all.
+As JSON a command is an object with its name under "command" and its fields; `commands/schema.py` describes them all.
 """
 
 from __future__ import annotations
