@@ -35,7 +35,7 @@ class WorldInput:
         """Take in an event of the run."""
         if isinstance(event, Asked):
             self.question = event.text or "..."
-            if (answer := self._read_script(event.text.lower())) is not None:
+            if (answer := self._take_answer(event.text.lower())) is not None:
                 self.type(answer)
         elif isinstance(event, PeriodPassed) and (self.question or self._calls):
             while self._calls:
@@ -53,7 +53,7 @@ class WorldInput:
         """Let a visitor come, where the world is simulated."""
         self._calls.append(lambda robot: robot.invite() if hasattr(robot, "invite") else None)
 
-    def _read_script(self, question: str) -> str | None:
+    def _take_answer(self, question: str) -> str | None:
         texts = next((texts for words, texts in self._answers.items() if words in question), self._answers.get(_ANY))
         if not texts:
             return None
