@@ -14,7 +14,7 @@ from starlette.types import Scope
 
 from btlang.server.http.access import Access, AccessError
 
-PLAIN = Path(__file__).parents[1] / "page"
+PLAIN = Path(__file__).parent / "plain_page"
 BUILT = Path(__file__).parents[2] / "web" / "dist"
 _POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self' 'nonce-{nonce}'; img-src 'self' data:; connect-src 'self';"
