@@ -139,7 +139,7 @@ def built(
     name: str,
     scripts: Mapping[str, object],
 ) -> Behavior:
-    """Make a behavior of a built-in node: what the functions of btlang.builders do. Raises TypeError if it doesn't fit.
+    """Make a behavior of a built-in node: what the functions of btlang.builders do.
 
     Raises TypeError if it doesn't fit.
     """

@@ -47,8 +47,6 @@ def with_matplotlib(path: str) -> Iterator[None]:
     """Give matplotlib with its own defaults, whatever the user's settings, and without its messages.
 
     Raises MissionError (BT081) where it cannot be imported.
-
-    Raises MissionError (BT081) where it cannot be imported.
     """
     logger = logging.getLogger("matplotlib")
     level = logger.level

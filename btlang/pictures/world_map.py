@@ -205,8 +205,6 @@ class WorldMap:
     """A map on a canvas within `room`; `area` is what it takes of it.
 
     The world is scaled to fit. `track` are further points that have to be on the map.
-
-    `track` are further points that have to be on the map.
     """
 
     def __init__(self, world: World, room: Area, track: Iterable[Point] = ()) -> None:

@@ -40,8 +40,6 @@ def project_problems(project: XmlProject, vocabulary: Lexicon, sources: CppSourc
     """Find errors and warnings of all files, in order, without those that comments allow.
 
     The C++ sources are asked about nodes that models describe badly, or not at all.
-
-    The C++ sources are asked about nodes that models describe badly, or not at all.
     """
     found = list(project.problems)
     if project.trees:

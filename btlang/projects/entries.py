@@ -149,8 +149,6 @@ def unset_enums(entries: Mapping[str, TreeEntries], enums: Collection[str], are_
     """Report BT241 for names such as RED in scripts, unless an entry has that name or it is one of `enums`.
 
     If these may not be all, only for misspelt ones.
-
-    If these may not be all, only for misspelt ones.
     """
     known = {*enums, *(use.key for each in entries.values() for use in each.uses if not use.may_be_enum)}
     for each in entries.values():

@@ -111,8 +111,6 @@ def port_problems(uses: DescribedUses) -> Iterator[Diagnostic]:
     """Report BT232 for ports that the model doesn't have, BT233 for values of another type, BT234 for missing ports.
 
     BT239 where the model is wrong, and not the nodes.
-
-    BT239 where the model is wrong, and not the nodes.
     """
     model = uses.model
     ports = {port.name: port for port in model.ports}

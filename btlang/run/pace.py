@@ -59,8 +59,6 @@ class Pace:
         """Sleep through a period of so many seconds of the mission; return how many have passed.
 
         Those are all of them unless it is to `wait` less from the tick's beginning on, is woken, or the run is stopped.
-
-        Those are all of them unless it is to `wait` less from the tick's beginning on, is woken, or the run is stopped.
         """
         seconds, speed = min(period, wait), self._speed
         if speed == math.inf:

@@ -49,7 +49,7 @@ class NodeChoice:
         return True
 
     def add_all(self, nodes: Sequence[int]) -> bool:
-        """Add all of them or none. They are the children of a node that is shown folded up: each needs a row, no more.
+        """Add all of them or none.
 
         They are the children of a node that is shown folded up: each needs a row, no more.
         """

@@ -138,8 +138,6 @@ async def in_file(recording: Fetched, is_wanted: Callable[[], Awaitable[bool]]) 
     """Give the path of a copy, for as long as it is used.
 
     Raises AccessError (413, 503); is given up if nobody wants it.
-
-    Raises AccessError (413, 503); is given up if nobody wants it.
     """
     if recording.size > MOST_BYTES:
         text = f"This recording has more than {MOST_BYTES // 1_000_000} MB: download it, and use btc replay."

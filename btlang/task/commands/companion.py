@@ -112,8 +112,6 @@ def companions(options: argparse.Namespace, robot: str, report: Callable[[str], 
     """Start the companions that the options COMPANIONS ask for; give the exit code of one that can't come up, else 0.
 
     Raises MissionError (BT200).
-
-    Raises MissionError (BT200).
     """
     require_companions(options)
     started: list[Companion] = []

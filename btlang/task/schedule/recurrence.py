@@ -72,8 +72,6 @@ class Recurrence(Record):
         """Yield all times from a moment on, in order.
 
         Where the clock skips midnight, times of one day may come after times of the next.
-
-        Where the clock skips midnight, times of one day may come after times of the next.
         """
         zone = read_zone(self.zone)
         found: set[float] = set()

@@ -84,10 +84,7 @@ class Database(ABC):
 
     @contextmanager
     def transaction(self, mode: Mode = Mode.WRITE) -> Iterator[Execute]:
-        """Do all or nothing of what is executed in it. Raises StoreError, also for what the database refuses inside.
-
-        Raises StoreError, also for what the database refuses inside.
-        """
+        """Do all or nothing of what is executed in it. Raises StoreError, also for what the database refuses inside."""
         with self._turn(mode):
             connection = self._begin(mode)
             try:
